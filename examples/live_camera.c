@@ -51,7 +51,8 @@ static uint16_t *read_depth(struct refocus_source *source, struct refocus_conver
 {
     static uint16_t *samples; /* millimetres, then disparities */
     const struct refocus_frame *frame = next(source);
-    struct refocus_depth_map map = {.sample = REFOCUS_SAMPLE_U16,
+    struct refocus_depth_map map = {.struct_size = sizeof(struct refocus_depth_map),
+                                    .sample = REFOCUS_SAMPLE_U16,
                                     .meaning = REFOCUS_DEPTH_DISTANCE,
                                     .flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN,
                                     .metres_per_unit = 0.001,

@@ -47,7 +47,7 @@ int main(int argc, char **argv)
     check(refocus_sink_start(sink, mode.width, mode.height, mode.fps, &reason));
 
     check(refocus_depth_read(&depth, argv[2], NULL, 0, 0, NULL, &reason));
-    const struct refocus_depth_map *map = &depth->depth;
+    const struct refocus_depth_map *map = depth->depth;
     uint16_t *samples = malloc((size_t)map->width * (size_t)map->height * 2);
     uint8_t *in = malloc((size_t)mode.width * (size_t)mode.height * 3);
     uint8_t *out = malloc((size_t)mode.width * (size_t)mode.height * 3);

@@ -35,18 +35,19 @@ enum refocus_depth_flags {
 };
 
 /**
- * A depth map as a sensor or a file gives it. The caller owns the samples.
+ * A depth map as a sensor or a file gives it. The caller owns the samples. Start from
+ * refocus_depth_map_default().
  * NaN and infinite samples never hold a value; nor does a distance <= 0.
  */
 struct refocus_depth_map {
-    const void *samples; /**< top row; NULL when there is no map */
-    int32_t width;       /**< samples, 1 to REFOCUS_MAX_SIDE */
-    int32_t height;      /**< samples, 1 to REFOCUS_MAX_SIDE */
-    ptrdiff_t stride;    /**< bytes from a row to the next one below; may be negative */
-    uint32_t sample;     /**< enum refocus_sample */
-    uint32_t meaning;    /**< enum refocus_depth_meaning */
-    uint32_t flags;      /**< enum refocus_depth_flags, or-ed */
-    uint32_t reserved;   /**< 0 */
+    uint32_t struct_size; /**< sizeof(struct refocus_depth_map) */
+    uint32_t sample;      /**< enum refocus_sample */
+    const void *samples;  /**< top row; NULL when there is no map */
+    ptrdiff_t stride;     /**< bytes from a row to the next one below; may be negative */
+    int32_t width;        /**< samples, 1 to REFOCUS_MAX_SIDE */
+    int32_t height;       /**< samples, 1 to REFOCUS_MAX_SIDE */
+    uint32_t meaning;     /**< enum refocus_depth_meaning */
+    uint32_t flags;       /**< enum refocus_depth_flags, or-ed */
 
     /** For disparity: the samples that mean d = 1 and d = 0. Near below far is a map
      *  whose dark is near. Both equal: measure the least and the greatest sample,
@@ -61,16 +62,40 @@ struct refocus_depth_map {
     double near_m, far_m;
 };
 
-/** The findings of refocus_depth_to_disparity(). */
+/** A map of 8-bit disparities without samples yet; the samples follow. */
+static inline struct refocus_depth_map refocus_depth_map_default(void)
+{
+    struct refocus_depth_map map;
+
+    memset(&map, 0, sizeof map);
+    map.struct_size = sizeof map;
+    map.sample = REFOCUS_SAMPLE_U8;
+    map.meaning = REFOCUS_DEPTH_DISPARITY;
+    return map;
+}
+
+/** The findings of refocus_depth_to_disparity(), which are written as far as struct_size goes.
+ *  Start from refocus_depth_report_default(). */
 struct refocus_depth_report {
-    double near_m;     /**< z0 of the result; 0 when not known */
-    double far_m;      /**< z1 of the result; 0 when not known; may be INFINITY */
-    double value_near; /**< for disparity: the sample that became d = 1 */
-    double value_far;  /**< for disparity: the sample that became d = 0 */
-    uint64_t unknown;  /**< samples that held no value and were filled */
-    uint64_t clamped;  /**< samples beyond z0 or z1 (or the values of d = 1 and 0) */
-    uint64_t specks;   /**< samples in patches too small to be true; filled too */
+    uint32_t struct_size; /**< sizeof(struct refocus_depth_report), set by the caller */
+    uint32_t reserved;    /**< 0 */
+    double near_m;        /**< z0 of the result; 0 when not known */
+    double far_m;         /**< z1 of the result; 0 when not known; may be INFINITY */
+    double value_near;    /**< for disparity: the sample that became d = 1 */
+    double value_far;     /**< for disparity: the sample that became d = 0 */
+    uint64_t unknown;     /**< samples that held no value and were filled */
+    uint64_t clamped;     /**< samples beyond z0 or z1 (or the values of d = 1 and 0) */
+    uint64_t specks;      /**< samples in patches too small to be true; filled too */
 };
+
+static inline struct refocus_depth_report refocus_depth_report_default(void)
+{
+    struct refocus_depth_report report;
+
+    memset(&report, 0, sizeof report);
+    report.struct_size = sizeof report;
+    return report;
+}
 
 /**
  * Turn a depth map into 16-bit disparities, 65535 nearest, rounded to nearest:
@@ -85,7 +110,7 @@ struct refocus_depth_report {
  * @param map        see struct refocus_depth_map
  * @param disparity  receives width x height values; may not overlap the samples
  * @param stride     bytes from a row of @p disparity to the next; even
- * @param report     filled on success; may be NULL
+ * @param report     filled on success, as far as its struct_size goes; may be NULL
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_NO_DEPTH (no sample holds a
  *         value), REFOCUS_ERR_MEMORY (one byte a sample is needed when there are
  *         unknown samples). On an error @p disparity holds nothing of use.

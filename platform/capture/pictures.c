@@ -72,7 +72,7 @@ static int read_photo(const struct refocus_source *source, struct refocus_photo 
 static int show(struct refocus_frame *frame, const struct refocus_photo *photo,
                 struct refocus_reason *reason)
 {
-    const struct refocus_image *image = &photo->image;
+    const struct refocus_image *image = photo->image;
 
     if (image->plane[0]) {
         frame->format = REFOCUS_FRAME_RGB24;
@@ -82,15 +82,15 @@ static int show(struct refocus_frame *frame, const struct refocus_photo *photo,
         frame->stride[0] = image->stride[0];
         return REFOCUS_OK;
     }
-    if (photo->depth.sample == REFOCUS_SAMPLE_F32)
+    if (photo->depth->sample == REFOCUS_SAMPLE_F32)
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
                                "depth of floats is not streamed; give 8 or 16 bits");
     frame->format =
-        photo->depth.sample == REFOCUS_SAMPLE_U8 ? REFOCUS_FRAME_GREY : REFOCUS_FRAME_Y16;
-    frame->width = photo->depth.width;
-    frame->height = photo->depth.height;
-    frame->plane[0] = photo->depth.samples;
-    frame->stride[0] = photo->depth.stride;
+        photo->depth->sample == REFOCUS_SAMPLE_U8 ? REFOCUS_FRAME_GREY : REFOCUS_FRAME_Y16;
+    frame->width = photo->depth->width;
+    frame->height = photo->depth->height;
+    frame->plane[0] = photo->depth->samples;
+    frame->stride[0] = photo->depth->stride;
     return REFOCUS_OK;
 }
 

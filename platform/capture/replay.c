@@ -73,8 +73,8 @@ static int read_jpeg(struct replay *replay, struct refocus_reason *reason)
     int status = refocus_photo_read(&photo, replay->script.jpeg, NULL, reason);
 
     if (status == REFOCUS_OK) {
-        replay->width = photo->info.stored_width;
-        replay->height = photo->info.stored_height;
+        replay->width = photo->info->stored_width;
+        replay->height = photo->info->stored_height;
         refocus_photo_free(&photo);
         replay->scene = malloc(MOST_JPEG_BYTES);
         if (!replay->scene || !file)

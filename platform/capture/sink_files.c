@@ -319,13 +319,14 @@ static int write_picture(struct refocus_sink *sink, const struct refocus_image *
                          struct refocus_reason *reason)
 {
     struct sequence *sequence = sink->state;
+    struct refocus_write_options options = refocus_write_options_default();
     char name[PATH_MAX];
 
     if (!rf_pattern_name(name, sizeof name, sequence->pattern, sequence->next))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "the name is too long");
     sequence->next++;
-    /* The next frame does not wait for the disk. */
-    return refocus_image_write(name, image, &(struct refocus_write_options){.unsynced = 1}, reason);
+    options.unsynced = 1; /* The next frame does not wait for the disk. */
+    return refocus_image_write(name, image, &options, reason);
 }
 
 static int close_pictures(struct refocus_sink *sink, struct refocus_reason *reason)

@@ -91,9 +91,16 @@ static int set_unit(struct refocus_depth_map *map, const char *unit, double max_
     return REFOCUS_OK;
 }
 
-int refocus_depth_set_unit(struct refocus_depth_map *map, const char *unit)
+int refocus_depth_set_unit(struct refocus_depth_map *given, const char *unit)
 {
-    if (!map || !unit) {
+    const size_t first = REFOCUS_SIZE_TO(struct refocus_depth_map, far_m);
+    struct refocus_depth_map own, *const map = &own;
+    int status = refocus_struct_read(&own, sizeof own, first, given);
+
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    if (!unit) {
         return REFOCUS_ERR_ARGUMENT;
     }
     /* Floats are looked at: the ends of the map are its own. */
@@ -103,7 +110,8 @@ int refocus_depth_set_unit(struct refocus_depth_map *map, const char *unit)
          !rf_good_rows(map->stride, 4 * (int64_t)map->width, map->height))) {
         return REFOCUS_ERR_ARGUMENT;
     }
-    return set_unit(map, unit, map->sample == REFOCUS_SAMPLE_U16 ? 65535.0 : 255.0);
+    status = set_unit(map, unit, map->sample == REFOCUS_SAMPLE_U16 ? 65535.0 : 255.0);
+    return status == REFOCUS_OK ? refocus_struct_write(given, first, map, sizeof *map) : status;
 }
 
 static int check_range(double near_m, double far_m, struct refocus_reason *reason)
@@ -183,7 +191,7 @@ int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes, s
                               const struct refocus_read_limits *limits,
                               struct refocus_reason *reason)
 {
-    struct refocus_depth_map probe = {.sample = REFOCUS_SAMPLE_U8};
+    struct refocus_depth_map probe = refocus_depth_map_default();
     struct refocus_reason unused;
     struct rf_photo *made;
     struct rf_read read;
@@ -208,12 +216,12 @@ int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes, s
     if (status != REFOCUS_OK) {
         return status;
     }
-    made = calloc(1, sizeof *made);
+    made = rf_photo_new();
     if (!made) {
         return rf_fail_memory(reason);
     }
-    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, false, false,
-                           &made->shown.info, reason);
+    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, false, false, &made->info,
+                           reason);
     if (status == REFOCUS_OK) {
         status = picture_as_samples(&read, &max_value);
     }
@@ -234,7 +242,7 @@ int refocus_depth_read(struct refocus_photo **depth, const char *path, const cha
                        double near_m, double far_m, const struct refocus_read_limits *limits,
                        struct refocus_reason *reason)
 {
-    const uint64_t max_bytes = limits && limits->max_bytes ? limits->max_bytes : 1u << 30;
+    struct refocus_read_limits own;
     struct refocus_reason unused;
     struct refocus_blob file;
     int status;
@@ -245,7 +253,10 @@ int refocus_depth_read(struct refocus_photo **depth, const char *path, const cha
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no depth or no path");
     }
     *depth = NULL;
-    status = rf_load(path, max_bytes, reason, &file);
+    status = rf_read_limits(&own, limits, reason);
+    if (status == REFOCUS_OK) {
+        status = rf_load(path, own.max_bytes, reason, &file);
+    }
     if (status == REFOCUS_OK) {
         status = refocus_depth_read_memory(depth, file.data, file.size, unit, near_m, far_m, limits,
                                            reason);

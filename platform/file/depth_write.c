@@ -357,7 +357,7 @@ int refocus_photo_write_depth(const char *path, const char *original,
     /* Read as a whole: no depth goes into what cannot be opened again. */
     status = refocus_photo_read_memory(&photo, file.data, file.size, NULL, reason);
     if (status == REFOCUS_OK) {
-        status = write_all(path, (struct rf_bytes){file.data, file.size}, photo->info.orientation,
+        status = write_all(path, (struct rf_bytes){file.data, file.size}, photo->info->orientation,
                            png, depth, reason);
     }
     refocus_photo_free(&photo);

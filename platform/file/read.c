@@ -41,10 +41,39 @@ static int read_container(struct rf_read *read, struct rf_bytes file)
     return format->read(read, file);
 }
 
-static void set_limits(struct rf_read *read, const struct refocus_read_limits *limits)
+int rf_read_limits(struct refocus_read_limits *limits, const struct refocus_read_limits *given,
+                   struct refocus_reason *reason)
 {
-    read->limits.max_pixels = limits && limits->max_pixels ? limits->max_pixels : 1u << 28;
-    read->limits.max_bytes = limits && limits->max_bytes ? limits->max_bytes : 1u << 30;
+    int status = REFOCUS_OK;
+
+    *limits = refocus_read_limits_default();
+    if (given)
+        status = refocus_struct_read(limits, sizeof *limits,
+                                     REFOCUS_SIZE_TO(struct refocus_read_limits, max_bytes), given);
+    if (status != REFOCUS_OK)
+        return rf_fail(reason, status,
+                       "the struct_size of the limits is wrong, or a limit is set "
+                       "that this library does not know");
+    if (limits->max_pixels == 0)
+        limits->max_pixels = 1u << 28;
+    if (limits->max_bytes == 0)
+        limits->max_bytes = 1u << 30;
+    return REFOCUS_OK;
+}
+
+struct rf_photo *rf_photo_new(void)
+{
+    struct rf_photo *const photo = calloc(1, sizeof *photo);
+
+    if (photo) {
+        photo->image.struct_size = sizeof photo->image;
+        photo->depth = refocus_depth_map_default();
+        photo->info.struct_size = sizeof photo->info;
+        photo->shown.image = &photo->image;
+        photo->shown.depth = &photo->depth;
+        photo->shown.info = &photo->info;
+    }
+    return photo;
 }
 
 int rf_read_begin(struct rf_read *read, struct rf_bytes file,
@@ -54,7 +83,7 @@ int rf_read_begin(struct rf_read *read, struct rf_bytes file,
     int status;
 
     memset(read, 0, sizeof *read);
-    set_limits(read, limits);
+    read->depth.struct_size = sizeof read->depth; /* no meaning yet */
     read->reason = reason;
     read->picture_always = picture_always;
     read->second = second;
@@ -62,7 +91,10 @@ int rf_read_begin(struct rf_read *read, struct rf_bytes file,
     read->orientation = 1;
     info->orientation = 1;
     info->focus_x = info->focus_y = -1.0;
-    status = rf_check_bytes(read, file.size, "it");
+    status = rf_read_limits(&read->limits, limits, reason);
+    if (status == REFOCUS_OK) {
+        status = rf_check_bytes(read, file.size, "it");
+    }
     if (status == REFOCUS_OK) {
         status = read_container(read, file);
     }
@@ -89,22 +121,22 @@ static void hand_over(struct rf_read *read, struct rf_photo *photo)
 {
     struct refocus_photo *const shown = &photo->shown;
 
-    photo->image = read->image.pixels;
-    photo->depth = read->samples.pixels;
+    photo->pixels = read->image.pixels;
+    photo->samples = read->samples.pixels;
     photo->exif = read->exif.data;
     photo->icc = read->icc.data;
     if (read->image.pixels) {
-        shown->image =
+        photo->image =
             refocus_image_packed(REFOCUS_FORMAT_RGB8, read->image.pixels, read->image.width,
                                  read->image.height, (ptrdiff_t)rf_raster_stride(&read->image));
     }
     if (read->samples.pixels) {
-        shown->depth = read->depth;
-        shown->depth.samples = read->samples.pixels;
-        shown->depth.width = read->samples.width;
-        shown->depth.height = read->samples.height;
-        shown->depth.stride = (ptrdiff_t)rf_raster_stride(&read->samples);
-        shown->depth.sample = read->samples.sample;
+        photo->depth = read->depth;
+        photo->depth.samples = read->samples.pixels;
+        photo->depth.width = read->samples.width;
+        photo->depth.height = read->samples.height;
+        photo->depth.stride = (ptrdiff_t)rf_raster_stride(&read->samples);
+        photo->depth.sample = read->samples.sample;
     }
     shown->exif = read->exif;
     shown->icc = read->icc;
@@ -162,12 +194,12 @@ static int read_memory(struct refocus_photo **photo, const void *bytes, size_t s
     if (!bytes && size > 0) {
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no bytes to read");
     }
-    made = calloc(1, sizeof *made);
+    made = rf_photo_new();
     if (!made) {
         return rf_fail_memory(reason);
     }
-    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, true, second,
-                           &made->shown.info, reason);
+    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, true, second, &made->info,
+                           reason);
     status = rf_read_finish(&read, status, &made);
     *photo = made ? &made->shown : NULL;
     return status;
@@ -178,8 +210,8 @@ static int read_path(struct refocus_photo **photo, const char *path,
                      struct refocus_reason *reason)
 {
     struct refocus_reason unused;
+    struct refocus_read_limits own;
     struct refocus_blob file;
-    struct rf_read read;
     int status;
 
     reason = reason ? reason : &unused;
@@ -188,8 +220,10 @@ static int read_path(struct refocus_photo **photo, const char *path,
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no photo or no path");
     }
     *photo = NULL;
-    set_limits(&read, limits);
-    status = rf_load(path, read.limits.max_bytes, reason, &file);
+    status = rf_read_limits(&own, limits, reason);
+    if (status == REFOCUS_OK) {
+        status = rf_load(path, own.max_bytes, reason, &file);
+    }
     if (status == REFOCUS_OK) {
         status = read_memory(photo, file.data, file.size, limits, second, reason);
         free(file.data);
@@ -225,8 +259,8 @@ void refocus_photo_free(struct refocus_photo **photo)
         return;
     }
     owner = (struct rf_photo *)(void *)*photo;
-    free(owner->image);
-    free(owner->depth);
+    free(owner->pixels);
+    free(owner->samples);
     free(owner->exif);
     free(owner->icc);
     free(owner);

@@ -20,7 +20,7 @@ static int write_rows(const char *path, const struct rf_format *format, const st
     if (status != REFOCUS_OK) {
         return status;
     }
-    store.unsynced = options && options->unsynced;
+    store.unsynced = options->unsynced;
     status = format->write(&store, rows, options, reason);
     return rf_store_close(&store, status, reason);
 }
@@ -49,6 +49,7 @@ int refocus_image_write(const char *path, const struct refocus_image *image,
     struct rf_rows rows;
     const struct rf_format *format;
     struct refocus_image own;
+    struct refocus_write_options parts = refocus_write_options_default();
     int status;
 
     reason = reason ? reason : &unused;
@@ -56,9 +57,13 @@ int refocus_image_write(const char *path, const struct refocus_image *image,
     if ((status = refocus_image_read(&own, image)))
         return rf_fail(reason, status, "the picture is not of a known size of struct");
     image = &own;
+    if (options && (status = refocus_struct_read(
+                        &parts, sizeof parts,
+                        REFOCUS_SIZE_TO(struct refocus_write_options, unsynced), options)))
+        return rf_fail(reason, status, "the options are not of a known size of struct");
     if (!path || !image->plane[0] || rf_format_bytes(image->format) == 0 ||
         !fits(image->width, image->height, image->stride[0], rf_format_bytes(image->format)) ||
-        (options && (options->quality < 0 || options->quality > 100))) {
+        parts.quality < 0 || parts.quality > 100) {
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT,
                        "the picture or the quality is out of its range");
     }
@@ -71,7 +76,7 @@ int refocus_image_write(const char *path, const struct refocus_image *image,
     rows.width = image->width;
     rows.height = image->height;
     rows.format = image->format;
-    return write_rows(path, format, &rows, options, reason);
+    return write_rows(path, format, &rows, &parts, reason);
 }
 
 int refocus_gray16_write(const char *path, const uint16_t *samples, int width, int height,
@@ -80,6 +85,7 @@ int refocus_gray16_write(const char *path, const uint16_t *samples, int width, i
     struct refocus_reason unused;
     struct rf_rows rows;
     const struct rf_format *format;
+    const struct refocus_write_options none = refocus_write_options_default();
 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
@@ -95,5 +101,5 @@ int refocus_gray16_write(const char *path, const uint16_t *samples, int width, i
     rows.width = width;
     rows.height = height;
     rows.format = REFOCUS_FORMAT_NONE;
-    return write_rows(path, format, &rows, NULL, reason);
+    return write_rows(path, format, &rows, &none, reason);
 }

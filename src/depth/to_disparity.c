@@ -54,7 +54,7 @@ static bool is_depth_or_unknown(double metres)
 
 static int check(const struct refocus_depth_map *map, const uint16_t *disparity, ptrdiff_t stride)
 {
-    if (!map || !map->samples || !disparity || ((uintptr_t)disparity & 1) || map->width < 1 ||
+    if (!map->samples || !disparity || ((uintptr_t)disparity & 1) || map->width < 1 ||
         map->height < 1 || map->width > REFOCUS_MAX_SIDE || map->height > REFOCUS_MAX_SIDE)
         return REFOCUS_ERR_ARGUMENT;
 
@@ -263,25 +263,26 @@ static void convert(struct conversion *conversion, uint16_t *disparity, ptrdiff_
     }
 }
 
-static void fill_report(const struct conversion *conversion, struct refocus_depth_report *report)
+static struct refocus_depth_report report_of(const struct conversion *conversion)
 {
     const struct refocus_depth_map *map = conversion->map;
+    struct refocus_depth_report report = refocus_depth_report_default();
 
-    memset(report, 0, sizeof *report);
-    report->near_m = map->near_m;
-    report->far_m = map->far_m;
+    report.near_m = map->near_m;
+    report.far_m = map->far_m;
     if (map->meaning == REFOCUS_DEPTH_DISTANCE) {
         if (map->near_m == 0)
-            report->near_m = 1 / conversion->rank_near;
+            report.near_m = 1 / conversion->rank_near;
         if (map->far_m == 0)
-            report->far_m = 1 / conversion->rank_far;
+            report.far_m = 1 / conversion->rank_far;
     } else {
-        report->value_near = conversion->rank_near;
-        report->value_far = conversion->rank_far;
+        report.value_near = conversion->rank_near;
+        report.value_far = conversion->rank_far;
     }
-    report->unknown = conversion->unknown;
-    report->clamped = conversion->clamped;
-    report->specks = conversion->specks;
+    report.unknown = conversion->unknown;
+    report.clamped = conversion->clamped;
+    report.specks = conversion->specks;
+    return report;
 }
 
 static int take_values(struct conversion *conversion)
@@ -330,22 +331,45 @@ static bool good_repair(const struct refocus_repair_params *params,
             rf_good_stride(params->confidence_stride, map->width, map->height));
 }
 
-int refocus_depth_repair(const struct refocus_depth_map *map,
-                         const struct refocus_repair_params *given, uint16_t *disparity,
+enum { FIRST_REPORT = REFOCUS_SIZE_TO(struct refocus_depth_report, specks) };
+
+/* Read what the caller gives: the map and the parameters, each of its own size. A report that
+ * cannot be written is refused here, before anything else is. */
+static int read_arguments(struct refocus_depth_map *map, struct refocus_repair_params *params,
+                          const struct refocus_depth_map *given_map,
+                          const struct refocus_repair_params *given_params,
+                          const struct refocus_depth_report *report)
+{
+    int status = refocus_struct_read(map, sizeof *map,
+                                     REFOCUS_SIZE_TO(struct refocus_depth_map, far_m), given_map);
+
+    if (status != REFOCUS_OK)
+        return status;
+    if (report &&
+        (report->struct_size < FIRST_REPORT || report->struct_size > REFOCUS_MAX_STRUCT_SIZE))
+        return REFOCUS_ERR_ARGUMENT;
+    return refocus_struct_read(params, sizeof *params,
+                               REFOCUS_SIZE_TO(struct refocus_repair_params, confidence_stride),
+                               given_params);
+}
+
+int refocus_depth_repair(const struct refocus_depth_map *given_map,
+                         const struct refocus_repair_params *given_params, uint16_t *disparity,
                          ptrdiff_t stride, struct refocus_depth_report *report)
 {
-    struct refocus_repair_params own;
-    const struct refocus_repair_params *const params = &own;
+    struct refocus_depth_map own_map;
+    struct refocus_repair_params own_params;
+    const struct refocus_depth_map *const map = &own_map;
+    const struct refocus_repair_params *const params = &own_params;
     struct conversion conversion = {.map = map};
+    struct refocus_depth_report found;
     uint8_t *state = NULL;
     uint32_t *work = NULL;
     int status;
 
-    status = check(map, disparity, stride);
+    status = read_arguments(&own_map, &own_params, given_map, given_params, report);
     if (status == REFOCUS_OK)
-        status = refocus_struct_read(
-            &own, sizeof own, REFOCUS_SIZE_TO(struct refocus_repair_params, confidence_stride),
-            given);
+        status = check(map, disparity, stride);
     if (status == REFOCUS_OK && !good_repair(params, map))
         status = REFOCUS_ERR_ARGUMENT;
     if (status == REFOCUS_OK)
@@ -376,8 +400,9 @@ int refocus_depth_repair(const struct refocus_depth_map *map,
         write_confidence(map, state, params);
     if (state && conversion.scale != 0)
         rf_fill_holes(disparity, stride, map->width, map->height, state);
+    found = report_of(&conversion);
     if (report)
-        fill_report(&conversion, report);
+        status = refocus_struct_write(report, FIRST_REPORT, &found, sizeof found);
 done:
     free(work);
     free(state);

@@ -213,13 +213,17 @@ static double best_ns(measured_fn *run, const struct rf_kernels *kernels, struct
     return best * 1e9;
 }
 
+enum { FIRST_TIME = REFOCUS_SIZE_TO(struct refocus_kernel_time, ns_c) };
+
 int refocus_measure_kernel(uint32_t index, uint32_t cpu, struct refocus_kernel_time *time)
 {
+    struct refocus_kernel_time found = refocus_kernel_time_default();
     struct rf_kernels own, plain;
     uint32_t c = REFOCUS_CPU_C;
     struct rows *rows;
 
-    if (index >= sizeof measured / sizeof *measured || !refocus_cpu_name(cpu) || !time)
+    if (index >= sizeof measured / sizeof *measured || !refocus_cpu_name(cpu) || !time ||
+        time->struct_size < FIRST_TIME || time->struct_size > REFOCUS_MAX_STRUCT_SIZE)
         return REFOCUS_ERR_ARGUMENT;
     if (!rf_kernels_select(&own, &cpu) || !rf_kernels_select(&plain, &c))
         return REFOCUS_ERR_UNSUPPORTED;
@@ -227,10 +231,10 @@ int refocus_measure_kernel(uint32_t index, uint32_t cpu, struct refocus_kernel_t
     if (!rows)
         return REFOCUS_ERR_MEMORY;
     fill(rows);
-    *time = (struct refocus_kernel_time){
-        measured[index].name, measured[index].unit,
-        best_ns(measured[index].run, &own, rows) / measured[index].count,
-        best_ns(measured[index].run, &plain, rows) / measured[index].count};
+    found.name = measured[index].name;
+    found.unit = measured[index].unit;
+    found.ns = best_ns(measured[index].run, &own, rows) / measured[index].count;
+    found.ns_c = best_ns(measured[index].run, &plain, rows) / measured[index].count;
     free(rows);
-    return REFOCUS_OK;
+    return refocus_struct_write(time, FIRST_TIME, &found, sizeof found);
 }

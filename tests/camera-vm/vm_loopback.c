@@ -178,11 +178,11 @@ static void jpegs_become_pictures(void **state)
 
     (void)state;
     assert_int_equal(refocus_photo_read(&photo, jpeg, NULL, NULL), REFOCUS_OK);
-    row = (size_t)photo->image.width * 3;
-    out = refocus_image_packed(REFOCUS_FORMAT_RGB8, malloc(row * (size_t)photo->image.height),
-                               photo->image.width, photo->image.height, (ptrdiff_t)row);
+    row = (size_t)photo->image->width * 3;
+    out = refocus_image_packed(REFOCUS_FORMAT_RGB8, malloc(row * (size_t)photo->image->height),
+                               photo->image->width, photo->image->height, (ptrdiff_t)row);
     assert_non_null(out.plane[0]);
-    begin_feed(&feeder, V4L2_PIX_FMT_MJPEG, photo->image.width, photo->image.height);
+    begin_feed(&feeder, V4L2_PIX_FMT_MJPEG, photo->image->width, photo->image->height);
     source = started(REFOCUS_FRAME_MJPEG, 0);
     assert_int_equal(refocus_converter_create(&converter), REFOCUS_OK);
     for (int n = 0; n < 5; n++) {
@@ -192,7 +192,7 @@ static void jpegs_become_pictures(void **state)
         assert_int_equal(refocus_convert_rgb8(converter, frame, &out, NULL), REFOCUS_OK);
         for (int y = 0; y < out.height; y++)
             assert_memory_equal(out.plane[0] + y * out.stride[0],
-                                photo->image.plane[0] + y * photo->image.stride[0], row);
+                                photo->image->plane[0] + y * photo->image->stride[0], row);
         refocus_source_release(source, frame);
     }
     printf("captured: MJPEG\n");

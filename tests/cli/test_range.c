@@ -93,8 +93,12 @@ static void begin(double near_m, double far_m)
     live_focus_init(&room.focus, &lens);
     room.focus.blur = 10;
     room.focus.blur_most = 120;
-    room.map = (struct refocus_depth_map){
-        .samples = room.mm, .width = W, .height = H, .stride = 2 * W, .sample = REFOCUS_SAMPLE_U16};
+    room.map = (struct refocus_depth_map){.struct_size = sizeof(struct refocus_depth_map),
+                                          .samples = room.mm,
+                                          .width = W,
+                                          .height = H,
+                                          .stride = 2 * W,
+                                          .sample = REFOCUS_SAMPLE_U16};
     assert_int_equal(refocus_depth_set_unit(&room.map, "mm"), REFOCUS_OK);
     room.now = 77000000000;
 }

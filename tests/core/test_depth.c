@@ -15,7 +15,7 @@ static struct refocus_depth_map map_of(uint32_t sample, const void *samples, int
     static const int bytes[] = {0, 1, 2, 4};
     struct refocus_depth_map map;
 
-    memset(&map, 0, sizeof map);
+    map = refocus_depth_map_default();
     map.samples = samples;
     map.width = width;
     map.height = height;
@@ -43,7 +43,7 @@ static void test_disparity_samples(void **state)
     static const uint16_t u16[] = {0, 1, 13107, 32768, 65534, 65535};
     static const float f32[] = {-1, -0.5f, 0, 0.5f, 1, 3};
     uint16_t out[6];
-    struct refocus_depth_report report;
+    struct refocus_depth_report report = refocus_depth_report_default();
 
     struct refocus_depth_map map = map_of(REFOCUS_SAMPLE_U8, u8, 6, 1);
     map.value_near = 255;
@@ -97,7 +97,7 @@ static void test_distances(void **state)
     /* d = (1/z - 1/4) / (2 - 1/4) = 4/7 (1/z - 1/4) */
     static const uint16_t expected[] = {65535, 28086, 9362, 0};
     uint16_t out[4];
-    struct refocus_depth_report report;
+    struct refocus_depth_report report = refocus_depth_report_default();
 
     struct refocus_depth_map map = distances_of(REFOCUS_SAMPLE_U16, mm, 4, 1);
     map.metres_per_unit = 0.001;
@@ -152,7 +152,7 @@ static void test_unknown_samples(void **state)
     (void)state;
     const float f32[] = {1, NAN, INFINITY, -INFINITY, 0, -2, 4};
     uint16_t out[7];
-    struct refocus_depth_report report;
+    struct refocus_depth_report report = refocus_depth_report_default();
 
     struct refocus_depth_map map = distances_of(REFOCUS_SAMPLE_F32, f32, 7, 1);
     for (int zero_flag = 0; zero_flag <= 1; zero_flag++) { /* a distance <= 0 is none anyway */
@@ -188,7 +188,7 @@ static void large_like_rows(uint32_t sample, uint32_t meaning)
     static uint8_t bytes[W * H], confidence[W * H], row_confidence[W];
     const bool u8 = sample == REFOCUS_SAMPLE_U8;
     struct refocus_repair_params params = refocus_repair_params_default();
-    struct refocus_depth_report all, one;
+    struct refocus_depth_report all = refocus_depth_report_default(), one = all;
     uint64_t unknown = 0, clamped = 0;
     struct refocus_depth_map map;
 
@@ -245,7 +245,7 @@ static void test_one_depth(void **state)
     static const uint8_t one = 200;
     uint16_t out[6];
     static const uint16_t none[6] = {0};
-    struct refocus_depth_report report;
+    struct refocus_depth_report report = refocus_depth_report_default();
 
     struct refocus_depth_map map = distances_of(REFOCUS_SAMPLE_U8, same, 3, 2);
     memset(out, 0xff, sizeof out);
@@ -366,7 +366,7 @@ static void test_long_rows(void **state)
     samples[0] = 1000;
     samples[N - 1] = 4000;
     for (int upright = 0; upright <= 1; upright++) {
-        struct refocus_depth_report report;
+        struct refocus_depth_report report = refocus_depth_report_default();
         struct refocus_depth_map map =
             distances_of(REFOCUS_SAMPLE_U16, samples, upright ? 1 : N, upright ? N : 1);
         assert_int_equal(refocus_depth_to_disparity(&map, out, upright ? 2 : 2 * N, &report),
@@ -389,7 +389,7 @@ static void test_fill_takes_the_farther_side(void **state)
     enum { W = 64, H = 48 };
     float z[H][W];
     uint16_t out[H][W], again[H][W];
-    struct refocus_depth_report report;
+    struct refocus_depth_report report = refocus_depth_report_default();
 
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++)
@@ -455,9 +455,43 @@ static void test_fill_leaves_no_streaks(void **state)
     assert_true(along / n < 200);
 }
 
+/* Maps and reports of an older and a newer program. */
+static void other_sizes(void **state)
+{
+    struct newer_map {
+        struct refocus_depth_map known;
+        uint64_t added;
+    } map;
+    struct newer_report {
+        struct refocus_depth_report known;
+        uint64_t added, behind;
+    } report;
+    static const uint16_t mm[4] = {1000, 2000, 3000, 4000};
+    uint16_t plain[4], out[4];
+
+    (void)state;
+    memset(&map, 0, sizeof map);
+    memset(&report, 0xa5, sizeof report);
+    map.known = distances_of(REFOCUS_SAMPLE_U16, mm, 4, 1);
+    map.known.struct_size = sizeof map;
+    report.known.struct_size = offsetof(struct newer_report, behind);
+    assert_int_equal(refocus_depth_to_disparity(&map.known, plain, 8, &report.known), REFOCUS_OK);
+    assert_true(report.known.near_m == 1);
+    assert_true(report.added == 0 && report.behind == 0xa5a5a5a5a5a5a5a5);
+    map.added = 1;
+    assert_int_equal(refocus_depth_to_disparity(&map.known, out, 8, NULL), REFOCUS_ERR_UNSUPPORTED);
+    map.known.struct_size = REFOCUS_SIZE_TO(struct refocus_depth_map, far_m);
+    report.known.struct_size = REFOCUS_SIZE_TO(struct refocus_depth_report, specks);
+    report.added = 9;
+    assert_int_equal(refocus_depth_to_disparity(&map.known, out, 8, &report.known), REFOCUS_OK);
+    assert_memory_equal(plain, out, sizeof out);
+    assert_true(report.added == 9 && report.known.unknown == 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(other_sizes),
         cmocka_unit_test(test_disparity_samples),
         cmocka_unit_test(test_distances),
         cmocka_unit_test(test_unknown_samples),

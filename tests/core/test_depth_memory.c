@@ -70,7 +70,8 @@ static int snap(void)
 static int repair(void)
 {
     struct refocus_repair_params params = refocus_repair_params_default();
-    const struct refocus_depth_map map = {.samples = fine,
+    const struct refocus_depth_map map = {.struct_size = sizeof(struct refocus_depth_map),
+                                          .samples = fine,
                                           .width = W,
                                           .height = H,
                                           .stride = 2 * W,
@@ -90,7 +91,8 @@ static int repair_large(void)
     enum { SIDE = 260 };
     static uint16_t large[SIDE * SIDE], to[SIDE * SIDE];
     struct refocus_repair_params params = refocus_repair_params_default();
-    const struct refocus_depth_map map = {.samples = large,
+    const struct refocus_depth_map map = {.struct_size = sizeof(struct refocus_depth_map),
+                                          .samples = large,
                                           .width = SIDE,
                                           .height = SIDE,
                                           .stride = 2 * SIDE,

@@ -324,7 +324,8 @@ static void repair(void **state)
     enum { W = 40, H = 30 };
     static uint16_t in[W * H], out[W * H];
     static uint8_t confidence[W * H];
-    struct refocus_depth_map map = {.samples = in,
+    struct refocus_depth_map map = {.struct_size = sizeof(struct refocus_depth_map),
+                                    .samples = in,
                                     .width = W,
                                     .height = H,
                                     .stride = 2 * W,
@@ -334,7 +335,7 @@ static void repair(void **state)
                                     .flags = REFOCUS_DEPTH_MAX_IS_UNKNOWN |
                                              REFOCUS_DEPTH_2047_IS_UNKNOWN};
     struct refocus_repair_params params = refocus_repair_params_default();
-    struct refocus_depth_report report;
+    struct refocus_depth_report report = refocus_depth_report_default();
 
     (void)state;
     for (int i = 0; i < W * H; i++)

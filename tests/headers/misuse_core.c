@@ -229,11 +229,15 @@ static void focussing(void)
 
 static void measuring(void)
 {
-    struct refocus_kernel_time time;
+    struct refocus_kernel_time time = TAKES_NOTHING(refocus_kernel_time_default);
 
     REFUSED(refocus_measure_kernel, UINT32_MAX, REFOCUS_CPU_C, &time);
     REFUSED(refocus_measure_kernel, 0, UINT32_MAX, &time);
     REFUSED(refocus_measure_kernel, 0, REFOCUS_CPU_C, NULL);
+    time.struct_size = 4;
+    REFUSED(refocus_measure_kernel, 0, REFOCUS_CPU_C, &time);
+    time.struct_size = UINT32_MAX;
+    REFUSED(refocus_measure_kernel, 0, REFOCUS_CPU_C, &time);
 }
 
 void misuse_core(void **state)

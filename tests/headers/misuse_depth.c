@@ -6,11 +6,10 @@ static uint16_t out[W * H];
 static struct refocus_depth_map depth_map(void)
 {
     static uint8_t samples[W * H];
-    struct refocus_depth_map map;
+    struct refocus_depth_map map = TAKES_NOTHING(refocus_depth_map_default);
 
     for (size_t i = 0; i < sizeof samples; i++)
         samples[i] = (uint8_t)(1 + i % 200);
-    memset(&map, 0, sizeof map);
     map.samples = samples;
     map.width = W;
     map.height = H;
@@ -49,7 +48,10 @@ static void use_confidence_stride(ptrdiff_t stride)
 
 static void bad_depth_maps(void)
 {
-    const struct misuse bad[] = {BAD(refocus_depth_map, samples, NULL),
+    const struct misuse bad[] = {BAD(refocus_depth_map, struct_size, 0),
+                                 BAD(refocus_depth_map, struct_size, 8),
+                                 BAD(refocus_depth_map, struct_size, UINT32_MAX),
+                                 BAD(refocus_depth_map, samples, NULL),
                                  BAD(refocus_depth_map, width, 0),
                                  BAD(refocus_depth_map, width, -1),
                                  BAD(refocus_depth_map, width, INT32_MIN),
@@ -89,6 +91,7 @@ static void bad_depth_maps(void)
 
 static void repairing(void)
 {
+    static const uint32_t no_sizes[] = {0, 4, REFOCUS_MAX_STRUCT_SIZE + 1, UINT32_MAX};
     const struct misuse bad[] = {BAD(refocus_repair_params, struct_size, 0),
                                  BAD(refocus_repair_params, speckle, -1),
                                  BAD(refocus_repair_params, speckle, INT32_MIN),
@@ -96,8 +99,14 @@ static void repairing(void)
     const struct refocus_repair_params good = TAKES_NOTHING(refocus_repair_params_default);
     uint16_t *const odd = (uint16_t *)(void *)((uint8_t *)out + 1);
     const struct refocus_depth_map map = depth_map();
+    struct refocus_depth_report report = TAKES_NOTHING(refocus_depth_report_default);
 
     bad_depth_maps();
+    for (size_t i = 0; i < COUNT(no_sizes); i++) {
+        report.struct_size = no_sizes[i];
+        REFUSED(refocus_depth_to_disparity, &map, out, 2 * W, &report);
+        REFUSED(refocus_depth_repair, &map, &good, out, 2 * W, &report);
+    }
     misuse_strides(use_out_stride, 2 * W);
     misuse_strides(use_confidence_stride, W);
     REFUSED(refocus_depth_to_disparity, &map, NULL, 2 * W, NULL);

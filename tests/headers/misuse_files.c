@@ -23,7 +23,10 @@ static void write_gray(ptrdiff_t stride)
 static void reading(void)
 {
     static const uint8_t bytes[4] = {'P', '6', ' ', '1'};
-    const struct refocus_read_limits tiny = {1, 1};
+    const struct refocus_read_limits tiny = {
+        .struct_size = sizeof tiny, .max_pixels = 1, .max_bytes = 1};
+    const struct refocus_read_limits sizeless = {.max_pixels = 1};
+    const struct refocus_read_limits any = TAKES_NOTHING(refocus_read_limits_default);
     struct refocus_photo *photo = NULL;
     struct refocus_blob blob;
     struct refocus_reason reason;
@@ -35,8 +38,11 @@ static void reading(void)
     REFUSED(refocus_photo_read_memory, NULL, bytes, sizeof bytes, NULL, NULL);
     REFUSED(refocus_photo_read_memory, &photo, NULL, 4, NULL, NULL);
     REFUSED(refocus_photo_read_memory, &photo, NULL, SIZE_MAX, NULL, NULL);
+    REFUSED(refocus_photo_read, &photo, NAME, &sizeless, NULL);
+    REFUSED(refocus_photo_read_memory, &photo, bytes, sizeof bytes, &sizeless, NULL);
     ANSWERS(REFOCUS_ERR_FORMAT, refocus_photo_read_memory, &photo, NULL, 0, NULL, NULL);
     ANSWERS(REFOCUS_ERR_FORMAT, refocus_photo_read_memory, &photo, bytes, sizeof bytes, NULL, NULL);
+    ANSWERS(REFOCUS_ERR_FORMAT, refocus_photo_read_memory, &photo, bytes, sizeof bytes, &any, NULL);
     ANSWERS(REFOCUS_ERR_IO, refocus_photo_read, &photo, "", NULL, NULL);
     ANSWERS(REFOCUS_ERR_SIZE, refocus_photo_read, &photo, "/proc/self/maps", &tiny, NULL);
     assert_null(photo);
@@ -66,14 +72,13 @@ static void reading(void)
 static void units(void)
 {
     const struct misuse bad[] = {
-        BAD(refocus_depth_map, width, 0),           BAD(refocus_depth_map, width, INT32_MAX),
-        BAD(refocus_depth_map, height, INT32_MIN),  BAD(refocus_depth_map, height, INT32_MAX),
-        BAD(refocus_depth_map, stride, 0),          BAD(refocus_depth_map, stride, PTRDIFF_MIN),
-        BAD(refocus_depth_map, stride, PTRDIFF_MAX)};
+        BAD(refocus_depth_map, struct_size, 0),      BAD(refocus_depth_map, width, 0),
+        BAD(refocus_depth_map, width, INT32_MAX),    BAD(refocus_depth_map, height, INT32_MIN),
+        BAD(refocus_depth_map, height, INT32_MAX),   BAD(refocus_depth_map, stride, 0),
+        BAD(refocus_depth_map, stride, PTRDIFF_MIN), BAD(refocus_depth_map, stride, PTRDIFF_MAX)};
     static const float samples[W * H];
-    struct refocus_depth_map map;
+    struct refocus_depth_map map = refocus_depth_map_default();
 
-    memset(&map, 0, sizeof map);
     REFUSED(refocus_depth_set_unit, NULL, "mm");
     REFUSED(refocus_depth_set_unit, &map, NULL);
     REFUSED(refocus_depth_set_unit, &map, "");
@@ -97,10 +102,15 @@ static void writing(void)
     const struct refocus_image photo = misuse_photo();
     const struct refocus_blob nothing = {NULL, 100};
     const struct refocus_write_options bad[] = {
-        {.quality = -1}, {.quality = 101}, {.quality = INT32_MIN}};
-    const struct refocus_write_options empty = {.exif = &nothing, .icc = &nothing};
+        {.struct_size = sizeof bad[0], .quality = -1},
+        {.struct_size = sizeof bad[0], .quality = 101},
+        {.struct_size = sizeof bad[0], .quality = INT32_MIN},
+        {.struct_size = 0},
+        {.struct_size = 3}};
+    struct refocus_write_options empty = TAKES_NOTHING(refocus_write_options_default);
     const int has_jpeg = strstr(refocus_file_formats(), "JPEG") != NULL;
 
+    empty.exif = empty.icc = &nothing;
     misuse_images(write_image);
     misuse_strides(write_gray, 2 * W);
     REFUSED(refocus_image_write, NULL, &photo, NULL, NULL);

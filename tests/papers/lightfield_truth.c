@@ -63,7 +63,7 @@ int main(int argc, char **argv)
     static double light[256];
     struct refocus_reason reason = {""};
     struct refocus_photo *depth = NULL, *centre = NULL;
-    struct refocus_depth_report report;
+    struct refocus_depth_report report = refocus_depth_report_default();
     char path[2048];
     int views = 0, status = 1;
 
@@ -77,12 +77,12 @@ int main(int argc, char **argv)
     snprintf(path, sizeof path, "%s/gt_disp_lowres.pfm", argv[1]);
     if (refocus_depth_read(&depth, path, "disparity", 0, 0, NULL, &reason))
         return fail(path, &reason);
-    const int w = depth->depth.width, h = depth->depth.height;
+    const int w = depth->depth->width, h = depth->depth->height;
     uint16_t *disparity = malloc((size_t)w * (size_t)h * 2);
     double *sum = calloc((size_t)w * (size_t)h * 3, sizeof *sum);
     uint8_t *rgb = malloc((size_t)w * (size_t)h * 3);
     if (!disparity || !sum || !rgb ||
-        refocus_depth_to_disparity(&depth->depth, disparity, 2 * (ptrdiff_t)w, &report))
+        refocus_depth_to_disparity(depth->depth, disparity, 2 * (ptrdiff_t)w, &report))
         goto done;
     const double gf = report.value_far + focus * (report.value_near - report.value_far);
     for (int r = 0; r < 9; r++) {
@@ -92,13 +92,13 @@ int main(int argc, char **argv)
             if (hypot(r - 4, c - 4) > radius + 1e-9)
                 continue;
             snprintf(path, sizeof path, "%s/input_Cam%03d.png", argv[1], 9 * r + c);
-            if (refocus_photo_read(&view, path, NULL, &reason) || view->image.width != w ||
-                view->image.height != h) {
+            if (refocus_photo_read(&view, path, NULL, &reason) || view->image->width != w ||
+                view->image->height != h) {
                 fail(path, &reason);
                 refocus_photo_free(&view);
                 goto done;
             }
-            add_view(&view->image, -gf * (c - 4), -gf * (r - 4), light, sum);
+            add_view(view->image, -gf * (c - 4), -gf * (r - 4), light, sum);
             views++;
             if (r == 4 && c == 4)
                 centre = view;
@@ -116,7 +116,7 @@ int main(int argc, char **argv)
         goto done;
     }
     snprintf(path, sizeof path, "%s/photo.png", argv[2]);
-    if (!centre || refocus_image_write(path, &centre->image, NULL, &reason)) {
+    if (!centre || refocus_image_write(path, centre->image, NULL, &reason)) {
         fail(path, &reason);
         goto done;
     }

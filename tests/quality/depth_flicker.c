@@ -110,7 +110,8 @@ static int play(const struct quality_scene *s, int moved, bool with_photo, struc
     memset(raw, 0, sizeof *raw);
     memset(calm, 0, sizeof *calm);
     for (int t = 0; t < FRAMES && !status; t++) {
-        struct refocus_depth_map map = {.samples = mm,
+        struct refocus_depth_map map = {.struct_size = sizeof(struct refocus_depth_map),
+                                        .samples = mm,
                                         .width = W,
                                         .height = H,
                                         .stride = 2 * W,

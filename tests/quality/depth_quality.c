@@ -79,7 +79,8 @@ static int read_coarse(const struct quality_scene *scene, struct depth_coarse *c
 {
     char path[1200];
     uint16_t *mm;
-    struct refocus_depth_map map = {.sample = REFOCUS_SAMPLE_U16,
+    struct refocus_depth_map map = {.struct_size = sizeof(struct refocus_depth_map),
+                                    .sample = REFOCUS_SAMPLE_U16,
                                     .meaning = REFOCUS_DEPTH_DISTANCE,
                                     .flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN,
                                     .metres_per_unit = 0.001,
@@ -169,7 +170,8 @@ static int spread(const uint16_t *raw, int width, int height, const double range
                   uint16_t *disparity, uint8_t *confidence, struct refocus_depth_report *report)
 {
     struct refocus_repair_params params = refocus_repair_params_default();
-    const struct refocus_depth_map map = {.samples = raw,
+    const struct refocus_depth_map map = {.struct_size = sizeof(struct refocus_depth_map),
+                                          .samples = raw,
                                           .width = width,
                                           .height = height,
                                           .stride = 2 * (ptrdiff_t)width,
@@ -212,7 +214,7 @@ static int score_truth(const char *name, const char *photo, const char *truth)
     struct depth_coarse coarse = {0, 0, NULL, NULL};
     uint16_t *raw, *few = NULL, *d = NULL;
     uint8_t *known = NULL;
-    struct refocus_depth_report report;
+    struct refocus_depth_report report = refocus_depth_report_default();
     int w, h, stride, result = -1;
 
     scene.photo = png_io_read(photo, 3, &w, &h);

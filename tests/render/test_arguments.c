@@ -507,9 +507,10 @@ static void bad_apertures(void **state)
 /* The list of kernels ends, and nothing is measured for a processor that is none. */
 static void kernels(void **state)
 {
-    struct refocus_kernel_time time = {"untouched", NULL, 0, 0};
+    struct refocus_kernel_time time = refocus_kernel_time_default();
 
     (void)state;
+    time.name = "untouched";
     assert_int_equal(refocus_measure_kernel(1000, REFOCUS_CPU_C, &time), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_measure_kernel(0, 6, &time), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_measure_kernel(0, REFOCUS_CPU_C, NULL), REFOCUS_ERR_ARGUMENT);

@@ -12,28 +12,43 @@
 #include <string.h>
 #include <refocus/depth.h>
 #include <refocus/image.h>
+#include <refocus/sized.h>
 #include <refocus/status.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/** Why something failed, in words that say what to do: one line, no full stop. */
+/** Why something failed, in words that say what to do: one line, no full stop. The struct
+ *  is complete. */
 struct refocus_reason {
     char text[256];
 };
 
-/** Bytes owned by the struct that holds them; data is NULL when there are none. */
+/** Bytes owned by the struct that holds them; data is NULL when there are none. The
+ *  struct is complete. */
 struct refocus_blob {
     uint8_t *data;
     size_t size;
 };
 
-/** Bounds that a reader keeps whatever a file claims. Zeros stand for the defaults. */
+/** Bounds that a reader keeps whatever a file claims. Zeros stand for the defaults. Start from
+ *  refocus_read_limits_default(). */
 struct refocus_read_limits {
-    uint64_t max_pixels; /**< pixels of one picture; default 268,435,456 (2^28) */
-    uint64_t max_bytes;  /**< bytes of a file, and of any part once it is unpacked; default 1 GiB */
+    uint32_t struct_size; /**< sizeof(struct refocus_read_limits) */
+    uint32_t reserved;    /**< 0 */
+    uint64_t max_pixels;  /**< pixels of one picture; default 268,435,456 (2^28) */
+    uint64_t max_bytes; /**< bytes of a file, and of any part once it is unpacked; default 1 GiB */
 };
+
+static inline struct refocus_read_limits refocus_read_limits_default(void)
+{
+    struct refocus_read_limits limits;
+
+    memset(&limits, 0, sizeof limits);
+    limits.struct_size = sizeof limits;
+    return limits;
+}
 
 /** Container in which depth was found. */
 enum refocus_depth_source {
@@ -50,10 +65,11 @@ enum { REFOCUS_INFO_LINES = 24, REFOCUS_INFO_LENGTH = 160 };
 
 /** Facts that a file states about itself. Numbers that it does not say are 0. */
 struct refocus_photo_info {
-    char container[16];   /**< "JPEG", "PNG", ..., of refocus_file_formats() */
+    uint32_t struct_size; /**< bytes that the library wrote: later fields may be beyond them */
     int32_t stored_width; /**< width before orientation */
     int32_t stored_height;
     int32_t orientation;      /**< EXIF 1 to 8, already applied to photo and depth */
+    char container[16];       /**< "JPEG", "PNG", ..., of refocus_file_formats() */
     uint32_t depth_source;    /**< enum refocus_depth_source */
     int32_t original_used;    /**< 1: the main picture was blurred; the photo is the
                                    file's own all-in-focus original (GImage) */
@@ -71,6 +87,9 @@ struct refocus_photo_info {
      * over (gain map, portrait matte), units, polarity. Printable ASCII, never a position. */
     char evidence[REFOCUS_INFO_LINES][REFOCUS_INFO_LENGTH];
     int32_t evidence_count;
+    int32_t stored_bits; /**< bits a channel of the stored picture; more than 8 are dithered to
+                              8, or rounded in HEIC; of a depth file those of its samples. 0:
+                              floats */
     /** Maximum blur radius K of the blur that GFocus names, of the larger picture side:
      *
      *      K = B (1/near - 1/far) zf      B = BlurAtInfinity, zf = FocalDistance
@@ -78,16 +97,14 @@ struct refocus_photo_info {
      *  It needs no unit: a surface at z is blurred over B |z - zf| / z. */
     double own_blur;
     double simulated_f_number; /**< Apple's portraits: of the blur that the phone shows */
-    int32_t stored_bits;       /**< bits a channel of the stored picture; more than 8 are
-                                    dithered to 8, or rounded in HEIC; of a depth file
-                                    those of its samples. 0: floats */
 };
 
-/** A photo read from a file, upright, with the depth it carries. */
+/** A photo read from a file, upright, with the depth it carries: made by the functions below and
+ *  never by a program, which is why it and its parts may grow. */
 struct refocus_photo {
-    struct refocus_image image;     /**< RGB8; plane[0] NULL in a pure depth file */
-    struct refocus_depth_map depth; /**< samples NULL when the file carries none */
-    struct refocus_photo_info info;
+    struct refocus_image *image;           /**< RGB8; plane[0] NULL in a pure depth file */
+    struct refocus_depth_map *depth;       /**< samples NULL when the file carries none */
+    const struct refocus_photo_info *info; /**< as far as the library knows it: its struct_size */
     /** TIFF block without "Exif\0\0", made true for the upright photo: orientation 1,
      *  width and height exchanged when it lay on its side, the old thumbnail
      *  unlinked. */
@@ -169,14 +186,25 @@ REFOCUS_API int refocus_depth_read_memory(struct refocus_photo **depth, const vo
  *  REFOCUS_ERR_ARGUMENT */
 REFOCUS_API int refocus_depth_set_unit(struct refocus_depth_map *map, const char *unit);
 
-/** Parts of a file beside the pixels. Zeros: none. */
+/** Parts of a file beside the pixels. Zeros: none. Start from refocus_write_options_default(). */
 struct refocus_write_options {
+    uint32_t struct_size;            /**< sizeof(struct refocus_write_options) */
     int32_t quality;                 /**< JPEG, 1 to 100; 0 = 95 */
     const struct refocus_blob *exif; /**< TIFF block; NULL = none. PPM takes neither */
     const struct refocus_blob *icc;  /**< NULL = none */
     int32_t unsynced;                /**< 1: does not wait until the file is on the disk,
                                           for frames of a stream */
+    uint32_t reserved;               /**< 0 */
 };
+
+static inline struct refocus_write_options refocus_write_options_default(void)
+{
+    struct refocus_write_options options;
+
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    return options;
+}
 
 /**
  * Write an 8-bit picture; the end of the name says how, see refocus_file_ending().
@@ -212,6 +240,7 @@ struct refocus_depth_write {
     uint32_t struct_size;      /**< sizeof(struct refocus_depth_write) */
     int32_t width;             /**< samples, 1 to REFOCUS_MAX_SIDE */
     int32_t height;            /**< samples, 1 to REFOCUS_MAX_SIDE */
+    uint32_t reserved;         /**< 0 */
     const uint16_t *disparity; /**< disparities of the upright photo: 65535 nearest, 0 farthest */
     ptrdiff_t stride;          /**< bytes from a row to the next; even; may be
                                     negative */

@@ -215,8 +215,9 @@ static int run(int argc, char **argv)
                                 .size = {NAN, NAN}};
     struct engine engine;
     struct input input = {0};
-    struct refocus_photo made = {0};
     struct scene scene = {0};
+    struct refocus_photo_info none = {.focus_x = -1, .focus_y = -1};
+    struct refocus_photo made = {.image = &scene.photo, .info = &none};
     const char *files[2];
     int status;
 
@@ -234,7 +235,7 @@ static int run(int argc, char **argv)
         engine.name = files[0];
         status = input_read(&input, files[0], &settings.depth);
         if (status == EXIT_DONE) {
-            scene.photo = input.photo->image;
+            scene.photo = *input.photo->image;
             scene.disparity = input.disparity;
             scene.map_width = input.width;
             scene.map_height = input.height;
@@ -243,8 +244,6 @@ static int run(int argc, char **argv)
         engine.name = input.photo_name = input.depth_name = "made-up scene";
         status = bench_scene_make(&scene, isnan(settings.size[0]) ? 720 : (int)settings.size[0],
                                   isnan(settings.size[0]) ? 540 : (int)settings.size[1]);
-        made.image = scene.photo;
-        made.info.focus_x = made.info.focus_y = -1;
         input.photo = &made;
     }
     if (status == EXIT_DONE && settings.frames)

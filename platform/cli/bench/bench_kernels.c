@@ -29,7 +29,7 @@ int bench_kernels(const struct engine_settings *settings)
     const uint32_t cpu = (uint32_t)settings->cpu;
     const char *name = cpu_name(cpu);
     json_t *rows = settings->json ? json_array() : NULL;
-    struct refocus_kernel_time time;
+    struct refocus_kernel_time time = refocus_kernel_time_default();
     int status;
 
     for (uint32_t i = 0;; i++) {

@@ -203,7 +203,7 @@ static json_t *with_evidence(json_t *json, const struct refocus_photo_info *info
 
 static int print_report(const struct settings *settings, const struct input *input)
 {
-    const struct refocus_depth_map *map = &input->depth_from->depth;
+    const struct refocus_depth_map *map = input->depth_from->depth;
     const struct refocus_depth_report *report = &input->report;
 
     if (settings->json) {
@@ -211,7 +211,7 @@ static int print_report(const struct settings *settings, const struct input *inp
             json_pack("{s:o, s:o, s:i, s:i, s:o}", "file", report_text_json(input->photo_name),
                       "output", report_text_json(settings->output), "width", input->width, "height",
                       input->height, "depth", report_depth_json(input->depth_from, report));
-        return report_print_json(with_evidence(json, &input->made.info));
+        return report_print_json(with_evidence(json, &input->made_info));
     }
     printf("size     %dx%d\n", input->width, input->height);
     if (report->near_m > 0)
@@ -223,8 +223,8 @@ static int print_report(const struct settings *settings, const struct input *inp
     if (settings->depth.speckle > 1)
         printf("specks   %llu samples in small patches, filled too, %.1f %%\n",
                (unsigned long long)report->specks, percent(report->specks, map));
-    for (int i = 0; i < input->made.info.evidence_count; i++)
-        printf("because  %s\n", input->made.info.evidence[i]);
+    for (int i = 0; i < input->made_info.evidence_count; i++)
+        printf("because  %s\n", input->made_info.evidence[i]);
     printf("clamped  %llu samples beyond the range, %.1f %%\n", (unsigned long long)report->clamped,
            percent(report->clamped, map));
     return report_end_output();
@@ -241,8 +241,8 @@ static bool is_jpeg(const char *path)
 static int write_view(const struct settings *settings, const struct input *input)
 {
     const bool known = settings->view == VIEW_CONFIDENCE;
-    const int width = known ? input->depth_from->depth.width : input->width;
-    const int height = known ? input->depth_from->depth.height : input->height;
+    const int width = known ? input->depth_from->depth->width : input->width;
+    const int height = known ? input->depth_from->depth->height : input->height;
     const size_t pixels = (size_t)width * (size_t)height;
     uint8_t *rgb = pixels <= SIZE_MAX / 3 ? malloc(3 * pixels) : NULL;
     int status;
@@ -272,8 +272,8 @@ static double disparity_at(const struct input *input, double x, double y)
 static int settle_focus(const struct settings *settings, const struct input *input,
                         struct refocus_depth_write *depth)
 {
-    const struct refocus_image *photo = &input->photo->image;
-    const struct refocus_photo_info *info = &input->photo->info;
+    const struct refocus_image *photo = input->photo->image;
+    const struct refocus_photo_info *info = input->photo->info;
     const double larger = photo->width > photo->height ? photo->width : photo->height;
     const double x = settings->focus_at[0], y = settings->focus_at[1];
     double d;
@@ -285,7 +285,7 @@ static int settle_focus(const struct settings *settings, const struct input *inp
         }
         depth->focus_distance = info->focus_distance;
         depth->blur_at_infinity = info->blur_at_infinity;
-        if (info->own_blur > 0 && info->focus_x >= 0 && input->photo->depth.near_m <= 0) {
+        if (info->own_blur > 0 && info->focus_x >= 0 && input->photo->depth->near_m <= 0) {
             /* No metres: they are not written, and 0 is taken for infinity then. */
             depth->focus_distance = 0;
             depth->blur_at_infinity =

@@ -65,10 +65,10 @@ static void print_metres(const char *name, double metres)
 static void print_depth(const struct refocus_photo *photo,
                         const struct refocus_depth_report *report)
 {
-    const struct refocus_depth_map *map = &photo->depth;
+    const struct refocus_depth_map *map = photo->depth;
     char text[160];
 
-    printf("depth         %s\n", source_text(photo->info.depth_source));
+    printf("depth         %s\n", source_text(photo->info->depth_source));
     if (!map->samples)
         return;
     describe_meaning(text, sizeof text, map);
@@ -84,15 +84,15 @@ static void print_depth(const struct refocus_photo *photo,
 static void print_text(const char *file, const struct refocus_photo *photo,
                        const struct refocus_depth_report *report)
 {
-    const struct refocus_photo_info *info = &photo->info;
+    const struct refocus_photo_info *info = photo->info;
     char clean[REFOCUS_INFO_LENGTH];
 
     report_clean(clean, sizeof clean, file);
     printf("file          %s\n", clean);
     printf("container     %s\n", info->container);
-    if (photo->image.plane[0])
-        printf("picture       %dx%d, upright, %d bits a channel%s\n", (int)photo->image.width,
-               (int)photo->image.height, (int)info->stored_bits,
+    if (photo->image->plane[0])
+        printf("picture       %dx%d, upright, %d bits a channel%s\n", (int)photo->image->width,
+               (int)photo->image->height, (int)info->stored_bits,
                info->original_used ? ", the all-in-focus original in the file" : "");
     if (info->stored_width > 0)
         printf("stored        %dx%d, orientation %d\n", (int)info->stored_width,
@@ -108,14 +108,15 @@ static void print_text(const char *file, const struct refocus_photo *photo,
         printf("f-number      f/%.3g\n", info->f_number);
     if (info->simulated_f_number > 0)
         printf("simulated     f/%.3g, the blur that the phone shows\n", info->simulated_f_number);
-    if (info->own_blur > 0 && photo->image.plane[0])
+    if (info->own_blur > 0 && photo->image->plane[0])
         printf("own blur      %.1f pixels\n",
-               info->own_blur * (photo->image.width > photo->image.height ? photo->image.width
-                                                                          : photo->image.height));
-    if (info->focus_x >= 0 && info->focus_y >= 0 && photo->image.plane[0] &&
+               info->own_blur * (photo->image->width > photo->image->height
+                                     ? photo->image->width
+                                     : photo->image->height));
+    if (info->focus_x >= 0 && info->focus_y >= 0 && photo->image->plane[0] &&
         (info->focus_x > 0 || info->focus_y > 0))
-        printf("focus point   %.0f,%.0f\n", info->focus_x * photo->image.width,
-               info->focus_y * photo->image.height);
+        printf("focus point   %.0f,%.0f\n", info->focus_x * photo->image->width,
+               info->focus_y * photo->image->height);
     print_depth(photo, report);
     for (int i = 0; i < info->evidence_count && i < REFOCUS_INFO_LINES; i++) {
         report_clean(clean, sizeof clean, info->evidence[i]);
@@ -145,22 +146,22 @@ static json_t *evidence_json(const struct refocus_photo_info *info)
 static json_t *make_json(const char *file, const struct refocus_photo *photo,
                          const struct refocus_depth_report *report)
 {
-    const struct refocus_photo_info *info = &photo->info;
+    const struct refocus_photo_info *info = photo->info;
     const bool focus =
         info->focus_x >= 0 && info->focus_y >= 0 && (info->focus_x > 0 || info->focus_y > 0);
-    json_t *depth = photo->depth.samples ? report_depth_json(photo, report) : json_null();
+    json_t *depth = photo->depth->samples ? report_depth_json(photo, report) : json_null();
     char text[160];
 
-    if (photo->depth.samples && depth) {
-        describe_meaning(text, sizeof text, &photo->depth);
+    if (photo->depth->samples && depth) {
+        describe_meaning(text, sizeof text, photo->depth);
         json_object_set_new(depth, "unit", report_text_json(text));
-        json_object_set_new(depth, "sample", json_string(sample_name(photo->depth.sample)));
+        json_object_set_new(depth, "sample", json_string(sample_name(photo->depth->sample)));
     }
     return json_pack(
         "{s:o, s:s, s:o, s:o, s:i, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, "
         "s:o}",
         "file", report_text_json(file), "container", info->container, "picture",
-        photo->image.plane[0] ? size_json(photo->image.width, photo->image.height) : json_null(),
+        photo->image->plane[0] ? size_json(photo->image->width, photo->image->height) : json_null(),
         "stored",
         info->stored_width > 0 ? size_json(info->stored_width, info->stored_height) : json_null(),
         "orientation", info->orientation ? (int)info->orientation : 1, "bits",
@@ -181,7 +182,7 @@ static int read_any(struct refocus_photo **photo, const char *file)
     struct refocus_photo *map = NULL;
     int status = refocus_photo_read(photo, file, NULL, &reason);
 
-    if (status == REFOCUS_OK ? !(*photo)->depth.samples
+    if (status == REFOCUS_OK ? !(*photo)->depth->samples
                              : status == REFOCUS_ERR_FORMAT || status == REFOCUS_ERR_UNSUPPORTED)
         if (refocus_depth_read(&map, file, NULL, 0, 0, NULL, NULL) == REFOCUS_OK) {
             refocus_photo_free(photo);
@@ -219,17 +220,16 @@ static int run(int argc, char **argv)
 {
     struct settings settings = {false};
     struct refocus_photo *photo = NULL;
-    struct refocus_depth_report report;
+    struct refocus_depth_report report = refocus_depth_report_default();
     const char *files[2];
     int status;
 
-    memset(&report, 0, sizeof report);
     status = options_parse(&info_command, argc, argv, &settings, files);
     if (status != OPTIONS_PARSED)
         return status;
     status = read_any(&photo, files[0]);
-    if (status == EXIT_DONE && photo->depth.samples)
-        status = measure_depth(files[0], &photo->depth, &report);
+    if (status == EXIT_DONE && photo->depth->samples)
+        status = measure_depth(files[0], photo->depth, &report);
     if (status == EXIT_DONE && settings.json) {
         status = report_print_json(make_json(files[0], photo, &report));
     } else if (status == EXIT_DONE) {

@@ -172,7 +172,7 @@ static int write_frames(struct shot *shot, const struct keys *keys, const struct
     const double seconds = stereo ? given(s->seconds, 2) - 1 / fps : keys_seconds(keys);
     const int there = (int)(seconds * fps + 0.5) + 1;
     const int count = s->back && there > 2 ? 2 * there - 2 : there;
-    const struct refocus_image *photo = &shot->input.photo->image;
+    const struct refocus_image *photo = shot->input.photo->image;
     struct refocus_image out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, photo->width,
                                                     photo->height, (ptrdiff_t)photo->width * 3);
     struct animation *animation = NULL;
@@ -233,7 +233,7 @@ static int pull(struct shot *shot, const char *photo, struct keys **keys, const 
 
 static int print_report(const struct settings *s, const struct shot *shot, int frames)
 {
-    const struct refocus_image *photo = &shot->input.photo->image;
+    const struct refocus_image *photo = shot->input.photo->image;
     json_t *json, *blur;
 
     if (!s->shot.engine.json)

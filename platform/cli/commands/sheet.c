@@ -141,7 +141,7 @@ static int render_cell(struct shot *shot, const struct refocus_settings *usual,
 
     *params = *usual;
     if (cell->untouched) {
-        take_photo(&shot->input.photo->image, params, out);
+        take_photo(shot->input.photo->image, params, out);
         return EXIT_DONE;
     }
     if (!isnan(cell->focus))

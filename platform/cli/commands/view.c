@@ -94,8 +94,8 @@ static int print_report(const struct input *input, const struct rf_view_report *
         json_array_append_new(times, time_json(&report->times[i]));
     return report_print_json(json_pack(
         "{s:o, s:i, s:i, s:s, s:i, s:i, s:i, s:s, s:f, s:f, s:i, s:i, s:o, s:I}", "file",
-        report_text_json(input->photo_name), "width", (int)input->photo->image.width, "height",
-        (int)input->photo->image.height, "driver", report->driver, "window_width", report->width,
+        report_text_json(input->photo_name), "width", (int)input->photo->image->width, "height",
+        (int)input->photo->image->height, "driver", report->driver, "window_width", report->width,
         "window_height", report->height, "reduction", report->reduction, "method",
         refocus_method_name(report->last.method), "focus", (double)report->last.focus, "blur",
         (double)report->last.blur, "strokes", report->strokes, "saved", saving->saved, "times",
@@ -124,7 +124,7 @@ static void take_tap(struct controls *controls, const struct refocus_image *phot
 static void aim(void *of, const struct rf_view_state *state, struct refocus_settings *params)
 {
     const struct viewing *v = of;
-    const struct refocus_image *photo = &v->input.photo->image;
+    const struct refocus_image *photo = v->input.photo->image;
     const struct refocus_disparity size = {.width = photo->width, .height = photo->height};
     struct controls controls = v->engine.controls;
 
@@ -148,9 +148,9 @@ static int save_settings(void *of, const struct rf_view_result *result, const ch
     struct controls aimed = v->engine.controls;
 
     if (result->state->focus_tap > 0)
-        take_tap(&aimed, &v->input.photo->image, result->state);
+        take_tap(&aimed, v->input.photo->image, result->state);
     else if (!isnan(v->settings.shot.lens.focus_at[0]))
-        controls_turn_about(&aimed, &v->input.photo->image, v->settings.shot.lens.focus_at[1]);
+        controls_turn_about(&aimed, v->input.photo->image, v->settings.shot.lens.focus_at[1]);
     memcpy(controls->focus_plane, aimed.focus_plane, sizeof controls->focus_plane);
     memcpy(controls->tilt_line, aimed.tilt_line, sizeof controls->tilt_line);
     settings.shot.lens = (struct lens_settings)LENS_SETTINGS_NONE;
@@ -169,7 +169,7 @@ static int choose_state(struct viewing *v, struct rf_view_state *state)
     struct refocus_settings *params = &v->engine.params;
     const uint16_t *disparity =
         v->strokes ? refocus_strokes_disparity(v->strokes) : v->input.disparity;
-    const struct refocus_image *photo = &v->input.photo->image;
+    const struct refocus_image *photo = v->input.photo->image;
     double blur = 0;
     int status = input_blur(&v->input, &shot->lens, &blur);
 
@@ -227,7 +227,7 @@ static int show(struct viewing *v, view_run_fn *run_window)
     status = choose_state(v, &setup.state);
     setup.settings = v->text;
     setup.methods = suitable_methods(&v->engine);
-    setup.session.photo = &v->input.photo->image;
+    setup.session.photo = v->input.photo->image;
     setup.session.disparity = v->input.disparity;
     setup.session.strokes = v->strokes;
     setup.session.params = v->engine.params;

@@ -80,14 +80,14 @@ static int read_reference(struct refocus_photo **reference, const char *file,
     struct refocus_reason reason = {""};
     const int status = refocus_photo_read(reference, file, NULL, &reason);
 
-    if (status != REFOCUS_OK || !(*reference)->image.plane[0])
+    if (status != REFOCUS_OK || !(*reference)->image->plane[0])
         return report_failure(EXIT_FAILED, file, "%s",
                               reason.text[0] ? reason.text : "it is not a picture");
-    if ((*reference)->image.width != photo->width || (*reference)->image.height != photo->height)
+    if ((*reference)->image->width != photo->width || (*reference)->image->height != photo->height)
         return report_failure(EXIT_FAILED, file,
                               "it has %dx%d pixels, the photo %dx%d; give one of the "
                               "same size",
-                              (int)(*reference)->image.width, (int)(*reference)->image.height,
+                              (int)(*reference)->image->width, (int)(*reference)->image->height,
                               (int)photo->width, (int)photo->height);
     input_tell_bits(*reference, file);
     return EXIT_DONE;
@@ -244,8 +244,8 @@ static int print_report(const struct settings *settings, const struct engine *en
 static int compare(struct engine *engine, struct input *input, struct comparison *c,
                    const struct settings *settings, const struct variants *variants)
 {
-    const struct refocus_image *photo = &input->photo->image;
-    const struct refocus_depth_map *map = &input->depth_from->depth;
+    const struct refocus_image *photo = input->photo->image;
+    const struct refocus_depth_map *map = input->depth_from->depth;
     const struct refocus_disparity disparity =
         refocus_disparity16(input->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
@@ -324,11 +324,11 @@ static int run(int argc, char **argv)
     if (status == EXIT_DONE)
         status = input_read(&input, files[0], &settings.depth);
     if (status == EXIT_DONE)
-        status = read_reference(&reference, settings.reference, &input.photo->image);
+        status = read_reference(&reference, settings.reference, input.photo->image);
     if (status == EXIT_DONE) {
-        comparison.width = input.photo->image.width;
-        comparison.height = input.photo->image.height;
-        status = add(&comparison, "reference", &reference->image, true);
+        comparison.width = input.photo->image->width;
+        comparison.height = input.photo->image->height;
+        status = add(&comparison, "reference", reference->image, true);
     }
     if (status == EXIT_DONE)
         status = compare(&engine, &input, &comparison, &settings, &variants);

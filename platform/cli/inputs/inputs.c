@@ -45,7 +45,7 @@ static bool find_codes(const char *names, uint32_t *flags)
 
 int input_check_depth(const struct depth_settings *settings)
 {
-    struct refocus_depth_map map;
+    struct refocus_depth_map map = refocus_depth_map_default();
     uint32_t flags;
 
     if (!find_codes(settings->invalid, &flags))
@@ -54,7 +54,6 @@ int input_check_depth(const struct depth_settings *settings)
                               "with commas",
                               settings->invalid);
 
-    memset(&map, 0, sizeof map);
     map.sample = REFOCUS_SAMPLE_U16;
     if (settings->unit && refocus_depth_set_unit(&map, settings->unit) != REFOCUS_OK)
         return report_failure(EXIT_WRONG, "--depth-unit",
@@ -72,7 +71,7 @@ int input_check_depth(const struct depth_settings *settings)
 /* Put --near, --far and --depth-unit over what the photo says about its own depth. */
 static int settle_embedded(struct input *input, const struct depth_settings *settings)
 {
-    struct refocus_depth_map *map = &input->photo->depth;
+    struct refocus_depth_map *map = input->photo->depth;
 
     if (settings->unit) {
         const int status = refocus_depth_set_unit(map, settings->unit);
@@ -91,7 +90,7 @@ static int settle_embedded(struct input *input, const struct depth_settings *set
 /* Follow the photo's edges to its size, with filled samples counting least. */
 static int enlarge(struct input *input, const struct depth_settings *settings)
 {
-    const struct refocus_image *photo = &input->photo->image;
+    const struct refocus_image *photo = input->photo->image;
     const struct refocus_disparity map = refocus_disparity16(
         input->disparity, input->width, input->height, (ptrdiff_t)input->width * 2);
     struct refocus_upsample_params params = refocus_upsample_params_default();
@@ -133,7 +132,7 @@ static int snap(struct input *input, const struct depth_settings *settings)
     int status = REFOCUS_ERR_MEMORY;
 
     if (out)
-        status = refocus_depth_snap(&input->photo->image, &map, &params, out, stride);
+        status = refocus_depth_snap(input->photo->image, &map, &params, out, stride);
     if (status != REFOCUS_OK) {
         free(out);
         return report_failure(EXIT_FAILED, input->depth_name, "the depth map: %s",
@@ -146,21 +145,22 @@ static int snap(struct input *input, const struct depth_settings *settings)
 
 static bool worth_snapping(const struct input *input, const struct depth_settings *settings)
 {
-    return settings->snap > 0 && input->photo && input->photo->image.plane[0] &&
-           input->photo->image.width == input->width && input->photo->image.height == input->height;
+    return settings->snap > 0 && input->photo && input->photo->image->plane[0] &&
+           input->photo->image->width == input->width &&
+           input->photo->image->height == input->height;
 }
 
 static bool worth_enlarging(const struct input *input, const struct depth_settings *settings)
 {
-    return input->photo && input->photo->image.plane[0] &&
-           (input->photo->image.width != input->width ||
-            input->photo->image.height != input->height) &&
+    return input->photo && input->photo->image->plane[0] &&
+           (input->photo->image->width != input->width ||
+            input->photo->image->height != input->height) &&
            (settings->full || input->report.unknown + input->report.specks > 0);
 }
 
 int input_convert(struct input *input, const struct depth_settings *settings)
 {
-    struct refocus_depth_map settled = input->depth_from->depth, *map = &settled;
+    struct refocus_depth_map settled = *input->depth_from->depth, *map = &settled;
     struct refocus_repair_params params = refocus_repair_params_default();
     const uint64_t bytes = (uint64_t)map->width * (uint64_t)map->height * sizeof(uint16_t);
     int status = REFOCUS_ERR_MEMORY;
@@ -181,6 +181,7 @@ int input_convert(struct input *input, const struct depth_settings *settings)
     input->width = map->width;
     input->height = map->height;
     params.speckle = (int32_t)settings->speckle;
+    input->report = refocus_depth_report_default();
     params.confidence = input->confidence;
     params.confidence_stride = map->width;
     if (input->disparity && input->confidence)
@@ -200,8 +201,8 @@ int input_convert(struct input *input, const struct depth_settings *settings)
                               "its depth has %dx%d samples, the photo %dx%d pixels; "
                               "--snap takes depth of the photo's size, give --full "
                               "instead",
-                              input->width, input->height, input->photo->image.width,
-                              input->photo->image.height);
+                              input->width, input->height, input->photo->image->width,
+                              input->photo->image->height);
     return worth_enlarging(input, settings) ? enlarge(input, settings) : EXIT_DONE;
 }
 
@@ -234,10 +235,10 @@ static int read_side(struct input *input, const char *file, const struct depth_s
 
 void input_tell_bits(const struct refocus_photo *photo, const char *name)
 {
-    if (photo->info.stored_bits > 8)
+    if (photo->info->stored_bits > 8)
         report_warning(name, "it has %d bits a channel; 8 are taken, %s",
-                       (int)photo->info.stored_bits,
-                       strcmp(photo->info.container, "HEIC") == 0 ? "rounded" : "dithered");
+                       (int)photo->info->stored_bits,
+                       strcmp(photo->info->container, "HEIC") == 0 ? "rounded" : "dithered");
 }
 
 int input_read_photo(struct input *input, const char *photo, const char *instead)
@@ -251,7 +252,7 @@ int input_read_photo(struct input *input, const char *photo, const char *instead
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, photo, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
-    if (!input->photo->image.plane[0])
+    if (!input->photo->image->plane[0])
         return report_failure(EXIT_FAILED, photo,
                               "it is a depth map, not a photo; "
                               "give %s",
@@ -282,17 +283,17 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
         return status;
     if (settings->file) {
         status = read_side(input, settings->file, settings);
-        if (status == EXIT_DONE && has_another_shape(&input->side->depth, &input->photo->image))
+        if (status == EXIT_DONE && has_another_shape(input->side->depth, input->photo->image))
             return report_failure(EXIT_FAILED, settings->file,
                                   "its %dx%d samples have another shape than the photo "
                                   "of %dx%d pixels; give the map of this photo, as "
                                   "upright as the photo is",
-                                  input->side->depth.width, input->side->depth.height,
-                                  input->photo->image.width, input->photo->image.height);
+                                  input->side->depth->width, input->side->depth->height,
+                                  input->photo->image->width, input->photo->image->height);
     } else {
-        if (!input->photo->depth.samples && settings->optional)
+        if (!input->photo->depth->samples && settings->optional)
             return EXIT_DONE;
-        if (!input->photo->depth.samples)
+        if (!input->photo->depth->samples)
             return report_no_depth(photo);
         input->depth_name = photo;
         input->depth_from = input->photo;

@@ -73,8 +73,10 @@ struct input {
     const char *photo_name, *depth_name;
     struct refocus_photo *photo;
     struct refocus_photo *side;             /* a depth file of its own, or NULL */
-    const struct refocus_photo *depth_from; /* one of the two */
-    struct refocus_photo made;              /* depth is made of pictures; samples below */
+    const struct refocus_photo *depth_from; /* one of the two, or `made` */
+    struct refocus_photo made; /* of depth that is made of pictures: its parts follow */
+    struct refocus_depth_map made_map;
+    struct refocus_photo_info made_info;
     float *made_samples;
     uint16_t *disparity; /* packed */
     uint8_t *confidence; /* one for each sample of the map: 0 = filled */

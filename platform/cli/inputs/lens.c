@@ -52,18 +52,18 @@ static double larger_side(const struct refocus_image *image)
 static bool choose_lens(const struct input *input, const struct lens_settings *settings,
                         struct refocus_lens *lens)
 {
-    const double width = input->photo->image.width, height = input->photo->image.height;
+    const double width = input->photo->image->width, height = input->photo->image->height;
 
     lens->f_number = settings->f_number;
     if (given(settings->focal_length)) {
         lens->focal_length_mm = settings->focal_length;
         lens->sensor_width_mm = given(settings->sensor_width)
                                     ? settings->sensor_width
-                                    : 36 * width / larger_side(&input->photo->image);
+                                    : 36 * width / larger_side(input->photo->image);
         return true;
     }
     /* 35 mm terms compare diagonals: that of 36 x 24 mm with the picture's. */
-    lens->focal_length_mm = input->photo->info.focal_length_35mm;
+    lens->focal_length_mm = input->photo->info->focal_length_35mm;
     lens->sensor_width_mm =
         sqrt(36.0 * 36 + 24 * 24) * width / sqrt(width * width + height * height);
     return lens->focal_length_mm > 0;
@@ -80,7 +80,7 @@ struct blur_choice {
 /* The blur of 50 mm at f/2 on full frame, from 0.87 m to far away. */
 static double default_blur(const struct input *input)
 {
-    return fmin(larger_side(&input->photo->image) / 50, REFOCUS_MAX_BLUR_RADIUS);
+    return fmin(larger_side(input->photo->image) / 50, REFOCUS_MAX_BLUR_RADIUS);
 }
 
 /* f-numbers of files may be anything. */
@@ -96,11 +96,11 @@ static void blur_without_metres(const struct input *input, double f_number,
                                 struct blur_choice *choice)
 {
     static const double usual = 2;
-    const struct refocus_photo_info *info = &input->depth_from->info;
+    const struct refocus_photo_info *info = input->depth_from->info;
 
     if (info->own_blur > 0) {
         choice->from = "file";
-        choice->own = info->own_blur * larger_side(&input->photo->image);
+        choice->own = info->own_blur * larger_side(input->photo->image);
         choice->own_number = info->f_number;
     } else {
         choice->from = "default";
@@ -131,7 +131,7 @@ static int choose_blur(const struct input *input, const struct lens_settings *se
             return report_failure(EXIT_FAILED, input->photo_name,
                                   "--f-number needs a focal length, which it does not say; give "
                                   "--focal-length and --sensor-width, or --blur");
-        choice->asked = refocus_max_blur_radius(&lens, &range, input->photo->image.width);
+        choice->asked = refocus_max_blur_radius(&lens, &range, input->photo->image->width);
     } else if (given(settings->focal_length)) {
         return report_failure(EXIT_FAILED, input->depth_name,
                               "--focal-length needs distances in metres, which it does "
@@ -213,7 +213,7 @@ double input_surface_at(const uint16_t *disparity, int width, int height, int x,
 static int focus_in_rectangle(const struct input *input, const double rectangle[4],
                               const uint16_t *prepared, double *focus)
 {
-    const int width = input->photo->image.width, height = input->photo->image.height;
+    const int width = input->photo->image->width, height = input->photo->image->height;
     const struct refocus_disparity map =
         refocus_disparity16(prepared, width, height, (ptrdiff_t)width * 2);
     float found = 0;
@@ -248,8 +248,8 @@ static int focus_at_distance(const struct input *input, double metres, double *f
 int input_focus(const struct input *input, const struct lens_settings *settings,
                 const uint16_t *prepared, double *focus)
 {
-    const int width = input->photo->image.width, height = input->photo->image.height;
-    const struct refocus_photo_info *info = &input->photo->info;
+    const int width = input->photo->image->width, height = input->photo->image->height;
+    const struct refocus_photo_info *info = input->photo->info;
     double x = width / 2, y = height / 2;
 
     if (given(settings->focus)) {

@@ -18,7 +18,7 @@ static int read_right(struct refocus_photo **photo, const char *name, bool secon
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, name, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
-    if (!(*photo)->image.plane[0])
+    if (!(*photo)->image->plane[0])
         return report_failure(EXIT_FAILED, name,
                               "it is a depth map, not a photo; give "
                               "a photo");
@@ -29,15 +29,17 @@ static int read_right(struct refocus_photo **photo, const char *name, bool secon
 static int take(struct input *input, float *samples, int width, int height,
                 const struct depth_settings *settings)
 {
-    struct refocus_depth_map *map = &input->made.depth;
+    struct refocus_depth_map *map = &input->made_map;
 
+    *map = refocus_depth_map_default();
+    input->made.depth = map;
+    input->made.info = &input->made_info;
     input->made_samples = samples;
     map->samples = samples;
     map->width = width;
     map->height = height;
     map->stride = (ptrdiff_t)width * (ptrdiff_t)sizeof *samples;
     map->sample = REFOCUS_SAMPLE_F32;
-    map->meaning = REFOCUS_DEPTH_DISPARITY;
     if (!isnan(settings->near_m))
         map->near_m = settings->near_m;
     if (!isnan(settings->far_m))
@@ -69,31 +71,31 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
         status = read_right(&input->side, right ? right : left, right == NULL);
     if (status != EXIT_DONE)
         return status;
-    if (!input->side && input->photo->image.width < 2)
+    if (!input->side && input->photo->image->width < 2)
         return report_failure(EXIT_FAILED, left,
                               "it is one pixel wide; give two pictures side by side");
     if (input->side)
-        other = input->side->image;
+        other = *input->side->image;
     else
-        halve(&input->photo->image, &other);
-    samples = malloc((size_t)input->photo->image.width * (size_t)input->photo->image.height *
+        halve(input->photo->image, &other);
+    samples = malloc((size_t)input->photo->image->width * (size_t)input->photo->image->height *
                      sizeof *samples);
     if (!samples)
         return report_failure(EXIT_FAILED, left, "not enough memory");
     report_progress("matching", 0.2);
-    status = refocus_cv_stereo(&input->photo->image, &other, &params, samples, &report, &reason);
+    status = refocus_cv_stereo(input->photo->image, &other, &params, samples, &report, &reason);
     if (status != REFOCUS_OK) {
         free(samples);
         return report_failure(EXIT_FAILED, right ? right : left, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
     }
-    snprintf(input->made.info.evidence[0], REFOCUS_INFO_LENGTH,
+    snprintf(input->made_info.evidence[0], REFOCUS_INFO_LENGTH,
              "stereo: disparities %.1f to %.1f pixels, right picture %.0f pixels "
              "lower, %.0f %% of the pixels agree from both sides",
              (double)report.least, (double)report.greatest, (double)report.vertical_offset,
              100.0 * (double)report.matched);
-    input->made.info.evidence_count = 1;
-    return take(input, samples, input->photo->image.width, input->photo->image.height, settings);
+    input->made_info.evidence_count = 1;
+    return take(input, samples, input->photo->image->width, input->photo->image->height, settings);
 }
 
 static void adjust(struct refocus_network *network, const struct network_settings *how)
@@ -126,7 +128,7 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
     adjust(&network, how);
     report_progress("estimating", 0.2);
     if (status == REFOCUS_OK)
-        status = refocus_cv_estimate(&input->photo->image, model, &network, &estimate, &reason);
+        status = refocus_cv_estimate(input->photo->image, model, &network, &estimate, &reason);
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, model, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));

@@ -11,11 +11,13 @@ enum { MAX_BYTES = 64 << 20 };
 
 void painted_begin(struct input *input, const struct depth_settings *settings)
 {
-    struct refocus_depth_map *const map = &input->made.depth;
+    struct refocus_depth_map *const map = &input->made_map;
 
-    map->width = input->width = input->photo->image.width;
-    map->height = input->height = input->photo->image.height;
-    map->meaning = REFOCUS_DEPTH_DISPARITY;
+    *map = refocus_depth_map_default();
+    input->made.depth = map;
+    input->made.info = &input->made_info;
+    map->width = input->width = input->photo->image->width;
+    map->height = input->height = input->photo->image->height;
     input->report.value_near = map->value_near = 1;
     input->report.near_m = isnan(settings->near_m) ? 0 : settings->near_m;
     input->report.far_m = isnan(settings->far_m) ? 0 : settings->far_m;
@@ -61,7 +63,7 @@ int painted_open(struct input *input, const char *file, struct refocus_strokes *
     *strokes = NULL;
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, file, "%s", unread.text);
-    status = refocus_strokes_create(strokes, &input->photo->image, input->disparity ? &base : NULL);
+    status = refocus_strokes_create(strokes, input->photo->image, input->disparity ? &base : NULL);
     if (status == REFOCUS_OK)
         status = refocus_strokes_load(*strokes, blob.data, blob.size, &reason);
     free(blob.data);
@@ -73,7 +75,7 @@ int painted_open(struct input *input, const char *file, struct refocus_strokes *
 
 int painted_apply(struct input *input, const char *file)
 {
-    struct refocus_photo_info *const info = &input->made.info;
+    struct refocus_photo_info *const info = &input->made_info;
     struct refocus_strokes *strokes = NULL;
     int status = painted_open(input, file, &strokes);
 

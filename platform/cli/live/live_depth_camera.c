@@ -43,7 +43,7 @@ static int describe(struct live_lane *lane, const struct refocus_frame *frame,
         frame->format == REFOCUS_FRAME_GREY || strncmp(lane->name, "file:", 5) == 0;
     const char *unit = settings->unit ? settings->unit : picture ? "disparity" : "mm";
 
-    memset(map, 0, sizeof *map);
+    *map = refocus_depth_map_default();
     map->samples = samples->own;
     map->width = frame->width;
     map->height = frame->height;
@@ -176,8 +176,8 @@ int live_read_fixed_depth(struct live *live)
     int status = input_read_depth(&input, live->settings->depth.file, &live->settings->depth);
 
     if (status == EXIT_DONE) {
-        const int width = input.depth_from->depth.width;
-        const int height = input.depth_from->depth.height;
+        const int width = input.depth_from->depth->width;
+        const int height = input.depth_from->depth->height;
 
         to = live_depths_fill(&live->depths, width, height);
         if (to) {

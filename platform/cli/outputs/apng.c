@@ -145,7 +145,8 @@ static bool put_pixels(struct apng *a, const uint8_t *png, size_t size)
 int apng_write(struct apng *a, const struct refocus_image *image, struct refocus_reason *reason)
 {
     struct refocus_blob png = {NULL, 0};
-    const struct refocus_write_options options = {.unsynced = 1};
+    const struct refocus_write_options options = {
+        .struct_size = sizeof(struct refocus_write_options), .unsynced = 1};
     int status = refocus_image_write(a->picture, image, &options, reason);
 
     if (status == REFOCUS_OK)

@@ -120,10 +120,9 @@ int output_write_image(const char *path, const struct refocus_image *image,
                        const struct refocus_photo *of)
 {
     struct refocus_reason reason = {""};
-    struct refocus_write_options options;
+    struct refocus_write_options options = refocus_write_options_default();
     int status;
 
-    memset(&options, 0, sizeof options);
     if (of) {
         options.exif = of->exif.data ? &of->exif : NULL;
         options.icc = of->icc.data ? &of->icc : NULL;

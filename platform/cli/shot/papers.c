@@ -33,12 +33,12 @@ uint8_t *papers_read_grey(const char *file, int *width, int *height)
     uint8_t *grey = NULL;
     const int status = refocus_photo_read(&photo, file, NULL, &reason);
 
-    if (status != REFOCUS_OK || !photo->image.plane[0]) {
+    if (status != REFOCUS_OK || !photo->image->plane[0]) {
         report_failure(EXIT_FAILED, file, "%s",
                        reason.text[0] ? reason.text : "it is not a grey picture");
         goto end;
     }
-    const struct refocus_image *image = &photo->image;
+    const struct refocus_image *image = photo->image;
     *width = image->width;
     *height = image->height;
     grey = malloc((size_t)image->width * (size_t)image->height);

@@ -8,7 +8,7 @@ int shot_aim(const struct input *input, const struct lens_settings *lens,
              const struct controls *controls, const uint16_t *disparity,
              struct refocus_settings *params)
 {
-    const struct refocus_image *photo = &input->photo->image;
+    const struct refocus_image *photo = input->photo->image;
     const struct refocus_disparity map =
         refocus_disparity16(disparity, photo->width, photo->height, (ptrdiff_t)photo->width * 2);
     struct controls aimed = *controls;
@@ -25,7 +25,7 @@ int shot_aim(const struct input *input, const struct lens_settings *lens,
 
 static int choose_focus(struct shot *shot, const struct lens_settings *lens)
 {
-    const struct refocus_image *photo = &shot->input.photo->image;
+    const struct refocus_image *photo = shot->input.photo->image;
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
     const ptrdiff_t stride = (ptrdiff_t)photo->width * 2;
     uint16_t *prepared = malloc(pixels * sizeof *prepared);
@@ -89,7 +89,7 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
         status = input_blur(&shot->input, &settings->lens, &blur);
     if (status != EXIT_DONE)
         return status;
-    image = &shot->input.photo->image;
+    image = shot->input.photo->image;
     disparity = refocus_disparity16(shot->input.disparity, shot->input.width, shot->input.height,
                                     (ptrdiff_t)shot->input.width * 2);
     report_progress("preparing", 0.15);
@@ -109,7 +109,7 @@ void shot_close(struct shot *shot)
 
 int shot_output(struct shot *shot, const double region[4], struct refocus_image *out)
 {
-    const struct refocus_image *photo = &shot->input.photo->image;
+    const struct refocus_image *photo = shot->input.photo->image;
     struct refocus_settings *params = &shot->engine.params;
     int width = photo->width, height = photo->height;
 

@@ -147,7 +147,7 @@ void stereo_warp(const struct refocus_image *photo, const uint16_t *disparity, d
 
 int stereo_open(struct stereo *stereo, const struct shot *shot)
 {
-    const struct refocus_image *photo = &shot->input.photo->image;
+    const struct refocus_image *photo = shot->input.photo->image;
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
 
     stereo->view = refocus_image_packed(REFOCUS_FORMAT_RGB8, malloc(pixels * 3), photo->width,
@@ -166,7 +166,7 @@ int stereo_open(struct stereo *stereo, const struct shot *shot)
 int stereo_render(const struct stereo *stereo, struct shot *shot, double parallax,
                   const struct refocus_image *out)
 {
-    const struct refocus_image *photo = &shot->input.photo->image;
+    const struct refocus_image *photo = shot->input.photo->image;
     const struct refocus_disparity seen =
         refocus_disparity16(stereo->seen, photo->width, photo->height, (ptrdiff_t)photo->width * 2);
     int status;

@@ -36,7 +36,7 @@ static int lost(int status)
 static bool find_limits(const struct shot *shot, const uint16_t *blur, const uint16_t *disparity,
                         struct blur_limits *limits)
 {
-    const struct refocus_image *photo = &shot->input.photo->image;
+    const struct refocus_image *photo = shot->input.photo->image;
     const double most = (double)shot->engine.params.render.max_blur_radius;
     const double focus = (double)shot->engine.params.render.focus_disparity;
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
@@ -53,7 +53,7 @@ static bool find_limits(const struct shot *shot, const uint16_t *blur, const uin
 
 static int make_view(const struct shot *shot, struct refocus_image *out, int view)
 {
-    const struct refocus_image *photo = &shot->input.photo->image;
+    const struct refocus_image *photo = shot->input.photo->image;
     const int width = photo->width, height = photo->height;
     const size_t pixels = (size_t)width * (size_t)height;
     const struct refocus_depth_range known = {shot->input.report.near_m, shot->input.report.far_m};

@@ -19,7 +19,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 /* Bounds that keep a run short; readers must keep them anyway. */
-static const struct refocus_read_limits fuzz_limits = {1u << 20, 1u << 23};
+static const struct refocus_read_limits fuzz_limits = {
+    .struct_size = sizeof fuzz_limits, .max_pixels = 1u << 20, .max_bytes = 1u << 23};
 
 /* A reading as rf_read_begin() sets it up. */
 struct fuzz_reading {
@@ -51,27 +52,27 @@ static inline void fuzz_check_photo(const struct refocus_photo *photo)
 {
     volatile unsigned sum = 0;
 
-    if (photo->image.plane[0]) {
-        for (int32_t y = 0; y < photo->image.height; y++) {
-            for (int32_t x = 0; x < photo->image.width * 3; x++) {
-                sum += photo->image.plane[0][y * photo->image.stride[0] + x];
+    if (photo->image->plane[0]) {
+        for (int32_t y = 0; y < photo->image->height; y++) {
+            for (int32_t x = 0; x < photo->image->width * 3; x++) {
+                sum += photo->image->plane[0][y * photo->image->stride[0] + x];
             }
         }
     }
-    if (photo->depth.samples) {
-        const uint8_t *const samples = photo->depth.samples;
-        const int32_t bytes = (int32_t)rf_sample_bytes(photo->depth.sample);
-        for (int32_t y = 0; y < photo->depth.height; y++) {
-            for (int32_t x = 0; x < photo->depth.width * bytes; x++) {
-                sum += samples[y * photo->depth.stride + x];
+    if (photo->depth->samples) {
+        const uint8_t *const samples = photo->depth->samples;
+        const int32_t bytes = (int32_t)rf_sample_bytes(photo->depth->sample);
+        for (int32_t y = 0; y < photo->depth->height; y++) {
+            for (int32_t x = 0; x < photo->depth->width * bytes; x++) {
+                sum += samples[y * photo->depth->stride + x];
             }
         }
-        if (photo->depth.meaning != REFOCUS_DEPTH_DISPARITY &&
-            photo->depth.meaning != REFOCUS_DEPTH_DISTANCE) {
+        if (photo->depth->meaning != REFOCUS_DEPTH_DISPARITY &&
+            photo->depth->meaning != REFOCUS_DEPTH_DISTANCE) {
             abort();
         }
-        if (photo->info.depth_source == REFOCUS_DEPTH_SOURCE_NONE ||
-            !(photo->depth.near_m >= 0.0) || !(photo->depth.far_m >= 0.0)) {
+        if (photo->info->depth_source == REFOCUS_DEPTH_SOURCE_NONE ||
+            !(photo->depth->near_m >= 0.0) || !(photo->depth->far_m >= 0.0)) {
             abort();
         }
     }
@@ -82,8 +83,8 @@ static inline void fuzz_check_photo(const struct refocus_photo *photo)
         sum += photo->icc.data[i];
     }
     (void)sum;
-    if (photo->info.evidence_count > REFOCUS_INFO_LINES || photo->info.orientation < 1 ||
-        photo->info.orientation > 8) {
+    if (photo->info->evidence_count > REFOCUS_INFO_LINES || photo->info->orientation < 1 ||
+        photo->info->orientation > 8) {
         abort();
     }
 }

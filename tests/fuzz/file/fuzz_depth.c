@@ -19,7 +19,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         abort();
     }
     if (depth) {
-        if (!depth->depth.samples) {
+        if (!depth->depth->samples) {
             abort();
         }
         fuzz_check_photo(depth);

@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         abort();
     }
     if (photo) {
-        if (!photo->image.plane[0]) {
+        if (!photo->image->plane[0]) {
             abort();
         }
         fuzz_check_photo(photo);

@@ -112,8 +112,8 @@ static inline void upright_place(int orientation, int w, int h, int column, int 
 /* True when a line of evidence holds the text. */
 static inline int has_evidence(const struct refocus_photo *photo, const char *text)
 {
-    for (int i = 0; i < photo->info.evidence_count; i++) {
-        if (strstr(photo->info.evidence[i], text)) {
+    for (int i = 0; i < photo->info->evidence_count; i++) {
+        if (strstr(photo->info->evidence[i], text)) {
             return 1;
         }
     }

@@ -24,10 +24,10 @@ static inline struct refocus_photo *photo_of(const char *name)
     const int status = refocus_photo_read(&photo, in_photos(name), NULL, &reason);
 
     check_status(status, REFOCUS_OK, reason.text, name, 0);
-    for (int i = 0; i < photo->info.evidence_count; i++) {
+    for (int i = 0; i < photo->info->evidence_count; i++) {
         /* A position is nobody's business but the owner's. */
-        assert_null(strstr(photo->info.evidence[i], "GPS"));
-        assert_null(strstr(photo->info.evidence[i], "itude"));
+        assert_null(strstr(photo->info->evidence[i], "GPS"));
+        assert_null(strstr(photo->info->evidence[i], "itude"));
     }
     return photo;
 }
@@ -39,17 +39,17 @@ static inline struct refocus_photo *depth_of(const char *name, const char *unit)
     const int status = refocus_depth_read(&photo, in_photos(name), unit, 0, 0, NULL, &reason);
 
     check_status(status, REFOCUS_OK, reason.text, name, 0);
-    assert_null(photo->image.plane[0]);
+    assert_null(photo->image->plane[0]);
     return photo;
 }
 
 static inline void assert_sizes(const struct refocus_photo *photo, int width, int height,
                                 int depth_width, int depth_height)
 {
-    assert_int_equal(photo->image.width, width);
-    assert_int_equal(photo->image.height, height);
-    assert_int_equal(photo->depth.width, depth_width);
-    assert_int_equal(photo->depth.height, depth_height);
+    assert_int_equal(photo->image->width, width);
+    assert_int_equal(photo->image->height, height);
+    assert_int_equal(photo->depth->width, depth_width);
+    assert_int_equal(photo->depth->height, depth_height);
 }
 
 static inline void assert_samples(const struct refocus_depth_map *map, unsigned least,

@@ -22,14 +22,14 @@ static void apple_disparity(void **state)
 
         jpeg_insert_exif(&main_jpeg, make_exif(true, 6));
         photo = read_photo(make_mpf(main_jpeg, parts, 3, big_endian), REFOCUS_OK);
-        assert_int_equal(photo->info.depth_source, REFOCUS_DEPTH_SOURCE_APPLE_MPF);
-        assert_int_equal(photo->depth.width, 16);
-        assert_int_equal(photo->depth.height, 32);
-        assert_in_range(sample_at(&photo->depth, 15, 0), 28, 36);
-        assert_in_range(sample_at(&photo->depth, 0, 31), 220, 228);
-        assert_true(photo->depth.value_near == 255 && photo->depth.value_far == 0);
-        assert_near(photo->depth.near_m, 0.25);
-        assert_near(photo->depth.far_m, 4.0);
+        assert_int_equal(photo->info->depth_source, REFOCUS_DEPTH_SOURCE_APPLE_MPF);
+        assert_int_equal(photo->depth->width, 16);
+        assert_int_equal(photo->depth->height, 32);
+        assert_in_range(sample_at(photo->depth, 15, 0), 28, 36);
+        assert_in_range(sample_at(photo->depth, 0, 31), 220, 228);
+        assert_true(photo->depth->value_near == 255 && photo->depth->value_far == 0);
+        assert_near(photo->depth->near_m, 0.25);
+        assert_near(photo->depth->far_m, 4.0);
         assert_true(has_evidence(photo, "hdrgainmap"));
         assert_true(has_evidence(photo, "portraiteffectsmatte"));
         refocus_photo_free(&photo);
@@ -43,8 +43,8 @@ static void apple_gain_map_is_no_depth(void **state)
     struct refocus_photo *photo = read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
 
     (void)state;
-    assert_null(photo->depth.samples);
-    assert_int_equal(photo->info.depth_source, REFOCUS_DEPTH_SOURCE_NONE);
+    assert_null(photo->depth->samples);
+    assert_int_equal(photo->info->depth_source, REFOCUS_DEPTH_SOURCE_NONE);
     assert_true(has_evidence(photo, "it is no depth"));
     refocus_photo_free(&photo);
     read_depth(file, NULL, REFOCUS_ERR_NO_DEPTH);
@@ -67,11 +67,11 @@ static void mpo_second_view(void **state)
         assert_int_equal(ftruncate(file, 0), 0);
         assert_int_equal(pwrite(file, mpo.data, mpo.size, 0), (ssize_t)mpo.size);
         assert_int_equal(refocus_photo_read_second(&photo, path, NULL, &reason), REFOCUS_OK);
-        assert_int_equal(photo->image.width, 48);
-        assert_int_equal(photo->image.height, 24);
+        assert_int_equal(photo->image->width, 48);
+        assert_int_equal(photo->image->height, 24);
         refocus_photo_free(&photo);
         assert_int_equal(refocus_photo_read(&photo, path, NULL, &reason), REFOCUS_OK);
-        assert_int_equal(photo->image.width, 64);
+        assert_int_equal(photo->image->width, 64);
         refocus_photo_free(&photo);
         for (size_t size = 0; size < mpo.size; size += 97) { /* cut off anywhere */
             assert_int_equal(ftruncate(file, (off_t)(mpo.size - size - 1)), 0);
@@ -102,24 +102,24 @@ static void apple_ranges(void **state)
     (void)state;
     photo =
         apple_with("disparity", "apdi:FloatMinValue=\"-1\" apdi:FloatMaxValue=\"4\"", REFOCUS_OK);
-    assert_near(photo->depth.value_far, 51); /* code where disparity is 0 */
-    assert_true(isinf(photo->depth.far_m) && photo->depth.near_m == 0.25);
+    assert_near(photo->depth->value_far, 51); /* code where disparity is 0 */
+    assert_true(isinf(photo->depth->far_m) && photo->depth->near_m == 0.25);
     refocus_photo_free(&photo);
     photo = apple_with("disparity", NULL, REFOCUS_OK);
-    assert_true(photo->depth.near_m == 0 && photo->depth.value_near == 255);
+    assert_true(photo->depth->near_m == 0 && photo->depth->value_near == 255);
     refocus_photo_free(&photo);
     photo = apple_with("depth", APPLE_RANGE, REFOCUS_OK);
-    assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISTANCE);
-    assert_near(photo->depth.metres_at_zero, 0.25);
-    assert_near(photo->depth.metres_per_unit, 3.75 / 255);
+    assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISTANCE);
+    assert_near(photo->depth->metres_at_zero, 0.25);
+    assert_near(photo->depth->metres_per_unit, 3.75 / 255);
     refocus_photo_free(&photo);
     apple_with("depth", NULL, REFOCUS_ERR_FORMAT);
 #define APPLE_BLUR "xmlns:blur=\"http://ns.apple.com/depthBlurEffect/1.0/\" "
     photo = apple_with("disparity", APPLE_BLUR "blur:SimulatedAperture=\"4.5\"", REFOCUS_OK);
-    assert_true(photo->info.simulated_f_number == 4.5);
+    assert_true(photo->info->simulated_f_number == 4.5);
     refocus_photo_free(&photo);
     photo = apple_with("disparity", APPLE_BLUR "blur:SimulatedAperture=\"-wide\"", REFOCUS_OK);
-    assert_true(photo->info.simulated_f_number == 0);
+    assert_true(photo->info->simulated_f_number == 0);
     refocus_photo_free(&photo);
     apple_with("disparity", "apdi:FloatMinValue=\"4\" apdi:FloatMaxValue=\"4\"",
                REFOCUS_ERR_FORMAT);
@@ -137,7 +137,7 @@ static void mpf_index_of_another_file(void **state)
     (void)state;
     /* An editor dropped the image and left the index. */
     photo = read_photo(bytes_copy(file.data, main_size), REFOCUS_OK);
-    assert_null(photo->depth.samples);
+    assert_null(photo->depth->samples);
     assert_true(has_evidence(photo, "not where the index says"));
     refocus_photo_free(&photo);
     /* The file was cut. */

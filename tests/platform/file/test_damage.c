@@ -87,7 +87,8 @@ static void limits_of_parts(void **state)
 {
     struct sample samples[SAMPLES_MAX];
     const int count = make_samples(samples);
-    const struct refocus_read_limits limits = {.max_pixels = 1};
+    const struct refocus_read_limits limits = {.struct_size = sizeof(struct refocus_read_limits),
+                                               .max_pixels = 1};
 
     (void)state;
     for (int i = 0; i < count; i++) {

@@ -33,20 +33,20 @@ static void orientation_of_photo_and_depth(void **state)
             read_photo(make_gdepth(small_gdepth(), orientation), REFOCUS_OK);
         int x, y;
 
-        assert_int_equal(photo->image.width, orientation < 5 ? 48 : 32);
-        assert_int_equal(photo->depth.width, orientation < 5 ? 6 : 4);
+        assert_int_equal(photo->image->width, orientation < 5 ? 48 : 32);
+        assert_int_equal(photo->depth->width, orientation < 5 ? 6 : 4);
         for (int i = 0; i < 24; i++) {
             upright_place(orientation, 6, 4, i % 6, i / 6, &x, &y);
-            assert_int_equal(sample_at(&photo->depth, x, y), pattern(i % 6, i / 6, 0, 255));
+            assert_int_equal(sample_at(photo->depth, x, y), pattern(i % 6, i / 6, 0, 255));
         }
         for (int i = 0; i < 4; i++) {
             upright_place(orientation, 48, 32, i % 2 ? 40 : 8, i / 2 ? 24 : 8, &x, &y);
-            check_quarter(&photo->image, x, y, colours[i]);
+            check_quarter(photo->image, x, y, colours[i]);
         }
         /* The focus point is in the middle of stored pixel (12, 4), near enough. */
         upright_place(orientation, 48, 32, 12, 4, &x, &y);
-        assert_true(fabs(photo->info.focus_x * photo->image.width - x) <= 1);
-        assert_true(fabs(photo->info.focus_y * photo->image.height - y) <= 1);
+        assert_true(fabs(photo->info->focus_x * photo->image->width - x) <= 1);
+        assert_true(fabs(photo->info->focus_y * photo->image->height - y) <= 1);
         refocus_photo_free(&photo);
     }
 }
@@ -56,19 +56,19 @@ static void gdepth_range_inverse(void **state)
     struct refocus_photo *photo = read_photo(make_gdepth(small_gdepth(), 0), REFOCUS_OK);
 
     (void)state;
-    assert_int_equal(photo->info.depth_source, REFOCUS_DEPTH_SOURCE_GDEPTH);
-    assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISPARITY);
-    assert_true(photo->depth.value_near == 0 && photo->depth.value_far == 255);
-    assert_true(photo->depth.near_m == 0.5 && photo->depth.far_m == 8);
-    assert_true(photo->info.focus_distance == 1.5);
-    assert_true(photo->info.blur_at_infinity == 0.01);
-    assert_int_equal(photo->info.original_used, 0);
+    assert_int_equal(photo->info->depth_source, REFOCUS_DEPTH_SOURCE_GDEPTH);
+    assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISPARITY);
+    assert_true(photo->depth->value_near == 0 && photo->depth->value_far == 255);
+    assert_true(photo->depth->near_m == 0.5 && photo->depth->far_m == 8);
+    assert_true(photo->info->focus_distance == 1.5);
+    assert_true(photo->info->blur_at_infinity == 0.01);
+    assert_int_equal(photo->info->original_used, 0);
     assert_true(has_evidence(photo, "RangeInverse"));
     refocus_photo_free(&photo);
     photo = read_depth(make_gdepth(small_gdepth(), 6), NULL, REFOCUS_OK);
-    assert_null(photo->image.plane[0]);
-    assert_int_equal(photo->depth.width, 4);
-    assert_int_equal(photo->info.depth_source, REFOCUS_DEPTH_SOURCE_GDEPTH);
+    assert_null(photo->image->plane[0]);
+    assert_int_equal(photo->depth->width, 4);
+    assert_int_equal(photo->info->depth_source, REFOCUS_DEPTH_SOURCE_GDEPTH);
     refocus_photo_free(&photo);
 }
 
@@ -79,12 +79,12 @@ static void unit_overrules_the_file(void **state)
 
     (void)state;
     /* Turned round, the range is the same. */
-    assert_true(photo->depth.value_near == 255 && photo->depth.value_far == 0);
-    assert_true(photo->depth.near_m == 0.5 && photo->depth.far_m == 8);
+    assert_true(photo->depth->value_near == 255 && photo->depth->value_far == 0);
+    assert_true(photo->depth->near_m == 0.5 && photo->depth->far_m == 8);
     refocus_photo_free(&photo);
     photo = read_depth(make_gdepth(small_gdepth(), 0), "mm", REFOCUS_OK);
-    assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISTANCE);
-    assert_true(photo->depth.near_m == 0 && photo->depth.far_m == 0);
+    assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISTANCE);
+    assert_true(photo->depth->near_m == 0 && photo->depth->far_m == 0);
     refocus_photo_free(&photo);
 }
 
@@ -98,12 +98,12 @@ static void gdepth_range_linear(void **state)
     struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
 
     (void)state;
-    assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISTANCE);
-    assert_near(photo->depth.metres_at_zero, 0.5);
-    assert_near(photo->depth.metres_per_unit, 3.0 / 65535);
-    assert_near(photo->depth.near_m, 0.5);
-    assert_near(photo->depth.far_m, 3.5);
-    assert_int_equal(photo->depth.flags, 0);
+    assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISTANCE);
+    assert_near(photo->depth->metres_at_zero, 0.5);
+    assert_near(photo->depth->metres_per_unit, 3.0 / 65535);
+    assert_near(photo->depth->near_m, 0.5);
+    assert_near(photo->depth->far_m, 3.5);
+    assert_int_equal(photo->depth->flags, 0);
     refocus_photo_free(&photo);
     read_photo(make_gdepth(without, 0), REFOCUS_ERR_FORMAT);
 }
@@ -114,9 +114,9 @@ static void gdepth_payload_jpeg_without_range(void **state)
     struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
 
     (void)state;
-    assert_in_range(sample_at(&photo->depth, 4, 4), 28, 36);
-    assert_in_range(sample_at(&photo->depth, 30, 14), 220, 228);
-    assert_true(photo->depth.near_m == 0 && photo->depth.far_m == 0);
+    assert_in_range(sample_at(photo->depth, 4, 4), 28, 36);
+    assert_in_range(sample_at(photo->depth, 30, 14), 220, 228);
+    assert_true(photo->depth->near_m == 0 && photo->depth->far_m == 0);
     refocus_photo_free(&photo);
 }
 
@@ -134,9 +134,9 @@ static void gdepth_payload_in_colour_form(void **state)
             .depth = make_png_raw(2, 2, alpha ? 6 : 2, 8, alpha ? rgba : rgb, NULL)};
         struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
 
-        assert_int_equal(photo->depth.sample, REFOCUS_SAMPLE_U8);
-        assert_int_equal(sample_at(&photo->depth, 1, 0), 80);
-        assert_int_equal(sample_at(&photo->depth, 1, 1), 200);
+        assert_int_equal(photo->depth->sample, REFOCUS_SAMPLE_U8);
+        assert_int_equal(sample_at(photo->depth, 1, 0), 80);
+        assert_int_equal(sample_at(photo->depth, 1, 1), 200);
         refocus_photo_free(&photo);
     }
 }
@@ -150,8 +150,8 @@ static void gdepth_units_absent_are_told(void **state)
 
     (void)state;
     assert_true(has_evidence(photo, "without a unit: no metres"));
-    assert_true(photo->depth.near_m == 0 && photo->depth.far_m == 0);
-    assert_true(photo->depth.value_near == 0 && photo->depth.value_far == 255);
+    assert_true(photo->depth->near_m == 0 && photo->depth->far_m == 0);
+    assert_true(photo->depth->value_near == 0 && photo->depth->value_far == 255);
     refocus_photo_free(&photo);
 }
 
@@ -171,15 +171,15 @@ static void gdepth_linear_without_metres(void **state)
             .format = "RangeLinear", .extra = extra[i / 2], .depth = make_png(6, 4, 0, bits)};
         struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
 
-        assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISPARITY);
-        assert_int_equal(photo->depth.sample, REFOCUS_SAMPLE_U16);
-        assert_true(photo->depth.value_near == 65535 && photo->depth.value_far == 0);
-        assert_true(photo->depth.near_m == 0 && photo->depth.far_m == 0);
+        assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISPARITY);
+        assert_int_equal(photo->depth->sample, REFOCUS_SAMPLE_U16);
+        assert_true(photo->depth->value_near == 65535 && photo->depth->value_far == 0);
+        assert_true(photo->depth->near_m == 0 && photo->depth->far_m == 0);
         for (int at = 0; at < 24; at++) {
             const double z = near + pattern(at % 6, at / 6, 0, max) * step;
             const double d = (1 / fmax(z, least) - 1.0 / 9) / (1 / least - 1.0 / 9);
 
-            assert_true(fabs(sample_at(&photo->depth, at % 6, at / 6) - 65535 * d) < 0.51);
+            assert_true(fabs(sample_at(photo->depth, at % 6, at / 6) - 65535 * d) < 0.51);
         }
         refocus_photo_free(&photo);
     }
@@ -190,7 +190,7 @@ static double own_blur(const char *extra)
     const struct gdepth gdepth = {
         .format = "RangeInverse", .extra = extra, .depth = make_png(6, 4, 0, 8)};
     struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
-    const double blur = photo->info.own_blur;
+    const double blur = photo->info->own_blur;
 
     refocus_photo_free(&photo);
     return blur;
@@ -256,17 +256,17 @@ static void original_replaces_a_blurred_picture(void **state)
     (void)state;
     gdepth.original = make_png(9, 7, 2, 8);
     photo = read_photo(make_gdepth(gdepth, 6), REFOCUS_OK);
-    assert_int_equal(photo->info.original_used, 1);
-    assert_int_equal(photo->image.width, 7);
-    assert_int_equal(photo->image.height, 9);
+    assert_int_equal(photo->info->original_used, 1);
+    assert_int_equal(photo->image->width, 7);
+    assert_int_equal(photo->image->height, 9);
     refocus_photo_free(&photo);
     gdepth = (struct gdepth){.format = "RangeInverse",
                              .extra = "GFocus:BlurAtInfinity=\"0\"",
                              .depth = make_png(2, 2, 0, 8),
                              .original = make_png(9, 7, 2, 8)};
     photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
-    assert_int_equal(photo->info.original_used, 0);
-    assert_int_equal(photo->image.width, 48);
+    assert_int_equal(photo->info->original_used, 0);
+    assert_int_equal(photo->image->width, 48);
     refocus_photo_free(&photo);
 }
 
@@ -279,7 +279,7 @@ static void extended_in_any_order(void **state)
         /* 23 has no common divisor with any number of chunks here. */
         struct refocus_photo *photo = read_photo(
             make_gdepth_extended(small_gdepth(), chunks[i], i % 2 ? 23 : 1, -1), REFOCUS_OK);
-        assert_int_equal(sample_at(&photo->depth, 3, 2), pattern(3, 2, 0, 255));
+        assert_int_equal(sample_at(photo->depth, 3, 2), pattern(3, 2, 0, 255));
         refocus_photo_free(&photo);
     }
 }

@@ -16,14 +16,14 @@ static void orientation_of_png(void **state)
             }
             photo = read_photo(make_png_raw(5, 3, 2, 8, samples, &exif), REFOCUS_OK);
             bytes_free(&exif);
-            assert_int_equal(photo->info.orientation, orientation);
-            assert_int_equal(photo->info.stored_width, 5);
-            assert_int_equal(photo->info.stored_height, 3);
-            assert_int_equal(photo->image.width, orientation < 5 ? 5 : 3);
+            assert_int_equal(photo->info->orientation, orientation);
+            assert_int_equal(photo->info->stored_width, 5);
+            assert_int_equal(photo->info->stored_height, 3);
+            assert_int_equal(photo->image->width, orientation < 5 ? 5 : 3);
             for (int i = 0; i < 15; i++) {
                 int x, y;
                 upright_place(orientation, 5, 3, i % 5, i / 5, &x, &y);
-                assert_memory_equal(pixel_at(&photo->image, x, y), samples + 3 * i, 3);
+                assert_memory_equal(pixel_at(photo->image, x, y), samples + 3 * i, 3);
             }
             refocus_photo_free(&photo);
         }
@@ -86,10 +86,10 @@ static void exif_facts(void **state)
 
         jpeg_insert_exif(&jpeg, make_exif(big_endian, 8));
         photo = read_photo(jpeg, REFOCUS_OK);
-        assert_string_equal(photo->info.camera, "Maker Model X");
-        assert_true(photo->info.focal_length_mm == 50.5);
-        assert_true(photo->info.focal_length_35mm == 75);
-        assert_true(photo->info.f_number == 1.8);
+        assert_string_equal(photo->info->camera, "Maker Model X");
+        assert_true(photo->info->focal_length_mm == 50.5);
+        assert_true(photo->info->focal_length_35mm == 75);
+        assert_true(photo->info->f_number == 1.8);
         assert_int_equal(photo->exif.size, expected.size);
         /* Orientation 1; width and height, 640 and 480, have changed places. */
         assert_memory_equal(photo->exif.data, expected.data, 58);
@@ -110,7 +110,7 @@ static void exif_without_sense(void **state)
     (void)state;
     jpeg_insert_exif(&jpeg, make_exif(true, 9));
     photo = read_photo(jpeg, REFOCUS_OK);
-    assert_int_equal(photo->info.orientation, 1);
+    assert_int_equal(photo->info->orientation, 1);
     refocus_photo_free(&photo);
     jpeg = make_jpeg(32, 16, false, false);
     jpeg_insert_exif(&jpeg, bytes_copy("MM\0*\377\377\377\377", 8));
@@ -130,7 +130,7 @@ static void bytes_too_many(void **state)
     jpeg.size -= 2;
     bytes_add(&jpeg, "UUUUUUUUUUUU\xff\xd9", 14);
     photo = read_photo(jpeg, REFOCUS_OK);
-    assert_in_range(pixel_at(&photo->image, 5, 5)[0], 245, 255);
+    assert_in_range(pixel_at(photo->image, 5, 5)[0], 245, 255);
     refocus_photo_free(&photo);
     jpeg = make_jpeg(64, 64, false, false);
     jpeg.size -= 2;
@@ -149,8 +149,8 @@ static void grey_jpeg_is_depth(void **state)
     struct refocus_photo *photo = read_depth(make_jpeg(32, 16, true, false), "inverse", REFOCUS_OK);
 
     (void)state;
-    assert_true(photo->depth.value_near == 0 && photo->depth.value_far == 255);
-    assert_in_range(sample_at(&photo->depth, 2, 2), 28, 36);
+    assert_true(photo->depth->value_near == 0 && photo->depth->value_far == 255);
+    assert_in_range(sample_at(photo->depth, 2, 2), 28, 36);
     refocus_photo_free(&photo);
     read_depth(make_jpeg(32, 16, false, false), NULL, REFOCUS_ERR_NO_DEPTH);
 }

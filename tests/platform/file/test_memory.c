@@ -90,8 +90,8 @@ static void peak_of(const struct sample *sample)
         refocus_photo_read_memory(&photo, sample->bytes.data, sample->bytes.size, NULL, NULL),
         REFOCUS_OK);
     bound = (128u << 10) + (strstr(sample->name, ".jpg") ? 8 * sample->bytes.size : 0) +
-            9 * (size_t)photo->image.width * (size_t)photo->image.height +
-            9 * (size_t)photo->depth.width * (size_t)photo->depth.height;
+            9 * (size_t)photo->image->width * (size_t)photo->image->height +
+            9 * (size_t)photo->depth->width * (size_t)photo->depth->height;
     if (failing.peak > bound || failing.peak == 0) {
         fail_msg("%s: %zu bytes at the most, %zu are stated", sample->name, failing.peak, bound);
     }
@@ -142,7 +142,8 @@ static int write_one(const char *path, long fail)
     uint16_t samples[12] = {0};
     struct bytes exif = make_exif(true, 1);
     const struct refocus_blob blob = {exif.data, exif.size};
-    const struct refocus_write_options options = {.exif = &blob};
+    const struct refocus_write_options options = {
+        .struct_size = sizeof(struct refocus_write_options), .exif = &blob};
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, 4, 3, 12);
     struct refocus_reason reason;
     int status;

@@ -139,7 +139,7 @@ static void mpf_bounds(void **state)
 /* Depth that reaches beyond infinity: d = 0 is at infinity. */
 static void disparity_ranges(void **state)
 {
-    struct refocus_depth_map map = {0};
+    struct refocus_depth_map map = refocus_depth_map_default();
 
     (void)state;
     rf_depth_from_disparity(&map, 0, 255, 0.5, 2);

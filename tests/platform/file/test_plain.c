@@ -17,15 +17,15 @@ static void ppm_raw_and_plain(void **state)
     (void)state;
     bytes_add(&raw, "\1\2\3\4\5\6\7\10\11\12\13\14trailing bytes do not matter", 40);
     photo = read_photo(raw, REFOCUS_OK);
-    assert_int_equal(photo->image.width, 2);
-    assert_int_equal(photo->image.height, 2);
-    assert_string_equal(photo->info.container, "PPM");
-    assert_memory_equal(pixel_at(&photo->image, 1, 1), "\12\13\14", 3);
-    assert_null(photo->depth.samples);
+    assert_int_equal(photo->image->width, 2);
+    assert_int_equal(photo->image->height, 2);
+    assert_string_equal(photo->info->container, "PPM");
+    assert_memory_equal(pixel_at(photo->image, 1, 1), "\12\13\14", 3);
+    assert_null(photo->depth->samples);
     refocus_photo_free(&photo);
     assert_null(photo);
     photo = read_photo(text_file("P3\n1 1 100\n0 50 100\n"), REFOCUS_OK);
-    assert_memory_equal(pixel_at(&photo->image, 0, 0), "\0\200\377", 3);
+    assert_memory_equal(pixel_at(photo->image, 0, 0), "\0\200\377", 3);
     refocus_photo_free(&photo);
 }
 
@@ -37,15 +37,15 @@ static void pgm_16_bits_as_photo_and_depth(void **state)
     (void)state;
     bytes_add(&file, "\0\0\200\0\377\377", 6);
     photo = read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
-    assert_memory_equal(photo->image.plane[0], "\0\0\0\200\200\200\377\377\377", 9);
+    assert_memory_equal(photo->image->plane[0], "\0\0\0\200\200\200\377\377\377", 9);
     refocus_photo_free(&photo);
     photo = read_depth(file, NULL, REFOCUS_OK);
-    assert_int_equal(photo->depth.sample, REFOCUS_SAMPLE_U16);
-    assert_int_equal(sample_at(&photo->depth, 1, 0), 0x8000);
-    assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISPARITY);
-    assert_true(photo->depth.value_near == 65535 && photo->depth.value_far == 0);
-    assert_int_equal(photo->info.depth_source, REFOCUS_DEPTH_SOURCE_FILE);
-    assert_null(photo->image.plane[0]);
+    assert_int_equal(photo->depth->sample, REFOCUS_SAMPLE_U16);
+    assert_int_equal(sample_at(photo->depth, 1, 0), 0x8000);
+    assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISPARITY);
+    assert_true(photo->depth->value_near == 65535 && photo->depth->value_far == 0);
+    assert_int_equal(photo->info->depth_source, REFOCUS_DEPTH_SOURCE_FILE);
+    assert_null(photo->image->plane[0]);
     refocus_photo_free(&photo);
 }
 
@@ -54,12 +54,12 @@ static void pgm_white_is_its_greatest_value(void **state)
     struct refocus_photo *photo = read_depth(text_file("P2 2 1 1000\n0 1000\n"), NULL, REFOCUS_OK);
 
     (void)state;
-    assert_true(photo->depth.value_near == 1000);
+    assert_true(photo->depth->value_near == 1000);
     refocus_photo_free(&photo);
     photo = read_depth(text_file("P2 2 1 1000\n0 1000\n"), "mm", REFOCUS_OK);
-    assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISTANCE);
-    assert_true(photo->depth.flags == REFOCUS_DEPTH_ZERO_IS_UNKNOWN);
-    assert_near(photo->depth.metres_per_unit, 0.001);
+    assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISTANCE);
+    assert_true(photo->depth->flags == REFOCUS_DEPTH_ZERO_IS_UNKNOWN);
+    assert_near(photo->depth->metres_per_unit, 0.001);
     refocus_photo_free(&photo);
 }
 
@@ -111,14 +111,14 @@ static void pfm_both_byte_orders(void **state)
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         struct refocus_photo *photo = read_depth(make_pfm(big_endian, "Pf"), NULL, REFOCUS_OK);
 
-        assert_int_equal(photo->depth.width, 3);
-        assert_int_equal(photo->depth.height, 2);
+        assert_int_equal(photo->depth->width, 3);
+        assert_int_equal(photo->depth->height, 2);
         /* The file begins with the bottom row. */
-        assert_true(float_at(&photo->depth, 0, 1) == -1.5);
-        assert_true(float_at(&photo->depth, 2, 1) == 2.25);
-        assert_true(float_at(&photo->depth, 1, 0) == 100.0);
-        assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISPARITY);
-        assert_true(photo->depth.value_near == photo->depth.value_far);
+        assert_true(float_at(photo->depth, 0, 1) == -1.5);
+        assert_true(float_at(photo->depth, 2, 1) == 2.25);
+        assert_true(float_at(photo->depth, 1, 0) == 100.0);
+        assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISPARITY);
+        assert_true(photo->depth->value_near == photo->depth->value_far);
         refocus_photo_free(&photo);
     }
 }
@@ -128,11 +128,11 @@ static void pfm_units(void **state)
     struct refocus_photo *photo = read_depth(make_pfm(false, "Pf"), "inverse", REFOCUS_OK);
 
     (void)state;
-    assert_true(photo->depth.value_near == -1.5 && photo->depth.value_far == 100.0);
+    assert_true(photo->depth->value_near == -1.5 && photo->depth->value_far == 100.0);
     refocus_photo_free(&photo);
     photo = read_depth(make_pfm(false, "Pf"), "m", REFOCUS_OK);
-    assert_int_equal(photo->depth.meaning, REFOCUS_DEPTH_DISTANCE);
-    assert_true(photo->depth.metres_per_unit == 1.0 && photo->depth.metres_at_zero == 0.0);
+    assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISTANCE);
+    assert_true(photo->depth->metres_per_unit == 1.0 && photo->depth->metres_at_zero == 0.0);
     refocus_photo_free(&photo);
 }
 
@@ -155,7 +155,8 @@ static void unit_words(void **state)
 {
     static const char *const bad[] = {"",     "M",       "cm",      "m/m",  "/m",    "0/m",
                                       "-1/m", "1e999/m", "5000/mm", "5000", "nan/m", "inf/m"};
-    struct refocus_depth_map map = {.sample = REFOCUS_SAMPLE_U8};
+    struct refocus_depth_map map = {.struct_size = sizeof(struct refocus_depth_map),
+                                    .sample = REFOCUS_SAMPLE_U8};
 
     (void)state;
     assert_int_equal(refocus_depth_set_unit(&map, "disparity"), REFOCUS_OK);
@@ -190,7 +191,7 @@ static void range_overrules(void **state)
     assert_int_equal(refocus_depth_read_memory(&photo, file.data, file.size, "disparity", 0.5,
                                                INFINITY, NULL, NULL),
                      REFOCUS_OK);
-    assert_true(photo->depth.near_m == 0.5 && isinf(photo->depth.far_m));
+    assert_true(photo->depth->near_m == 0.5 && isinf(photo->depth->far_m));
     refocus_photo_free(&photo);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         assert_int_equal(refocus_depth_read_memory(&photo, file.data, file.size, NULL, bad[i][0],
@@ -225,8 +226,10 @@ static void unknown_content(void **state)
 
 static void limits_are_kept(void **state)
 {
-    const struct refocus_read_limits few_pixels = {.max_pixels = 11};
-    const struct refocus_read_limits few_bytes = {.max_bytes = 20};
+    const struct refocus_read_limits few_pixels = {
+        .struct_size = sizeof(struct refocus_read_limits), .max_pixels = 11};
+    const struct refocus_read_limits few_bytes = {.struct_size = sizeof(struct refocus_read_limits),
+                                                  .max_bytes = 20};
     struct bytes file = text_file("P5\n4 3\n255\n............");
     struct refocus_reason reason;
     struct refocus_photo *photo;
@@ -251,15 +254,15 @@ static void png_kinds(void **state)
         const int type = kinds[i][0], bits = kinds[i][1];
         struct refocus_photo *photo = read_photo(make_png(7, 5, type, bits), REFOCUS_OK);
 
-        assert_string_equal(photo->info.container, "PNG");
-        assert_int_equal(photo->info.stored_bits, bits);
-        assert_int_equal(photo->image.width, 7);
+        assert_string_equal(photo->info->container, "PNG");
+        assert_int_equal(photo->info->stored_bits, bits);
+        assert_int_equal(photo->image->width, 7);
         for (int y = 0; y < 5; y++) {
             for (int x = 0; x < 7; x++) {
                 for (int c = 0; c < 3; c++) {
                     const unsigned max = bits == 16 ? 65535 : 255;
                     const unsigned v = pattern(x, y, type & 2 && type != 3 ? c : 0, max);
-                    const int code = pixel_at(&photo->image, x, y)[c];
+                    const int code = pixel_at(photo->image, x, y)[c];
 
                     if (bits == 16) { /* dithered: one of the two beside it */
                         assert_true(fabs(code - v * 255.0 / max) < 1);
@@ -300,7 +303,7 @@ static void more_than_8_bits_are_dithered(void **state)
     }
     photo = read_photo(make_png_raw(DITHER_WIDE, DITHER_HIGH, 2, 16, samples, NULL), REFOCUS_OK);
     again = read_photo(make_png_raw(DITHER_WIDE, DITHER_HIGH, 2, 16, samples, NULL), REFOCUS_OK);
-    assert_memory_equal(photo->image.plane[0], again->image.plane[0], sizeof samples / 2);
+    assert_memory_equal(photo->image->plane[0], again->image->plane[0], sizeof samples / 2);
     refocus_photo_free(&again);
     for (int top = 0; top <= DITHER_HIGH - 8; top += 3) {
         for (int left = 0; left <= DITHER_WIDE - 8; left++) {
@@ -311,10 +314,10 @@ static void more_than_8_bits_are_dithered(void **state)
                     const int x = left + i % 8, y = top + i / 8;
                     const double v = shallow(x, y, c) / 257.0;
 
-                    code += pixel_at(&photo->image, x, y)[c] / 64.0;
+                    code += pixel_at(photo->image, x, y)[c] / 64.0;
                     wanted += v / 64.0;
                     nearest += floor(v + 0.5) / 64.0;
-                    assert_true(fabs(pixel_at(&photo->image, x, y)[c] - v) < 1);
+                    assert_true(fabs(pixel_at(photo->image, x, y)[c] - v) < 1);
                 }
                 assert_true(fabs(code - wanted) < 0.06);
                 rounded += fabs(nearest - wanted) > 0.4;
@@ -323,7 +326,7 @@ static void more_than_8_bits_are_dithered(void **state)
     }
     assert_true(rounded > 100); /* a place where codes rounded to nearest are far off */
     for (int x = 96; x < DITHER_WIDE; x++) {
-        const uint8_t *const pixel = pixel_at(&photo->image, x, 5);
+        const uint8_t *const pixel = pixel_at(photo->image, x, 5);
 
         assert_true(pixel[0] == pixel[1] && pixel[1] == pixel[2]);
     }
@@ -332,7 +335,7 @@ static void more_than_8_bits_are_dithered(void **state)
         memset(samples, code, sizeof samples); /* 257 code */
         photo = read_photo(make_png_raw(9, 9, 0, 16, samples, NULL), REFOCUS_OK);
         for (int i = 0; i < 9 * 9; i++) {
-            assert_int_equal(pixel_at(&photo->image, i % 9, i / 9)[0], code);
+            assert_int_equal(pixel_at(photo->image, i % 9, i / 9)[0], code);
         }
         refocus_photo_free(&photo);
     }
@@ -345,8 +348,8 @@ static void png_small_samples(void **state)
         read_photo(make_png_raw(5, 1, 0, 2, (const uint8_t *)"\x1b\x00", NULL), REFOCUS_OK);
 
     (void)state;
-    assert_int_equal(pixel_at(&photo->image, 1, 0)[0], 85);
-    assert_int_equal(pixel_at(&photo->image, 3, 0)[0], 255);
+    assert_int_equal(pixel_at(photo->image, 1, 0)[0], 85);
+    assert_int_equal(pixel_at(photo->image, 3, 0)[0], 255);
     refocus_photo_free(&photo);
 }
 
@@ -356,17 +359,17 @@ static void png_depth(void **state)
     uint8_t grey_rgb[2 * 3 * 2];
 
     (void)state;
-    assert_int_equal(photo->depth.sample, REFOCUS_SAMPLE_U16);
-    assert_int_equal(sample_at(&photo->depth, 5, 3), pattern(5, 3, 0, 65535));
-    assert_near(photo->depth.metres_per_unit, 1 / 5000.0);
+    assert_int_equal(photo->depth->sample, REFOCUS_SAMPLE_U16);
+    assert_int_equal(sample_at(photo->depth, 5, 3), pattern(5, 3, 0, 65535));
+    assert_near(photo->depth->metres_per_unit, 1 / 5000.0);
     refocus_photo_free(&photo);
     read_depth(make_png(6, 4, 2, 8), NULL, REFOCUS_ERR_NO_DEPTH);
     for (int i = 0; i < 12; i++) {
         grey_rgb[i] = (uint8_t)(i / 3 * 20);
     }
     photo = read_depth(make_png_raw(2, 2, 2, 8, grey_rgb, NULL), NULL, REFOCUS_OK);
-    assert_int_equal(sample_at(&photo->depth, 1, 1), 60);
-    assert_true(photo->depth.value_near == 255);
+    assert_int_equal(sample_at(photo->depth, 1, 1), 60);
+    assert_true(photo->depth->value_near == 255);
     refocus_photo_free(&photo);
     grey_rgb[11] ^= 1;
     read_depth(make_png_raw(2, 2, 2, 8, grey_rgb, NULL), NULL, REFOCUS_ERR_NO_DEPTH);

@@ -119,7 +119,10 @@ static void all_writers_wait_for_the_disk(void **state)
     assert_int_equal(refocus_file_move("tmp", "text", NULL), REFOCUS_OK);
     took("frd");
     assert_int_equal(access("tmp", F_OK), -1);
-    assert_int_equal(save("a.ppm", &(struct refocus_write_options){.unsynced = 1}), REFOCUS_OK);
+    assert_int_equal(save("a.ppm",
+                          &(struct refocus_write_options){
+                              .struct_size = sizeof(struct refocus_write_options), .unsynced = 1}),
+                     REFOCUS_OK);
     took("r");
 }
 

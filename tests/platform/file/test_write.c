@@ -107,7 +107,7 @@ static void lossless(const char *name)
             photo = read_back(in_folder(name));
             for (int i = 0; i < 13 * 9 * 3; i++) {
                 const int x = i / 3 % 13, y = i / 39;
-                assert_int_equal(pixel_at(&photo->image, x, y)[i % 3], pattern(x, y, i % 3, 255));
+                assert_int_equal(pixel_at(photo->image, x, y)[i % 3], pattern(x, y, i % 3, 255));
             }
             refocus_photo_free(&photo);
         }
@@ -146,10 +146,10 @@ static void grey_round_trip(void **state)
             for (int i = 0; i < 12; i++) {
                 const int y = flipped ? 3 - i / 3 : i / 3;
                 const unsigned v = samples[y * 3 + i % 3];
-                if (depth->depth.sample == REFOCUS_SAMPLE_F32) {
-                    assert_true(float_at(&depth->depth, i % 3, i / 3) == (float)(v / 65535.0));
+                if (depth->depth->sample == REFOCUS_SAMPLE_F32) {
+                    assert_true(float_at(depth->depth, i % 3, i / 3) == (float)(v / 65535.0));
                 } else {
-                    assert_int_equal(sample_at(&depth->depth, i % 3, i / 3), v);
+                    assert_int_equal(sample_at(depth->depth, i % 3, i / 3), v);
                 }
             }
             refocus_photo_free(&depth);
@@ -194,7 +194,8 @@ static void keeps_exif_and_icc(const char *name, size_t icc_size)
     struct bytes exif = make_exif(false, 1), icc = make_icc(icc_size);
     const struct refocus_blob exif_blob = {exif.data, exif.size};
     const struct refocus_blob icc_blob = {icc.data, icc.size};
-    const struct refocus_write_options options = {.exif = &exif_blob, .icc = &icc_blob};
+    const struct refocus_write_options options = {
+        .struct_size = sizeof(struct refocus_write_options), .exif = &exif_blob, .icc = &icc_blob};
     struct refocus_reason reason;
     struct refocus_photo *photo;
 
@@ -203,7 +204,7 @@ static void keeps_exif_and_icc(const char *name, size_t icc_size)
     assert_string_equal(reason.text, "");
     photo = read_back(in_folder(name));
     assert_int_equal(photo->exif.size, exif.size);
-    assert_string_equal(photo->info.camera, "Maker Model X");
+    assert_string_equal(photo->info->camera, "Maker Model X");
     assert_int_equal(photo->icc.size, icc.size);
     assert_memory_equal(photo->icc.data, icc.data, icc.size);
     refocus_photo_free(&photo);
@@ -249,10 +250,12 @@ static void too_large_or_damaged_extras(void **state)
 
     (void)state;
 #ifdef RF_HAVE_JPEG
-    left_out("l.jpg", &(struct refocus_write_options){.exif = &blob});
+    left_out("l.jpg", &(struct refocus_write_options){
+                          .struct_size = sizeof(struct refocus_write_options), .exif = &blob});
 #endif
 #ifdef RF_HAVE_PNG
-    left_out("l.png", &(struct refocus_write_options){.icc = &blob});
+    left_out("l.png", &(struct refocus_write_options){
+                          .struct_size = sizeof(struct refocus_write_options), .icc = &blob});
 #endif
     bytes_free(&large);
 }
@@ -281,14 +284,15 @@ static void jpeg_formats_and_quality(void **state)
         image = refocus_image_packed(format, pixels + 31 * 32 * bytes, 32, 32, -32 * bytes);
         assert_int_equal(refocus_image_write(in_folder("j.jpg"), &image, NULL, NULL), REFOCUS_OK);
         photo = read_back(in_folder("j.jpg"));
-        assert_in_range(pixel_at(&photo->image, 5, 25)[0], 195, 205);
-        assert_in_range(pixel_at(&photo->image, 5, 5)[0], 15, 25);
-        assert_in_range(pixel_at(&photo->image, 5, 5)[2], 85, 95);
+        assert_in_range(pixel_at(photo->image, 5, 25)[0], 195, 205);
+        assert_in_range(pixel_at(photo->image, 5, 5)[0], 15, 25);
+        assert_in_range(pixel_at(photo->image, 5, 5)[2], 85, 95);
         refocus_photo_free(&photo);
     }
     for (int i = 0; i < 2; i++) {
         struct picture picture = make_picture(REFOCUS_FORMAT_RGB8, 64, 64, false);
-        const struct refocus_write_options options = {.quality = i ? 100 : 20};
+        const struct refocus_write_options options = {
+            .struct_size = sizeof(struct refocus_write_options), .quality = i ? 100 : 20};
         struct stat facts;
 
         assert_int_equal(refocus_image_write(in_folder("q.jpg"), &picture.image, &options, NULL),
@@ -322,7 +326,9 @@ static void refusals(void **state)
     refused(in_folder("x.gif"), &picture.image, NULL, REFOCUS_ERR_UNSUPPORTED);
     refused(in_folder("x.pgm"), &picture.image, NULL, REFOCUS_ERR_UNSUPPORTED);
     refused(in_folder("png"), &picture.image, NULL, REFOCUS_ERR_UNSUPPORTED);
-    refused(in_folder("x.ppm"), &picture.image, &(struct refocus_write_options){.quality = 101},
+    refused(in_folder("x.ppm"), &picture.image,
+            &(struct refocus_write_options){.struct_size = sizeof(struct refocus_write_options),
+                                            .quality = 101},
             REFOCUS_ERR_ARGUMENT);
     refused(in_folder("x.ppm"), NULL, NULL, REFOCUS_ERR_ARGUMENT);
     refused("/does/not/exist/x.ppm", &picture.image, NULL, REFOCUS_ERR_IO);

@@ -374,15 +374,15 @@ static void test_scene(void **unused)
     assert_non_null(scene);
     snprintf(path, sizeof path, "%s/examples/data/portrait/disparity.png", root ? root : ".");
     assert_int_equal(refocus_depth_read(&depth, path, NULL, 0, 0, NULL, NULL), REFOCUS_OK);
-    assert_int_equal(refocus_strokes_create(&strokes, &scene->image, NULL), REFOCUS_OK);
+    assert_int_equal(refocus_strokes_create(&strokes, scene->image, NULL), REFOCUS_OK);
     paint(strokes, REFOCUS_STROKE_OBJECT, 14, 1, head, 11);
     paint(strokes, REFOCUS_STROKE_MORE, 16, -1, body, 17);
-    for (int y = 3; y < scene->image.height - 3; y++) {
-        for (int x = 3; x < scene->image.width - 3; x++) {
+    for (int y = 3; y < scene->image->height - 3; y++) {
+        for (int x = 3; x < scene->image->width - 3; x++) {
             const bool painted =
-                refocus_strokes_disparity(strokes)[y * scene->image.width + x] != 0;
-            const int around = figure_around(&depth->depth, x, y);
-            const bool figure = is_figure(&depth->depth, x, y);
+                refocus_strokes_disparity(strokes)[y * scene->image->width + x] != 0;
+            const int around = figure_around(depth->depth, x, y);
+            const bool figure = is_figure(depth->depth, x, y);
 
             if (figure && around < 25) /* a hair: not painted */
                 continue;

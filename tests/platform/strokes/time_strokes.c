@@ -120,23 +120,23 @@ int main(int argc, char **argv)
     if (argc < 2 || refocus_photo_read(&photo, argv[1], NULL, &reason) != REFOCUS_OK)
         return 2;
     start = now_ms();
-    status = refocus_strokes_create(&strokes, &photo->image, NULL);
+    status = refocus_strokes_create(&strokes, photo->image, NULL);
     created = now_ms() - start;
     if (status == REFOCUS_OK && argc > 2) {
-        status = refocus_strokes_create(&from, &photo->image, NULL);
+        status = refocus_strokes_create(&from, photo->image, NULL);
         if (status == REFOCUS_OK)
             status = load(from, argv[2]);
         if (status == REFOCUS_OK)
             status = replay(strokes, from);
     } else if (status == REFOCUS_OK) {
-        status = spiral(strokes, photo->image.width, photo->image.height);
+        status = spiral(strokes, photo->image->width, photo->image->height);
     }
     if (status == REFOCUS_OK && count > 0) {
         qsort(times, (size_t)count, sizeof *times, by_size);
         printf("%dx%d: create %.1f ms; %d segments: min %.1f, median %.1f, 95 %% %.1f, "
                "max %.1f ms\n",
-               photo->image.width, photo->image.height, created, count, times[0], times[count / 2],
-               times[count * 95 / 100], times[count - 1]);
+               photo->image->width, photo->image->height, created, count, times[0],
+               times[count / 2], times[count * 95 / 100], times[count - 1]);
     }
     refocus_strokes_destroy(&strokes);
     refocus_strokes_destroy(&from);

@@ -25,19 +25,30 @@ enum refocus_depth_flags {
     REFOCUS_DEPTH_2047_IS_UNKNOWN = 4,
 };
 struct refocus_depth_map {
+    uint32_t struct_size;
+    uint32_t sample;
     const void *samples;
+    ptrdiff_t stride;
     int32_t width;
     int32_t height;
-    ptrdiff_t stride;
-    uint32_t sample;
     uint32_t meaning;
     uint32_t flags;
-    uint32_t reserved;
     double value_near, value_far;
     double metres_per_unit, metres_at_zero;
     double near_m, far_m;
 };
+static inline struct refocus_depth_map refocus_depth_map_default(void)
+{
+    struct refocus_depth_map map;
+    memset(&map, 0, sizeof map);
+    map.struct_size = sizeof map;
+    map.sample = REFOCUS_SAMPLE_U8;
+    map.meaning = REFOCUS_DEPTH_DISPARITY;
+    return map;
+}
 struct refocus_depth_report {
+    uint32_t struct_size;
+    uint32_t reserved;
     double near_m;
     double far_m;
     double value_near;
@@ -46,6 +57,13 @@ struct refocus_depth_report {
     uint64_t clamped;
     uint64_t specks;
 };
+static inline struct refocus_depth_report refocus_depth_report_default(void)
+{
+    struct refocus_depth_report report;
+    memset(&report, 0, sizeof report);
+    report.struct_size = sizeof report;
+    return report;
+}
 REFOCUS_API int refocus_depth_to_disparity(const struct refocus_depth_map *map, uint16_t *disparity,
                                            ptrdiff_t stride, struct refocus_depth_report *report);
 enum { REFOCUS_MAX_SPECKLE = 255 };
