@@ -381,7 +381,7 @@ int refocus_strokes_save(const struct refocus_strokes *strokes, char **text, siz
                      "height", (int)height, "strokes", list);
     failed = !root || !list;
     for (int i = 0; i < refocus_strokes_count(strokes) && !failed; i++) {
-        struct refocus_stroke stroke;
+        struct refocus_stroke stroke = refocus_stroke_default(REFOCUS_STROKE_ALL, 1);
         const float *points;
         int count;
 

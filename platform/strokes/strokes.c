@@ -541,10 +541,14 @@ int refocus_strokes_count(const struct refocus_strokes *strokes)
 int refocus_strokes_get(const struct refocus_strokes *strokes, int index,
                         struct refocus_stroke *stroke, const float **points, int *count)
 {
+    const struct refocus_stroke *own;
+
     if (!strokes || index < 0 || index >= strokes->count)
         return REFOCUS_ERR_ARGUMENT;
-    if (stroke)
-        *stroke = strokes->strokes[index].stroke;
+    own = &strokes->strokes[index].stroke;
+    if (stroke && refocus_struct_write(stroke, REFOCUS_SIZE_TO(struct refocus_stroke, fill), own,
+                                       sizeof *own))
+        return REFOCUS_ERR_ARGUMENT;
     if (points)
         *points = strokes->strokes[index].points;
     if (count)

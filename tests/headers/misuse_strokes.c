@@ -69,7 +69,9 @@ static void bad_strokes(void)
 static void bad_points(void)
 {
     static const float points[][2] = {{NAN, 1}, {1, INFINITY}, {-1, 1}, {1, H}, {W, 1}};
+    const struct misuse no_size = BAD(refocus_stroke, struct_size, 0);
     const struct refocus_stroke brush = refocus_stroke_default(REFOCUS_STROKE_BRUSH, 2);
+    struct refocus_stroke unsized_stroke = brush;
 
     ANSWERS(REFOCUS_ERR_STATE, refocus_strokes_extend, strokes, points[0], 1, NULL);
     ANSWERS(REFOCUS_OK, refocus_strokes_begin, strokes, &brush, NULL);
@@ -84,6 +86,9 @@ static void bad_points(void)
     REFUSED(refocus_strokes_get, strokes, INT32_MIN, NULL, NULL, NULL);
     REFUSED(refocus_strokes_get, strokes, INT32_MAX, NULL, NULL, NULL);
     ANSWERS(REFOCUS_OK, refocus_strokes_get, strokes, 0, NULL, NULL, NULL);
+    misuse_spoil(&unsized_stroke, &no_size);
+    REFUSED(refocus_strokes_get, strokes, 0, &unsized_stroke, NULL, NULL);
+    misuse_spoil(NULL, NULL);
 }
 
 static void bad_selections(void)

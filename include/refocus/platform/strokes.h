@@ -52,6 +52,7 @@ enum refocus_fill_kind {
                                     being linear in a picture of one */
 };
 
+/** The fill of a selection. The struct is complete. */
 struct refocus_fill {
     uint32_t kind; /**< enum refocus_fill_kind */
     float d0, d1;  /**< disparities, 0 farthest to 1 nearest */
@@ -82,7 +83,7 @@ static inline struct refocus_stroke refocus_stroke_default(uint32_t kind, float 
     return stroke;
 }
 
-/** A part of the picture; of no size when nothing changed. */
+/** A part of the picture; of no size when nothing changed. The struct is complete. */
 struct refocus_changed {
     int32_t x, y, width, height;
 };
@@ -90,7 +91,7 @@ struct refocus_changed {
 /** Most strokes of a painting, and most points of all of them together. */
 enum { REFOCUS_MAX_STROKES = 4096, REFOCUS_MAX_STROKE_POINTS = 1 << 20 };
 
-/** Why a file was refused: one line, no full stop. */
+/** Why a file was refused: one line, no full stop. The struct is complete. */
 struct refocus_strokes_reason {
     char text[256];
 };
@@ -151,7 +152,9 @@ REFOCUS_API int refocus_strokes_count(const struct refocus_strokes *strokes);
  * A stroke and its points, x and y of each. They are the painting's, until it is
  * changed. Each of @p stroke, @p points and @p count may be NULL.
  *
- * @return REFOCUS_OK or REFOCUS_ERR_ARGUMENT
+ * @param stroke  receives the stroke; only its struct_size is read, which
+ *                refocus_stroke_default() sets
+ * @return REFOCUS_OK or REFOCUS_ERR_ARGUMENT; on an error nothing is written
  */
 REFOCUS_API int refocus_strokes_get(const struct refocus_strokes *strokes, int index,
                                     struct refocus_stroke *stroke, const float **points,

@@ -39,7 +39,7 @@ static void test_round_trip(void **unused)
     assert_string_equal(text, second);
     assert_int_equal(strlen(second), second_size);
     for (int i = 0; i < 6; i++) {
-        struct refocus_stroke a, b;
+        struct refocus_stroke a = refocus_stroke_default(REFOCUS_STROKE_ALL, 1), b = a;
         const float *p, *q;
         int m, n;
 

@@ -276,6 +276,41 @@ static void test_refusals(void **unused)
     assert_null(strokes);
 }
 
+/* A stroke is given out as far as the caller's struct goes. */
+static void test_struct_sizes(void **unused)
+{
+    struct newer {
+        struct refocus_stroke known;
+        uint32_t added, behind;
+    } newer = {refocus_stroke_default(0, 1), 7, 9};
+    const struct refocus_stroke given = make_stroke(REFOCUS_STROKE_BRUSH, 3, 0.5f);
+    struct refocus_strokes *strokes = begin();
+    struct newer first = newer, untouched;
+
+    (void)unused;
+    assert_int_equal(refocus_strokes_begin(strokes, &given, NULL), REFOCUS_OK);
+    assert_int_equal(refocus_strokes_get(strokes, 0, &first.known, NULL, NULL), REFOCUS_OK);
+    assert_memory_equal(&first.known, &given, sizeof given);
+    assert_int_equal(first.added, 7);
+    newer.known.struct_size = offsetof(struct newer, behind);
+    assert_int_equal(refocus_strokes_get(strokes, 0, &newer.known, NULL, NULL), REFOCUS_OK);
+    assert_int_equal(newer.known.struct_size, offsetof(struct newer, behind));
+    assert_memory_equal(&newer.known.kind, &given.kind, sizeof given - sizeof given.struct_size);
+    assert_true(newer.added == 0 && newer.behind == 9);
+    for (int i = 0; i < 3; i++) {
+        const float *points = NULL;
+
+        memset(&newer, 0xa5, sizeof newer);
+        newer.known.struct_size = (uint32_t[]){0, sizeof given - 1, REFOCUS_MAX_STRUCT_SIZE + 1}[i];
+        untouched = newer;
+        assert_int_equal(refocus_strokes_get(strokes, 0, &newer.known, &points, NULL),
+                         REFOCUS_ERR_ARGUMENT);
+        assert_memory_equal(&newer, &untouched, sizeof newer);
+        assert_null(points);
+    }
+    refocus_strokes_destroy(&strokes);
+}
+
 /* In places where colours mix a selection is a matter of every bit: the same one on every
  * processor. */
 static void test_same_everywhere(void **unused)
@@ -408,6 +443,7 @@ int main(void)
         cmocka_unit_test(test_base_and_selection),
         cmocka_unit_test(test_formats),
         cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_struct_sizes),
         cmocka_unit_test(test_same_everywhere),
         cmocka_unit_test(test_small),
         cmocka_unit_test(test_scene),

@@ -84,7 +84,7 @@ static int replay(struct refocus_strokes *strokes, const struct refocus_strokes 
     int status = REFOCUS_OK;
 
     for (int i = 0; i < refocus_strokes_count(from) && status == REFOCUS_OK; i++) {
-        struct refocus_stroke stroke;
+        struct refocus_stroke stroke = refocus_stroke_default(REFOCUS_STROKE_ALL, 1);
         const float *given;
         int n;
 
