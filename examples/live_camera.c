@@ -76,7 +76,7 @@ static uint16_t *read_depth(struct refocus_source *source, struct refocus_conver
 int main(int argc, char **argv)
 {
     struct refocus_source *camera, *depth_camera;
-    struct refocus_source_mode mode;
+    struct refocus_source_mode mode = refocus_source_mode_default();
     struct refocus_sink *sink;
     struct refocus_converter *converter;
     struct refocus_renderer *renderer;

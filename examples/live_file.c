@@ -26,7 +26,7 @@ int main(int argc, char **argv)
     struct refocus_source_config config = refocus_source_config_default();
     struct refocus_render_params render = refocus_render_params_default(0.8f, BLUR);
     struct refocus_source *source;
-    struct refocus_source_mode mode;
+    struct refocus_source_mode mode = refocus_source_mode_default();
     struct refocus_sink *sink;
     struct refocus_photo *depth;
     struct refocus_converter *converter;

@@ -150,6 +150,16 @@ void refocus_converter_destroy(struct refocus_converter **converter)
     *converter = NULL;
 }
 
+static int read_frame(struct refocus_frame *own, const struct refocus_frame *frame,
+                      struct refocus_reason *reason)
+{
+    const int status =
+        refocus_struct_read(own, sizeof *own, REFOCUS_SIZE_TO(struct refocus_frame, dmabuf), frame);
+
+    return status ? rf_capture_fail(reason, status, "the frame is not of a known size of struct")
+                  : REFOCUS_OK;
+}
+
 static int check(const struct refocus_frame *frame, struct refocus_reason *reason)
 {
     if (rf_format_planes(frame->format) == 0 || frame->width < 1 || frame->height < 1 ||
@@ -240,16 +250,20 @@ int refocus_convert_rgb8(struct refocus_converter *converter, const struct refoc
                          const struct refocus_image *out, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
+    struct refocus_frame own_frame;
     struct refocus_image own;
     struct coefficients c;
     int status;
 
     reason = reason ? reason : &unheard;
     reason->text[0] = '\0';
+    if ((status = read_frame(&own_frame, frame, reason)))
+        return status;
     if ((status = refocus_image_read(&own, out)))
         return rf_capture_fail(reason, status, "the picture is not of a known size of struct");
+    frame = &own_frame;
     out = &own;
-    if (!converter || !frame || !out->plane[0] || out->format != REFOCUS_FORMAT_RGB8 ||
+    if (!converter || !out->plane[0] || out->format != REFOCUS_FORMAT_RGB8 ||
         out->width != frame->width || out->height != frame->height ||
         !rf_stride_fits(out->stride[0], (int64_t)out->width * 3, out->height))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
@@ -311,13 +325,17 @@ int refocus_convert_copy(struct refocus_converter *converter, const struct refoc
                          struct refocus_image *out, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
+    struct refocus_frame own_frame;
     struct refocus_image own;
     int status;
 
     reason = reason ? reason : &unheard;
     reason->text[0] = '\0';
-    if (!converter || !frame)
+    if (!converter)
         return REFOCUS_ERR_ARGUMENT;
+    if ((status = read_frame(&own_frame, frame, reason)))
+        return status;
+    frame = &own_frame;
     if (!refocus_frame_image_format(frame->format))
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
                                "frames of this format have to become RGB8");
@@ -356,12 +374,16 @@ int refocus_convert_samples(struct refocus_converter *converter, const struct re
                             uint16_t *samples, struct refocus_reason *reason)
 {
     struct refocus_reason unheard;
+    struct refocus_frame own_frame;
     int status;
 
     reason = reason ? reason : &unheard;
     reason->text[0] = '\0';
-    if (!converter || !frame || !samples)
+    if (!converter || !samples)
         return REFOCUS_ERR_ARGUMENT;
+    if ((status = read_frame(&own_frame, frame, reason)))
+        return status;
+    frame = &own_frame;
     if (frame->format != REFOCUS_FRAME_GREY && frame->format != REFOCUS_FRAME_Y16 &&
         frame->format != REFOCUS_FRAME_Z16)
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,

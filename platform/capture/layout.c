@@ -1,5 +1,4 @@
 /* layout.c: how frames lie in memory, by their format. */
-#include <math.h>
 #include <string.h>
 #include <strings.h>
 #include "layout.h"
@@ -89,12 +88,4 @@ void rf_frame_lay_out(struct refocus_frame *frame, const uint8_t *memory, int64_
         frame->stride[i] = (ptrdiff_t)rf_plane_stride(frame->format, i, stride);
         memory += frame->stride[i] * rf_plane_rows(frame->format, i, frame->height);
     }
-}
-
-void rf_frame_clear(struct refocus_frame *frame)
-{
-    memset(frame, 0, sizeof *frame);
-    frame->lens_dioptres = NAN;
-    for (int i = 0; i < 3; i++)
-        frame->dmabuf[i] = -1;
 }

@@ -25,8 +25,6 @@ uint64_t rf_frame_bytes(uint32_t format, int64_t stride, int width, int height);
 void rf_frame_lay_out(struct refocus_frame *frame, const uint8_t *memory, int64_t stride);
 /* The format of that name in any case; REFOCUS_FRAME_ANY for none. */
 uint32_t rf_format_by_name(const char *name);
-/* Zero the frame and put "not known" where that is not 0. */
-void rf_frame_clear(struct refocus_frame *frame);
 
 #ifdef __cplusplus
 }

@@ -100,10 +100,9 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
     struct pictures *pictures = source->state;
     const bool fast = source->config.flags & REFOCUS_SOURCE_FAST;
     char name[PATH_MAX];
-    struct refocus_frame frame;
+    struct refocus_frame frame = refocus_frame_default();
     int status = REFOCUS_OK;
 
-    rf_frame_clear(&frame);
     if (!rf_pattern_name(name, sizeof name, pictures->pattern, pictures->first))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "the name is too long");
     refocus_photo_free(&pictures->still);
@@ -165,7 +164,7 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
                                "every buffer is out; "
                                "release one");
     frame = &pictures->ring.frame[buffer];
-    rf_frame_clear(frame);
+    *frame = refocus_frame_default();
     status = pictures->many ? read_next(source, buffer, reason) : REFOCUS_OK;
     if (status == REFOCUS_OK)
         status = show(frame, pictures->many ? pictures->photo[buffer] : pictures->still, reason);

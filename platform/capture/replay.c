@@ -420,7 +420,7 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
                                "every buffer is out; "
                                "release one");
     frame = &replay->ring.frame[buffer];
-    rf_frame_clear(frame);
+    *frame = refocus_frame_default();
     status = pass_over(replay, &fate, reason);
     due = due_at(replay, replay->next);
     if (status == REFOCUS_OK && (replay->gone || replay->failed)) {

@@ -91,10 +91,9 @@ static void draw_packed(uint8_t *row, uint32_t format, int x, struct sample s)
 
 void rf_scene_draw(uint8_t *memory, uint32_t format, int64_t stride, int width, int height)
 {
-    struct refocus_frame frame;
+    struct refocus_frame frame = refocus_frame_default();
     uint8_t *plane[3] = {memory, memory, memory};
 
-    rf_frame_clear(&frame);
     frame.format = format;
     frame.width = width;
     frame.height = height;

@@ -189,7 +189,7 @@ static bool lay_out(struct stream *stream, uint32_t layout, int width, int heigh
     struct refocus_frame *frame = &stream->frame;
     const size_t half = ((size_t)width + 1) / 2;
 
-    rf_frame_clear(frame);
+    *frame = refocus_frame_default();
     frame->format = layout;
     frame->width = width;
     frame->height = height;

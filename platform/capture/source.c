@@ -91,6 +91,7 @@ int refocus_source_open(struct refocus_source **result, const char *name,
         return rf_capture_fail_memory(reason);
     source->ops = ops;
     source->config = refocus_source_config_default();
+    source->counters = refocus_source_counters_default();
     source->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     source->name = strdup(name);
     status = !source->name         ? rf_capture_fail_memory(reason)
@@ -121,13 +122,25 @@ void refocus_source_close(struct refocus_source **handle)
     *handle = NULL;
 }
 
+/* As far as the caller's struct goes. */
+static int write_mode(struct refocus_source_mode *mode, const struct refocus_source_mode *own)
+{
+    return refocus_struct_write(mode, REFOCUS_SIZE_TO(struct refocus_source_mode, fps), own,
+                                sizeof *own);
+}
+
 int refocus_source_get_mode(struct refocus_source *source, int index,
                             struct refocus_source_mode *mode)
 {
-    if (!source || !mode || index < 0)
+    struct refocus_source_mode own = refocus_source_mode_default();
+    int status;
+
+    if (!source || index < 0 || write_mode(mode, &own))
         return REFOCUS_ERR_ARGUMENT;
-    memset(mode, 0, sizeof *mode);
-    return source->ops->get_mode(source, index, mode);
+    status = source->ops->get_mode(source, index, &own);
+    if (status == REFOCUS_OK)
+        write_mode(mode, &own);
+    return status;
 }
 
 static bool config_is_sound(const struct refocus_source_config *config)
@@ -139,18 +152,30 @@ static bool config_is_sound(const struct refocus_source_config *config)
            config->flags < 16;
 }
 
+/* Zeros the caller's mode, which may be NULL: one of no known size is refused before anything is
+ * done. */
+static int clear_mode(struct refocus_source_mode *mode, struct refocus_reason *reason)
+{
+    const struct refocus_source_mode none = refocus_source_mode_default();
+
+    if (mode && write_mode(mode, &none))
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "mode is not of a known size of struct");
+    return REFOCUS_OK;
+}
+
 static int begin(struct refocus_source *source, struct refocus_source_mode *mode,
                  struct refocus_reason *reason)
 {
-    struct refocus_source_mode unseen;
+    struct refocus_source_mode own = refocus_source_mode_default();
     int status;
 
-    mode = mode ? mode : &unseen;
-    memset(mode, 0, sizeof *mode);
     source->out = 0;
     source->sequence_known = false;
-    status = source->ops->start(source, mode, reason);
+    status = source->ops->start(source, &own, reason);
     source->streaming = status == REFOCUS_OK;
+    if (mode && status == REFOCUS_OK)
+        write_mode(mode, &own);
     return status;
 }
 
@@ -164,6 +189,8 @@ int refocus_source_start(struct refocus_source *source, const struct refocus_sou
 
     reason = reason ? reason : &unheard;
     reason->text[0] = '\0';
+    if ((status = clear_mode(mode, reason)))
+        return status;
     if (config &&
         (status = refocus_struct_read(
              &own, sizeof own, REFOCUS_SIZE_TO(struct refocus_source_config, flags), config)))
@@ -261,6 +288,8 @@ int refocus_source_restart(struct refocus_source *source, struct refocus_source_
     reason->text[0] = '\0';
     if (!source)
         return REFOCUS_ERR_ARGUMENT;
+    if ((status = clear_mode(mode, reason)))
+        return status;
     refocus_source_stop(source);
     if (rf_source_poll(source, -1, 0, 0, NULL) == REFOCUS_ERR_CANCELLED)
         return rf_capture_fail(reason, REFOCUS_ERR_CANCELLED, "interrupted");
@@ -301,11 +330,10 @@ int refocus_source_set_control(struct refocus_source *source, const char *name, 
 void refocus_source_get_counters(const struct refocus_source *source,
                                  struct refocus_source_counters *counters)
 {
-    if (!counters)
-        return;
-    memset(counters, 0, sizeof *counters);
-    if (source)
-        *counters = source->counters;
+    const struct refocus_source_counters none = refocus_source_counters_default();
+
+    refocus_struct_write(counters, REFOCUS_SIZE_TO(struct refocus_source_counters, restarts),
+                         source ? &source->counters : &none, sizeof none);
 }
 
 int refocus_source_list(refocus_source_found *found, void *user)

@@ -315,7 +315,7 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
         return status;
     }
     frame = &stream->ring.frame[buffer];
-    rf_frame_clear(frame);
+    *frame = refocus_frame_default();
     frame->format = stream->format;
     frame->width = stream->width;
     frame->height = stream->height;

@@ -270,7 +270,7 @@ bool Capture::deliver(Request *request, struct refocus_frame **result)
     if (metadata.status != FrameMetadata::FrameSuccess &&
         metadata.status != FrameMetadata::FrameError)
         return false;
-    rf_frame_clear(frame);
+    *frame = refocus_frame_default();
     frame->format = format_of(stream.pixelFormat);
     frame->width = (int32_t)stream.size.width;
     frame->height = (int32_t)stream.size.height;

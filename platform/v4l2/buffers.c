@@ -159,7 +159,7 @@ void rf_v4l2_lay_out(const struct rf_v4l2 *device, int n, const uint32_t offset[
 {
     const struct rf_v4l2_buffer *buffer = &device->buffer[n];
 
-    rf_frame_clear(frame);
+    *frame = refocus_frame_default();
     frame->format = device->format;
     frame->width = device->width;
     frame->height = device->height;

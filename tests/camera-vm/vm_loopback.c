@@ -102,7 +102,7 @@ static struct refocus_source *started(uint32_t format, uint32_t flags)
 {
     struct refocus_source_config config = refocus_source_config_default();
     struct refocus_source *source = NULL;
-    struct refocus_source_mode mode;
+    struct refocus_source_mode mode = refocus_source_mode_default();
     struct refocus_reason reason = {""};
     char name[64];
 

@@ -52,7 +52,7 @@ static struct refocus_source *streaming(uint32_t format, uint32_t flags)
 {
     struct refocus_source_config config = refocus_source_config_default();
     struct refocus_source *source = opened();
-    struct refocus_source_mode mode;
+    struct refocus_source_mode mode = refocus_source_mode_default();
 
     config.format = format;
     config.width = WIDTH;
@@ -90,7 +90,7 @@ static void inject(const char *control, double value)
 
 static struct refocus_source_counters counters(struct refocus_source *source)
 {
-    struct refocus_source_counters c;
+    struct refocus_source_counters c = refocus_source_counters_default();
 
     refocus_source_get_counters(source, &c);
     return c;
@@ -190,7 +190,7 @@ static void check_picture(const uint8_t *rgb, const char *name, int grey)
 static void every_format_is_captured(void **state)
 {
     static uint8_t rgb[WIDTH * HEIGHT * 3];
-    struct refocus_source_mode mode;
+    struct refocus_source_mode mode = refocus_source_mode_default();
     struct refocus_source *source;
     uint32_t offered = 0;
 

@@ -2,6 +2,10 @@
  *
  * Part of librefocus-capture. A converter holds the rows and tables that it works with;
  * it is reentrant.
+ *
+ * Frames are those of a source, or made by the program: see struct refocus_frame. One with fields
+ * that this library does not know and that are not 0 is REFOCUS_ERR_UNSUPPORTED, and one whose
+ * struct_size is out of its range REFOCUS_ERR_ARGUMENT.
  */
 #ifndef REFOCUS_PLATFORM_CONVERT_H
 #define REFOCUS_PLATFORM_CONVERT_H
@@ -72,14 +76,14 @@ REFOCUS_API int refocus_convert_samples(struct refocus_converter *converter,
                                         struct refocus_reason *reason);
 
 /** A pinhole camera: pixel (x, y) of a point (X, Y, Z) is (fx X/Z + cx, fy Y/Z +
- *  cy). */
+ *  cy). The struct is complete. */
 struct refocus_pinhole {
     int32_t width, height;
     double fx, fy, cx, cy;
 };
 
 /** The position of the colour camera: a point of the depth camera, in metres, is turned by rotation
- * (rows) and then shifted. */
+ * (rows) and then shifted. The struct is complete. */
 struct refocus_calibration {
     struct refocus_pinhole depth, colour;
     double rotation[9];

@@ -23,11 +23,13 @@
 #ifndef REFOCUS_PLATFORM_SOURCE_H
 #define REFOCUS_PLATFORM_SOURCE_H
 
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 #include <refocus/image.h>
 #include <refocus/platform/file.h>
+#include <refocus/sized.h>
 #include <refocus/status.h>
 
 #ifdef __cplusplus
@@ -67,14 +69,17 @@ enum refocus_frame_flags {
                                        other */
 };
 
-/** A frame in the memory of the source, until it is released. */
+/** A frame in the memory of the source, until it is released. Programs that make frames of their
+ * own, for refocus_convert_rgb8() and the like, start from refocus_frame_default() or
+ * refocus_frame_copy(). */
 struct refocus_frame {
+    uint32_t struct_size;    /**< sizeof(struct refocus_frame) where it was made */
     uint32_t format;         /**< enum refocus_frame_format */
     int32_t width, height;   /**< pixels */
     const uint8_t *plane[3]; /**< may be uncached camera memory: read it once, in
                                   order */
     ptrdiff_t stride[3];     /**< bytes from a row to the next one below */
-    size_t bytes;            /**< bytes of an MJPEG picture */
+    uint64_t bytes;          /**< bytes of an MJPEG picture */
     uint32_t matrix;         /**< enum refocus_matrix */
     uint32_t flags;          /**< enum refocus_frame_flags, or-ed */
     int64_t timestamp_ns;    /**< when it was taken */
@@ -85,12 +90,56 @@ struct refocus_frame {
                                   -1 */
 };
 
-/** A kind of frames that a source can deliver. */
+/** A frame of no size and format, whose lens and descriptors are not known. Thread-safe. */
+static inline struct refocus_frame refocus_frame_default(void)
+{
+    struct refocus_frame frame;
+    int i;
+
+    memset(&frame, 0, sizeof frame);
+    frame.struct_size = sizeof frame;
+    frame.lens_dioptres = NAN;
+    for (i = 0; i < 3; i++)
+        frame.dmabuf[i] = -1;
+    return frame;
+}
+
+/**
+ * A copy of a frame, for programs that change it. Its planes are the frame's, and end with it.
+ * `copy = *frame` would not do: an older library has fewer bytes there than the program knows of,
+ * and a newer one says a size that the copy does not have.
+ *
+ * @param frame  of a source; NULL, or a struct_size out of its range, gives
+ *               refocus_frame_default()
+ *
+ * Thread-safe.
+ */
+static inline struct refocus_frame refocus_frame_copy(const struct refocus_frame *frame)
+{
+    struct refocus_frame copy = refocus_frame_default();
+
+    if (frame && frame->struct_size <= REFOCUS_MAX_STRUCT_SIZE)
+        refocus_struct_write(&copy, REFOCUS_SIZE_TO(struct refocus_frame, dmabuf), frame,
+                             frame->struct_size);
+    return copy;
+}
+
+/** A kind of frames that a source can deliver. Start from refocus_source_mode_default(). */
 struct refocus_source_mode {
+    uint32_t struct_size;  /**< sizeof(struct refocus_source_mode), set by the caller */
     uint32_t format;       /**< enum refocus_frame_format */
     int32_t width, height; /**< pixels */
     double fps;            /**< frames a second at most; 0 = not known */
 };
+
+static inline struct refocus_source_mode refocus_source_mode_default(void)
+{
+    struct refocus_source_mode mode;
+
+    memset(&mode, 0, sizeof mode);
+    mode.struct_size = sizeof mode;
+    return mode;
+}
 
 enum refocus_source_flags {
     REFOCUS_SOURCE_FAST = 1,   /**< files and scripts: as fast as can be, none is
@@ -120,18 +169,30 @@ static inline struct refocus_source_config refocus_source_config_default(void)
     return config;
 }
 
-/** Counts since the source was opened; restarts do not reset them. */
+/** Counts since the source was opened; restarts do not reset them. Start from
+ * refocus_source_counters_default(). */
 struct refocus_source_counters {
-    uint64_t frames;   /**< handed out by wait */
-    uint64_t released; /**< taken back; equal to frames when none is out */
-    uint64_t dropped;  /**< gaps in the sequence of the camera */
-    uint64_t corrupt;  /**< handed out with REFOCUS_FRAME_CORRUPT */
-    uint64_t dequeued; /**< buffers taken from the driver */
-    uint64_t queued;   /**< buffers given back to the driver after that */
-    uint64_t lost;     /**< buffers that the driver did not take back, or dropped with a
-                            stop */
-    uint64_t restarts; /**< refocus_source_restart() that succeeded */
+    uint32_t struct_size; /**< sizeof(struct refocus_source_counters), set by the caller */
+    uint32_t reserved;    /**< 0 */
+    uint64_t frames;      /**< handed out by wait */
+    uint64_t released;    /**< taken back; equal to frames when none is out */
+    uint64_t dropped;     /**< gaps in the sequence of the camera */
+    uint64_t corrupt;     /**< handed out with REFOCUS_FRAME_CORRUPT */
+    uint64_t dequeued;    /**< buffers taken from the driver */
+    uint64_t queued;      /**< buffers given back to the driver after that */
+    uint64_t lost;        /**< buffers that the driver did not take back, or dropped with a
+                               stop */
+    uint64_t restarts;    /**< refocus_source_restart() that succeeded */
 };
+
+static inline struct refocus_source_counters refocus_source_counters_default(void)
+{
+    struct refocus_source_counters counters;
+
+    memset(&counters, 0, sizeof counters);
+    counters.struct_size = sizeof counters;
+    return counters;
+}
 
 /** The kind of source that a name stands for. */
 enum refocus_source_kind {
@@ -165,8 +226,13 @@ REFOCUS_API int refocus_source_open(struct refocus_source **source, const char *
 /** Stop and close; sets the handle to NULL. A NULL handle is fine. */
 REFOCUS_API void refocus_source_close(struct refocus_source **source);
 
-/** Mode number @p index. @return REFOCUS_OK, or REFOCUS_ERR_ARGUMENT behind the last
- *  one */
+/**
+ * Mode number @p index.
+ *
+ * @param mode  receives it; only its struct_size is read
+ * @return REFOCUS_OK, or REFOCUS_ERR_ARGUMENT: there are not as many, or the struct_size of
+ *         @p mode is out of its range, which leaves it untouched
+ */
 REFOCUS_API int refocus_source_get_mode(struct refocus_source *source, int index,
                                         struct refocus_source_mode *mode);
 
@@ -174,7 +240,7 @@ REFOCUS_API int refocus_source_get_mode(struct refocus_source *source, int index
  * Begin to stream.
  *
  * @param config  NULL: whatever the source prefers
- * @param mode    receives what will come; may be NULL
+ * @param mode    receives what will come; only its struct_size is read; may be NULL
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (it streams),
  *         REFOCUS_ERR_UNSUPPORTED (not in this format), and as refocus_source_open().
  *         After an error the source is stopped.
@@ -233,7 +299,8 @@ REFOCUS_API void refocus_source_interrupt(struct refocus_source *source);
 REFOCUS_API int refocus_source_set_control(struct refocus_source *source, const char *name,
                                            double value, struct refocus_reason *reason);
 
-/** Get the counts so far; zeros for a NULL source. @param counters  NULL is fine */
+/** Get the counts so far, all 0 for a NULL source. With NULL @p counters, or with ones whose
+ *  struct_size is out of its range, it does nothing. */
 REFOCUS_API void refocus_source_get_counters(const struct refocus_source *source,
                                              struct refocus_source_counters *counters);
 

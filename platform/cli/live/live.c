@@ -24,7 +24,7 @@ static void print_camera(void *user, const char *name, const char *description)
 static int print_modes(const char *name)
 {
     struct refocus_reason reason = {""};
-    struct refocus_source_mode mode;
+    struct refocus_source_mode mode = refocus_source_mode_default();
     struct refocus_source *source;
     const int status = refocus_source_open(&source, name, &reason);
 
@@ -57,6 +57,7 @@ static int open_camera(struct live *live, const char *name, bool depth,
     struct refocus_reason reason = {""};
     int status;
 
+    *mode = refocus_source_mode_default();
     if (!depth) {
         config.format = (uint32_t)settings->format;
         config.width = isnan(settings->size[0]) ? 0 : (int32_t)settings->size[0];

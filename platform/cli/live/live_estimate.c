@@ -232,7 +232,7 @@ static int copy_rgb(const struct live_picture *picture, const struct refocus_fra
                     struct refocus_reason *reason)
 {
     const struct refocus_image *from = &picture->image;
-    struct refocus_frame own = *frame;
+    struct refocus_frame own = refocus_frame_copy(frame);
 
     if (from->format == REFOCUS_FORMAT_RGB8) {
         memcpy(out->plane[0], from->plane[0], (size_t)from->stride[0] * (size_t)from->height);

@@ -51,7 +51,7 @@ int live_report(struct live *live)
     const uint64_t dropped_rendered = live_queue_dropped(&live->rendered);
     const uint64_t dropped =
         live->capture.skipped + live_queue_dropped(&live->captured) + dropped_rendered;
-    struct refocus_source_counters counters;
+    struct refocus_source_counters counters = refocus_source_counters_default();
     json_t *json;
 
     refocus_source_get_counters(live->camera, &counters);

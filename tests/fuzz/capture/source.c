@@ -70,9 +70,9 @@ static void take_frames(struct refocus_source *source)
 void fuzz_source(const char *name)
 {
     struct refocus_source_config config = refocus_source_config_default();
-    struct refocus_source_mode mode = {REFOCUS_FRAME_ANY, 0, 0, 0};
+    struct refocus_source_mode mode = refocus_source_mode_default();
     struct refocus_source *source = NULL;
-    struct refocus_source_counters counters;
+    struct refocus_source_counters counters = refocus_source_counters_default();
     struct refocus_reason reason = {""};
 
     if (refocus_source_open(&source, name, &reason) != REFOCUS_OK) {

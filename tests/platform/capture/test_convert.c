@@ -21,7 +21,7 @@ enum { PAD = 13, MOST = 64 };
 static void make_frame(struct refocus_frame *frame, uint32_t format, int width, int height,
                        uint8_t memory[3][MOST * MOST * 4 + PAD * MOST])
 {
-    rf_frame_clear(frame);
+    *frame = refocus_frame_default();
     frame->format = format;
     frame->width = width;
     frame->height = height;
@@ -298,7 +298,7 @@ static void jpegs_are_decoded_or_refused(void **state)
     struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, 32, 16, 96);
     struct refocus_image image2 = refocus_image_packed(REFOCUS_FORMAT_RGB8, back, 32, 16, 96);
     struct refocus_converter *converter = NULL;
-    struct refocus_frame frame;
+    struct refocus_frame frame = refocus_frame_default();
     FILE *file;
 
     (void)state;
@@ -307,7 +307,6 @@ static void jpegs_are_decoded_or_refused(void **state)
     assert_status(refocus_image_write("frame.jpg", &image, NULL, NULL), REFOCUS_OK);
     file = fopen("frame.jpg", "rb");
     assert_non_null(file);
-    rf_frame_clear(&frame);
     frame.format = REFOCUS_FRAME_MJPEG;
     frame.width = 32;
     frame.height = 16;
@@ -330,7 +329,7 @@ static void jpegs_are_decoded_or_refused(void **state)
     assert_status(refocus_source_wait(source, 100, &got, NULL), REFOCUS_OK);
     assert_int_equal(got->format, REFOCUS_FRAME_MJPEG);
     assert_int_equal(got->width, 32);
-    assert_memory_equal(got->plane[0], bytes, got->bytes);
+    assert_memory_equal(got->plane[0], bytes, (size_t)got->bytes);
     refocus_source_close(&source);
 }
 #endif

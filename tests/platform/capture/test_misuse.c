@@ -21,14 +21,15 @@ static bool is_half(ptrdiff_t stride)
 
 static void sources_of_nothing(void **state)
 {
-    struct refocus_source_counters counters, zeros;
+    const struct refocus_source_counters zeros = refocus_source_counters_default();
+    struct refocus_source_counters counters;
     struct refocus_source *source = NULL;
-    struct refocus_source_mode mode;
+    struct refocus_source_mode mode = refocus_source_mode_default();
     const struct refocus_frame *frame;
 
     (void)state;
     memset(&counters, 7, sizeof counters);
-    memset(&zeros, 0, sizeof zeros);
+    counters.struct_size = sizeof counters;
     refocus_source_get_counters(NULL, &counters);
     assert_memory_equal(&counters, &zeros, sizeof zeros);
     refocus_source_get_counters(NULL, NULL);
@@ -115,7 +116,7 @@ static void sinks_of_nothing(void **state)
 /* A frame in the memory here, of any format but JPEG. */
 static struct refocus_frame frame_of(uint32_t format)
 {
-    struct refocus_frame frame;
+    struct refocus_frame frame = refocus_frame_default();
     const int row = format == REFOCUS_FRAME_RGB24 || format == REFOCUS_FRAME_BGR24 ? 3 * W
                     : format == REFOCUS_FRAME_RGBX || format == REFOCUS_FRAME_BGRX ? 4 * W
                     : format == REFOCUS_FRAME_YUYV || format == REFOCUS_FRAME_UYVY ||
@@ -123,7 +124,6 @@ static struct refocus_frame frame_of(uint32_t format)
                         ? 2 * W
                         : W;
 
-    memset(&frame, 0, sizeof frame);
     frame.format = format;
     frame.width = W;
     frame.height = H;
@@ -221,6 +221,157 @@ static void converters_of_nothing(void **state)
     refocus_converter_destroy(&converter);
 }
 
+/* Structs as an older program has them, of the first layout, and as a newer one does. */
+static const uint32_t no_sizes[] = {0, 4, REFOCUS_MAX_STRUCT_SIZE + 1, UINT32_MAX};
+enum { NO_SIZES = sizeof no_sizes / sizeof *no_sizes };
+
+static void modes_of_any_size(void **state)
+{
+    struct newer {
+        struct refocus_source_mode known;
+        uint64_t added, behind;
+    } older, newer, untouched;
+    struct refocus_source *source = NULL;
+
+    (void)state;
+    memset(&older, 0xa5, sizeof older);
+    newer = older;
+    older.known.struct_size = REFOCUS_SIZE_TO(struct refocus_source_mode, fps);
+    newer.known.struct_size = offsetof(struct newer, behind);
+    assert_status(refocus_source_open(&source, "replay::size 16x12;fps 25;frames 2", NULL),
+                  REFOCUS_OK);
+    for (int start = 0; start < 3; start++)
+        for (int i = 0; i < 2; i++) {
+            struct newer got = i ? newer : older;
+
+            if (start == 0)
+                assert_status(refocus_source_get_mode(source, 0, &got.known), REFOCUS_OK);
+            else if (start == 1)
+                assert_status(refocus_source_start(source, NULL, &got.known, NULL), REFOCUS_OK);
+            else
+                assert_status(refocus_source_restart(source, &got.known, NULL), REFOCUS_OK);
+            assert_true(got.known.width == 16 && got.known.height == 12 && got.known.fps > 24);
+            assert_int_equal(got.known.struct_size, (i ? newer : older).known.struct_size);
+            assert_true(got.added == (i ? 0 : older.added) && got.behind == older.behind);
+            if (start == 1)
+                refocus_source_stop(source);
+        }
+    for (int i = 0; i < NO_SIZES; i++) {
+        newer.known.struct_size = no_sizes[i];
+        untouched = newer;
+        assert_status(refocus_source_get_mode(source, 0, &newer.known), REFOCUS_ERR_ARGUMENT);
+        assert_status(refocus_source_restart(source, &newer.known, NULL), REFOCUS_ERR_ARGUMENT);
+        assert_status(refocus_source_start(source, NULL, &newer.known, NULL), REFOCUS_ERR_ARGUMENT);
+        assert_memory_equal(&newer, &untouched, sizeof newer);
+    }
+    refocus_source_close(&source);
+}
+
+static void counters_of_any_size(void **state)
+{
+    struct newer {
+        struct refocus_source_counters known;
+        uint64_t added, behind;
+    } older, newer, untouched;
+    struct refocus_source *source = started("replay::size 16x12;frames 2", REFOCUS_SOURCE_FAST);
+    const struct refocus_frame *frame;
+
+    (void)state;
+    memset(&older, 0xa5, sizeof older);
+    newer = older;
+    older.known.struct_size = REFOCUS_SIZE_TO(struct refocus_source_counters, restarts);
+    newer.known.struct_size = offsetof(struct newer, behind);
+    assert_status(refocus_source_wait(source, 1000, &frame, NULL), REFOCUS_OK);
+    for (int i = 0; i < 2; i++) {
+        struct newer got = i ? newer : older;
+
+        refocus_source_get_counters(source, &got.known);
+        assert_true(got.known.frames == 1 && got.known.released == 0 && got.known.reserved == 0);
+        assert_int_equal(got.known.struct_size, (i ? newer : older).known.struct_size);
+        assert_true(got.added == (i ? 0 : older.added) && got.behind == older.behind);
+    }
+    for (int i = 0; i < NO_SIZES; i++) {
+        newer.known.struct_size = no_sizes[i];
+        untouched = newer;
+        refocus_source_get_counters(source, &newer.known);
+        assert_memory_equal(&newer, &untouched, sizeof newer);
+    }
+    refocus_source_close(&source);
+}
+
+/* Convert a frame in every way that its format has. */
+static void convert_grey(struct refocus_converter *converter, const struct refocus_frame *frame,
+                         const struct refocus_frame *yuv, int expected)
+{
+    static uint8_t to[W * H * 4];
+    static uint16_t samples[W * H];
+    struct refocus_image rgb = refocus_image_planar(REFOCUS_FORMAT_RGB8, to, W, H);
+    struct refocus_image copy = refocus_image_planar(REFOCUS_FORMAT_NV12, to, W, H);
+
+    assert_status(refocus_convert_rgb8(converter, frame, &rgb, NULL), expected);
+    assert_status(refocus_convert_samples(converter, frame, samples, NULL), expected);
+    assert_status(refocus_convert_copy(converter, yuv, &copy, NULL), expected);
+}
+
+static void frames_of_any_size(void **state)
+{
+    enum { FIRST = REFOCUS_SIZE_TO(struct refocus_frame, dmabuf) };
+    struct newer {
+        struct refocus_frame known;
+        uint64_t added;
+    } grey, yuv;
+    struct refocus_converter *converter = NULL;
+    /* Each is alone in its memory, so that sanitizers see a read behind it. */
+    struct refocus_frame *const old_grey = malloc(FIRST), *const old_yuv = malloc(FIRST);
+    struct refocus_frame copy;
+
+    (void)state;
+    assert_true(old_grey && old_yuv);
+    memset(&grey, 0, sizeof grey);
+    grey.known = frame_of(REFOCUS_FRAME_GREY);
+    yuv = grey;
+    yuv.known = frame_of(REFOCUS_FRAME_NV12);
+    grey.known.struct_size = yuv.known.struct_size = FIRST;
+    memcpy(old_grey, &grey, FIRST);
+    memcpy(old_yuv, &yuv, FIRST);
+    assert_status(refocus_converter_create(&converter), REFOCUS_OK);
+    convert_grey(converter, old_grey, old_yuv, REFOCUS_OK);
+    copy = refocus_frame_copy(old_yuv);
+    assert_int_equal(copy.struct_size, sizeof copy);
+    assert_true(copy.format == REFOCUS_FRAME_NV12 && copy.plane[1] == memory);
+    free(old_grey);
+    free(old_yuv);
+
+    grey.known.struct_size = yuv.known.struct_size = sizeof grey;
+    convert_grey(converter, &grey.known, &yuv.known, REFOCUS_OK);
+    grey.added = yuv.added = 1;
+    convert_grey(converter, &grey.known, &yuv.known, REFOCUS_ERR_UNSUPPORTED);
+    copy = refocus_frame_copy(&yuv.known); /* a field unknown here is left out */
+    assert_int_equal(copy.struct_size, sizeof copy);
+    assert_true(copy.format == REFOCUS_FRAME_NV12 && copy.plane[1] == memory);
+    for (int i = 0; i < NO_SIZES; i++) {
+        grey.known.struct_size = yuv.known.struct_size = no_sizes[i];
+        convert_grey(converter, &grey.known, &yuv.known, REFOCUS_ERR_ARGUMENT);
+        copy = refocus_frame_copy(&yuv.known);
+        assert_true(copy.struct_size == sizeof copy && copy.format == REFOCUS_FRAME_ANY &&
+                    isnan(copy.lens_dioptres) && copy.dmabuf[2] == -1);
+    }
+    assert_int_equal(refocus_frame_copy(NULL).format, REFOCUS_FRAME_ANY);
+    refocus_converter_destroy(&converter);
+}
+
+/* A source says how much of its frames there is. */
+static void frames_of_sources(void **state)
+{
+    struct refocus_source *source = started("replay::size 16x12;frames 2", REFOCUS_SOURCE_FAST);
+    const struct refocus_frame *frame;
+
+    (void)state;
+    assert_status(refocus_source_wait(source, 1000, &frame, NULL), REFOCUS_OK);
+    assert_int_equal(frame->struct_size, sizeof *frame);
+    refocus_source_close(&source);
+}
+
 static void registering_nothing(void **state)
 {
     static uint16_t samples[W * H], out[W * H];
@@ -239,10 +390,10 @@ static void registering_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sources_of_nothing),
-        cmocka_unit_test(sinks_of_nothing),
-        cmocka_unit_test(converters_of_nothing),
-        cmocka_unit_test(registering_nothing),
+        cmocka_unit_test(sources_of_nothing),    cmocka_unit_test(sinks_of_nothing),
+        cmocka_unit_test(converters_of_nothing), cmocka_unit_test(modes_of_any_size),
+        cmocka_unit_test(counters_of_any_size),  cmocka_unit_test(frames_of_any_size),
+        cmocka_unit_test(frames_of_sources),     cmocka_unit_test(registering_nothing),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

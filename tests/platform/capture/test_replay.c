@@ -33,7 +33,7 @@ static const struct refocus_frame *next(struct refocus_source *source)
 
 static struct refocus_source_counters counters(const struct refocus_source *source)
 {
-    struct refocus_source_counters c;
+    struct refocus_source_counters c = refocus_source_counters_default();
 
     refocus_source_get_counters(source, &c);
     return c;
