@@ -178,6 +178,14 @@ int refine(const cv::Mat &left, const cv::Mat &right, const search &s, int reach
     return best;
 }
 
+/* As far as the caller's struct goes; there may be none. */
+int write_report(refocus_stereo_report *report, const refocus_stereo_report *own)
+{
+    return report ? refocus_struct_write(report, REFOCUS_SIZE_TO(refocus_stereo_report, matched),
+                                         own, sizeof *own)
+                  : (int)REFOCUS_OK;
+}
+
 int stereo(const refocus_image *left, const refocus_image *right,
            const refocus_stereo_params *params, float *out, refocus_stereo_report *report,
            refocus_cv_reason *reason)
@@ -238,9 +246,9 @@ int stereo(const refocus_image *left, const refocus_image *right,
                                 "more than one shift; give a left and a right one");
     for (int y = 0; y < full.rows; y++)
         std::copy_n(full.ptr<float>(y), full.cols, out + (size_t)y * (size_t)full.cols);
-    if (report) {
-        *report = {(float)(s.offset * scale), (float)least, (float)greatest, matched};
-    }
+    const refocus_stereo_report found = {sizeof found, (float)(s.offset * scale), (float)least,
+                                         (float)greatest, matched};
+    write_report(report, &found);
     return REFOCUS_OK;
 }
 
@@ -252,6 +260,7 @@ int refocus_cv_stereo(const struct refocus_image *left, const struct refocus_ima
 {
     struct refocus_image own_left, own_right;
     struct refocus_stereo_params own;
+    const struct refocus_stereo_report none = refocus_stereo_report_default();
     int status = refocus_image_read(&own_left, left);
 
     if (status == REFOCUS_OK)
@@ -261,6 +270,9 @@ int refocus_cv_stereo(const struct refocus_image *left, const struct refocus_ima
                                      REFOCUS_SIZE_TO(struct refocus_stereo_params, method), params);
     if (status != REFOCUS_OK)
         return refocus_cv::fail(reason, status, "not two pictures of a known size of struct");
+    if (write_report(report, &none) != REFOCUS_OK)
+        return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT,
+                                "the report is not of a known size of struct");
     left = &own_left;
     right = &own_right;
     params = &own;

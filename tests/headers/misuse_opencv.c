@@ -8,7 +8,7 @@ static const char *const no_model = "misuse-of-opencv.onnx";
 
 static struct refocus_network network_of(void)
 {
-    struct refocus_network network;
+    struct refocus_network network = TAKES_NOTHING(refocus_network_default);
 
     ANSWERS(REFOCUS_OK, refocus_cv_network, 0, &network);
     return network;
@@ -20,7 +20,7 @@ static void use_photo(const struct refocus_image *photo)
     const struct refocus_network network = network_of();
     const struct refocus_image good = misuse_photo();
     const struct refocus_disparity map = misuse_map();
-    struct refocus_estimate estimate;
+    struct refocus_estimate estimate = refocus_estimate_default();
     float disparity[1];
 
     REFUSED(refocus_cv_stereo, photo, &good, &stereo, disparity, NULL, NULL);
@@ -47,8 +47,13 @@ static void stereo_pairs(void)
     const struct refocus_image photo =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, 64, 32, 3 * 64);
     const struct refocus_stereo_params good = TAKES_NOTHING(refocus_stereo_params_default);
+    const struct misuse no_size = BAD(refocus_stereo_report, struct_size, 0);
+    struct refocus_stereo_report report = TAKES_NOTHING(refocus_stereo_report_default);
     static float disparity[64 * 32];
 
+    misuse_spoil(&report, &no_size);
+    REFUSED(refocus_cv_stereo, &photo, &photo, &good, disparity, &report, NULL);
+    misuse_spoil(NULL, NULL);
     REFUSED(refocus_cv_stereo, &photo, &photo, NULL, disparity, NULL, NULL);
     REFUSED(refocus_cv_stereo, &photo, &photo, &good, NULL, NULL, NULL);
     for (size_t i = 0; i < COUNT(bad); i++) {
@@ -64,11 +69,15 @@ static void networks(void)
 {
     const struct misuse bad[] = {
         BAD(refocus_network, width, 0), BAD(refocus_network, width, INT32_MAX),
-        BAD(refocus_network, height, INT32_MIN), BAD(refocus_network, scale, NAN)};
+        BAD(refocus_network, height, INT32_MIN), BAD(refocus_network, scale, NAN),
+        BAD(refocus_network, struct_size, 0)};
+    const struct misuse no_size = BAD(refocus_estimate, struct_size, 0);
     struct refocus_network network = network_of();
     const struct refocus_image photo = misuse_photo();
+    struct refocus_network unsized_network;
     struct refocus_estimator *estimator = NULL;
-    struct refocus_estimate estimate;
+    struct refocus_estimate estimate = TAKES_NOTHING(refocus_estimate_default);
+    struct refocus_estimate unsized_estimate = estimate;
 
     GIVES_NULL(refocus_cv_network_name, UINT32_MAX);
     REFUSED(refocus_cv_network, UINT32_MAX, &network);
@@ -90,6 +99,16 @@ static void networks(void)
     misuse_spoil(NULL, NULL);
     REFUSED(refocus_cv_estimator_run, NULL, &photo, &estimate, NULL);
     REFUSED(refocus_cv_estimator_run, NULL, &photo, NULL, NULL);
+    network = network_of();
+    unsized_network = network;
+    unsized_network.struct_size = 0;
+    REFUSED(refocus_cv_network, 0, &unsized_network);
+    REFUSED(refocus_cv_network_fit, &unsized_network, no_model, NULL);
+    misuse_spoil(&unsized_estimate, &no_size);
+    REFUSED(refocus_cv_estimate, &photo, no_model, &network, &unsized_estimate, NULL);
+    REFUSED(refocus_cv_estimator_run, NULL, &photo, &unsized_estimate, NULL);
+    RETURNS(refocus_cv_estimate_free, &unsized_estimate);
+    misuse_spoil(NULL, NULL);
     RETURNS(refocus_cv_estimator_destroy, NULL);
     RETURNS(refocus_cv_estimator_destroy, &estimator);
     RETURNS(refocus_cv_estimate_free, NULL);

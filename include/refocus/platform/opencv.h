@@ -10,13 +10,15 @@
 #include <stdint.h>
 #include <string.h>
 #include <refocus/image.h>
+#include <refocus/sized.h>
 #include <refocus/status.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/** Why something failed, in words that say what to do: one line, no full stop. */
+/** Why something failed, in words that say what to do: one line, no full stop. The struct is
+ *  complete. */
 struct refocus_cv_reason {
     char text[256];
 };
@@ -53,12 +55,22 @@ static inline struct refocus_stereo_params refocus_stereo_params_default(void)
     return params;
 }
 
-/** The result of the matching. */
+/** The result of the matching. Start from refocus_stereo_report_default(). */
 struct refocus_stereo_report {
+    uint32_t struct_size;  /**< sizeof(struct refocus_stereo_report), set by the caller */
     float vertical_offset; /**< pixels that the right picture lies lower; undone */
     float least, greatest; /**< disparities found, pixels of the left picture */
     float matched;         /**< share of pixels that agree from left and right */
 };
+
+static inline struct refocus_stereo_report refocus_stereo_report_default(void)
+{
+    struct refocus_stereo_report report;
+
+    memset(&report, 0, sizeof report);
+    report.struct_size = sizeof report;
+    return report;
+}
 
 /**
  * Disparities of a rectified stereo pair, in pixels of the left picture: a point at x
@@ -68,6 +80,8 @@ struct refocus_stereo_report {
  *
  * @param left, right  RGB8, of the same size, at least 64 x 32
  * @param disparity    receives width x height floats, larger = nearer
+ * @param report       receives what was found, all 0 on an error; only its struct_size is read;
+ *                     may be NULL
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_NO_DEPTH (the pictures do not
  *         match, or their disparities differ by less than a pixel), REFOCUS_ERR_MEMORY,
  *         REFOCUS_ERR_UNSUPPORTED (OpenCV refused; see the reason). On an error @p disparity holds
@@ -79,45 +93,85 @@ REFOCUS_API int refocus_cv_stereo(const struct refocus_image *left,
                                   struct refocus_stereo_report *report,
                                   struct refocus_cv_reason *reason);
 
-/** How a network wants its picture: value = (code - mean) scale, R G B. */
+/** How a network wants its picture: value = (code - mean) scale, R G B. Start from
+ *  refocus_network_default(). */
 struct refocus_network {
+    uint32_t struct_size;  /**< sizeof(struct refocus_network) */
     int32_t width, height; /**< size of its input, 32 to 2048 */
     float mean[3];         /**< codes 0..255 */
-    float scale;
-    int32_t inverse; /**< 1: its output grows with distance */
+    float scale;           /**< default 1 */
+    int32_t inverse;       /**< 1: its output grows with distance */
 };
 
-/** Presets: "tcmonodepth", "midas-small", "depth-anything-small"; NULL ends them. */
+/** A network that takes the codes as they are, of an input whose size is still to be set. */
+static inline struct refocus_network refocus_network_default(void)
+{
+    struct refocus_network network;
+
+    memset(&network, 0, sizeof network);
+    network.struct_size = sizeof network;
+    network.scale = 1;
+    return network;
+}
+
+/** Names of presets: "tcmonodepth", "midas-small", "depth-anything-small"; NULL ends them.
+ *  Thread-safe. */
 REFOCUS_API const char *refocus_cv_network_name(uint32_t index);
+
+/**
+ * A preset.
+ *
+ * @param network  receives it; only its struct_size is read
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT with @p network untouched. Thread-safe.
+ */
 REFOCUS_API int refocus_cv_network(uint32_t index, struct refocus_network *network);
 
 /**
  * Take width and height from the shape of the input that an ONNX file states; a side
  * that is left open there, or no such shape, leaves what @p network holds.
  *
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO (no such file),
- *         REFOCUS_ERR_FORMAT (the shape is beyond 32 to 2048)
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (@p network has fields that
+ *         this library does not know), REFOCUS_ERR_IO (no such file), REFOCUS_ERR_FORMAT (the
+ *         shape is beyond 32 to 2048). On an error @p network is untouched.
  */
 REFOCUS_API int refocus_cv_network_fit(struct refocus_network *network, const char *model,
                                        struct refocus_cv_reason *reason);
 
-/** Depth of one picture, without a unit. */
+/** Depth of one picture, without a unit. Start from refocus_estimate_default(). */
 struct refocus_estimate {
-    float *samples; /**< packed, larger = nearer; freed by refocus_cv_estimate_free() */
-    int32_t width, height;
+    uint32_t struct_size;  /**< sizeof(struct refocus_estimate), set by the caller */
+    int32_t width, height; /**< samples */
+    uint32_t reserved;     /**< 0 */
+    float *samples;        /**< packed, larger = nearer; freed by refocus_cv_estimate_free() */
 };
+
+static inline struct refocus_estimate refocus_estimate_default(void)
+{
+    struct refocus_estimate estimate;
+
+    memset(&estimate, 0, sizeof estimate);
+    estimate.struct_size = sizeof estimate;
+    return estimate;
+}
 
 /**
  * Depth of one picture by a network in an ONNX file, larger = nearer.
  *
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_IO (no such file),
- *         REFOCUS_ERR_FORMAT (no network that OpenCV reads, or not one with this
- *         input), REFOCUS_ERR_MEMORY
+ * @param estimate  receives the depth, or NULL samples on an error; only its struct_size is read,
+ *                  so that samples that it has are lost, not freed; ended by
+ *                  refocus_cv_estimate_free()
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (where it is the struct_size of @p estimate that is out
+ *         of its range, that is untouched), REFOCUS_ERR_UNSUPPORTED (a struct has fields that this
+ *         library does not know), REFOCUS_ERR_IO (no such file), REFOCUS_ERR_FORMAT (no network
+ *         that OpenCV reads, or not one with this input), REFOCUS_ERR_MEMORY
  */
 REFOCUS_API int refocus_cv_estimate(const struct refocus_image *photo, const char *model,
                                     const struct refocus_network *network,
                                     struct refocus_estimate *estimate,
                                     struct refocus_cv_reason *reason);
+
+/** Free the samples and set them to NULL, their size to 0. With NULL, or a struct_size out of its
+ *  range, it does nothing. */
 REFOCUS_API void refocus_cv_estimate_free(struct refocus_estimate *estimate);
 
 /** A network that is read once and run as often as wanted, as for a camera. Opaque;

@@ -60,7 +60,7 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
                       const struct stereo_settings *how, const struct depth_settings *settings)
 {
     struct refocus_stereo_params params = refocus_stereo_params_default();
-    struct refocus_stereo_report report;
+    struct refocus_stereo_report report = refocus_stereo_report_default();
     struct refocus_cv_reason reason = {""};
     struct refocus_image other;
     float *samples = NULL;
@@ -116,8 +116,8 @@ static void adjust(struct refocus_network *network, const struct network_setting
 int input_read_estimate(struct input *input, const char *photo, const char *model,
                         const struct network_settings *how, const struct depth_settings *settings)
 {
-    struct refocus_estimate estimate;
-    struct refocus_network network;
+    struct refocus_estimate estimate = refocus_estimate_default();
+    struct refocus_network network = refocus_network_default();
     struct refocus_cv_reason reason = {""};
     int status = input_read_photo(input, photo, "a photo");
 

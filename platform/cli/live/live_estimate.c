@@ -76,7 +76,7 @@ struct live_estimator {
 int live_estimate_open(struct live *live)
 {
     const struct live_estimate_settings *settings = &live->settings->estimate;
-    struct refocus_network network;
+    struct refocus_network network = refocus_network_default();
     struct refocus_cv_reason reason = {""};
     struct live_estimator *estimator = calloc(1, sizeof *estimator);
     int status = REFOCUS_ERR_MEMORY;
@@ -162,7 +162,7 @@ static int estimate_one(struct live *live, const struct live_picture *picture,
                         struct refocus_cv_reason *reason)
 {
     const int64_t begin = live_now_ns();
-    struct refocus_estimate estimate = {NULL, 0, 0};
+    struct refocus_estimate estimate = refocus_estimate_default();
     struct live_depth_map *to = NULL;
     int status =
         refocus_cv_estimator_run(live->estimator->network, &picture->image, &estimate, reason);

@@ -53,7 +53,7 @@ static void stereo(void **state)
     static float d[W * H];
     const struct refocus_image a = picture(left), b = picture(right);
     const struct refocus_stereo_params params = refocus_stereo_params_default();
-    struct refocus_stereo_report report;
+    struct refocus_stereo_report report = refocus_stereo_report_default();
     struct refocus_cv_reason reason;
 
     (void)state;
@@ -192,12 +192,24 @@ static void write_network(const char *path)
     fclose(file);
 }
 
+/* The network that write_network() writes. */
+static struct refocus_network network_of(float mean_red, float scale)
+{
+    struct refocus_network network = refocus_network_default();
+
+    network.width = 48;
+    network.height = 32;
+    network.mean[0] = mean_red;
+    network.scale = scale;
+    return network;
+}
+
 static void estimate(void **state)
 {
     static uint8_t pixels[3 * W * H];
     const struct refocus_image photo = picture(pixels);
-    struct refocus_network network = {48, 32, {10, 0, 0}, 0.5f, 0}, fitted;
-    struct refocus_estimate result;
+    struct refocus_network network = network_of(10, 0.5f), fitted = refocus_network_default();
+    struct refocus_estimate result = refocus_estimate_default();
     struct refocus_cv_reason reason;
     char path[] = "/tmp/refocus-onnx-XXXXXX";
     const int file = mkstemp(path);
@@ -254,9 +266,9 @@ static void estimator(void **state)
 {
     static uint8_t pixels[3 * W * H];
     struct refocus_image photo = picture(pixels);
-    struct refocus_network network = {48, 32, {0, 0, 0}, 1, 0};
+    struct refocus_network network = network_of(0, 1);
     struct refocus_estimator *net = NULL;
-    struct refocus_estimate result;
+    struct refocus_estimate result = refocus_estimate_default();
     struct refocus_cv_reason reason;
     char path[] = "/tmp/refocus-onnx-XXXXXX";
     const int file = mkstemp(path);
@@ -288,6 +300,144 @@ static void estimator(void **state)
     close(file);
     assert_int_equal(refocus_cv_estimator_create(NULL, path, &network, NULL), REFOCUS_ERR_ARGUMENT);
     assert_null(net);
+}
+
+/* Structs as an older program has them, of the first layout, and as a newer one does. */
+static const uint32_t no_sizes[] = {0, 4, REFOCUS_MAX_STRUCT_SIZE + 1, UINT32_MAX};
+enum { NO_SIZES = sizeof no_sizes / sizeof *no_sizes };
+
+static void reports_of_any_size(void **state)
+{
+    static uint8_t left[3 * W * H], right[3 * W * H];
+    static float d[W * H];
+    struct newer {
+        struct refocus_stereo_report known;
+        uint32_t added, behind;
+    } older, newer, untouched;
+    const struct refocus_image a = picture(left), b = picture(right);
+    const struct refocus_stereo_params params = refocus_stereo_params_default();
+
+    (void)state;
+    memset(&older, 0xa5, sizeof older);
+    newer = older;
+    older.known.struct_size = REFOCUS_SIZE_TO(struct refocus_stereo_report, matched);
+    newer.known.struct_size = offsetof(struct newer, behind);
+    make_pair(left, right, 3);
+    for (int i = 0; i < 2; i++) {
+        struct newer got = i ? newer : older;
+
+        assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &got.known, NULL), REFOCUS_OK);
+        assert_int_equal(got.known.struct_size, (i ? newer : older).known.struct_size);
+        assert_true(fabsf(got.known.vertical_offset - 3) < 0.5f && got.known.matched > 0.5f);
+        assert_true(got.added == (i ? 0 : older.added) && got.behind == older.behind);
+    }
+    for (int i = 0; i < NO_SIZES; i++) {
+        newer.known.struct_size = no_sizes[i];
+        untouched = newer;
+        assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &newer.known, NULL),
+                         REFOCUS_ERR_ARGUMENT);
+        assert_memory_equal(&newer, &untouched, sizeof newer);
+    }
+}
+
+static void networks_of_any_size(void **state)
+{
+    struct newer {
+        struct refocus_network known;
+        uint32_t added, behind;
+    } older, newer, untouched;
+    struct refocus_estimator *net = NULL;
+    char path[] = "/tmp/refocus-onnx-XXXXXX";
+    const int file = mkstemp(path);
+
+    (void)state;
+    assert_true(file >= 0);
+    close(file);
+    write_network(path);
+    memset(&older, 0xa5, sizeof older);
+    newer = older;
+    older.known.struct_size = REFOCUS_SIZE_TO(struct refocus_network, inverse);
+    newer.known.struct_size = offsetof(struct newer, behind);
+    for (int i = 0; i < 2; i++) {
+        struct newer got = i ? newer : older;
+
+        assert_int_equal(refocus_cv_network(0, &got.known), REFOCUS_OK);
+        assert_int_equal(got.known.width, 320);
+        assert_int_equal(refocus_cv_network_fit(&got.known, path, NULL), REFOCUS_OK);
+        assert_int_equal(got.known.width, 48);
+        assert_int_equal(got.known.struct_size, (i ? newer : older).known.struct_size);
+        assert_true(got.added == (i ? 0 : older.added) && got.behind == older.behind);
+        assert_int_equal(refocus_cv_estimator_create(&net, path, &got.known, NULL), REFOCUS_OK);
+        refocus_cv_estimator_destroy(&net);
+        if (i == 0)
+            continue;
+        got.added = 1; /* asks for something that is not here */
+        assert_int_equal(refocus_cv_network_fit(&got.known, path, NULL), REFOCUS_ERR_UNSUPPORTED);
+        assert_int_equal(refocus_cv_estimator_create(&net, path, &got.known, NULL),
+                         REFOCUS_ERR_UNSUPPORTED);
+        assert_null(net);
+    }
+    for (int i = 0; i < NO_SIZES; i++) {
+        newer.known.struct_size = no_sizes[i];
+        untouched = newer;
+        assert_int_equal(refocus_cv_network(0, &newer.known), REFOCUS_ERR_ARGUMENT);
+        assert_int_equal(refocus_cv_network_fit(&newer.known, path, NULL), REFOCUS_ERR_ARGUMENT);
+        assert_int_equal(refocus_cv_estimator_create(&net, path, &newer.known, NULL),
+                         REFOCUS_ERR_ARGUMENT);
+        assert_memory_equal(&newer, &untouched, sizeof newer);
+    }
+    unlink(path);
+}
+
+static void estimates_of_any_size(void **state)
+{
+    static uint8_t pixels[3 * W * H];
+    struct newer {
+        struct refocus_estimate known;
+        uint64_t added, behind;
+    } older, newer, untouched;
+    const struct refocus_image photo = picture(pixels);
+    const struct refocus_network network = network_of(0, 1);
+    struct refocus_estimator *net = NULL;
+    char path[] = "/tmp/refocus-onnx-XXXXXX";
+    const int file = mkstemp(path);
+
+    (void)state;
+    assert_true(file >= 0);
+    close(file);
+    write_network(path);
+    memset(&older, 0xa5, sizeof older);
+    newer = older;
+    older.known.struct_size = REFOCUS_SIZE_TO(struct refocus_estimate, samples);
+    newer.known.struct_size = offsetof(struct newer, behind);
+    assert_int_equal(refocus_cv_estimator_create(&net, path, &network, NULL), REFOCUS_OK);
+    for (int i = 0; i < 4; i++) {
+        struct newer got = i % 2 ? newer : older;
+
+        if (i < 2)
+            assert_int_equal(refocus_cv_estimator_run(net, &photo, &got.known, NULL), REFOCUS_OK);
+        else
+            assert_int_equal(refocus_cv_estimate(&photo, path, &network, &got.known, NULL),
+                             REFOCUS_OK);
+        assert_true(got.known.width == 48 && got.known.height == 32 && got.known.samples);
+        refocus_cv_estimate_free(&got.known);
+        assert_null(got.known.samples);
+        assert_true(got.known.width == 0 && got.known.reserved == 0);
+        assert_int_equal(got.known.struct_size, (i % 2 ? newer : older).known.struct_size);
+        assert_true(got.added == (i % 2 ? 0 : older.added) && got.behind == older.behind);
+    }
+    for (int i = 0; i < NO_SIZES; i++) {
+        newer.known.struct_size = no_sizes[i];
+        untouched = newer;
+        assert_int_equal(refocus_cv_estimator_run(net, &photo, &newer.known, NULL),
+                         REFOCUS_ERR_ARGUMENT);
+        assert_int_equal(refocus_cv_estimate(&photo, path, &network, &newer.known, NULL),
+                         REFOCUS_ERR_ARGUMENT);
+        refocus_cv_estimate_free(&newer.known);
+        assert_memory_equal(&newer, &untouched, sizeof newer);
+    }
+    refocus_cv_estimator_destroy(&net);
+    unlink(path);
 }
 
 static void upsample(void **state)
@@ -344,9 +494,15 @@ static void upsample_by(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(stereo),   cmocka_unit_test(stereo_refuses),
-                                       cmocka_unit_test(estimate), cmocka_unit_test(estimator),
-                                       cmocka_unit_test(upsample), cmocka_unit_test(upsample_by)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(stereo),
+                                       cmocka_unit_test(stereo_refuses),
+                                       cmocka_unit_test(estimate),
+                                       cmocka_unit_test(estimator),
+                                       cmocka_unit_test(reports_of_any_size),
+                                       cmocka_unit_test(networks_of_any_size),
+                                       cmocka_unit_test(estimates_of_any_size),
+                                       cmocka_unit_test(upsample),
+                                       cmocka_unit_test(upsample_by)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
