@@ -476,7 +476,7 @@ static void other_sizes(void **state)
     map.known.struct_size = sizeof map;
     report.known.struct_size = offsetof(struct newer_report, behind);
     assert_int_equal(refocus_depth_to_disparity(&map.known, plain, 8, &report.known), REFOCUS_OK);
-    assert_true(report.known.near_m == 1);
+    assert_true(report.known.near_m == 1000);
     assert_true(report.added == 0 && report.behind == 0xa5a5a5a5a5a5a5a5);
     map.added = 1;
     assert_int_equal(refocus_depth_to_disparity(&map.known, out, 8, NULL), REFOCUS_ERR_UNSUPPORTED);

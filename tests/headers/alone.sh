@@ -1,15 +1,20 @@
 #!/bin/sh
 # usage: alone.sh c11|c++11 INCLUDE_FOLDER COMPILER...
-# Compiles each public header alone, twice in one file, as strictly as can be.
+# Compiles each public header alone, twice in one file, as strictly as can be. With pointers of 64
+# bits no struct has padding, whose bytes a program that sets every field leaves unset: sized.h.
 set -u
 std=$1 include=$2
 shift 2
 case $std in c++*) language=c++ ;; *) language=c ;; esac
-failed=0 count=0
+failed=0 count=0 padded=
+if [ "$(echo __SIZEOF_POINTER__ | "$@" -E -P -x c -)" = 8 ]; then
+    padded=-Wpadded
+fi
 for header in $(cd "$include" && find refocus -name '*.h' | sort); do
     count=$((count + 1))
+    case $header in */settings.h) padding= ;; *) padding=$padded ;; esac # a program's own struct
     if printf '#include <%s>\n#include <%s>\n' "$header" "$header" |
-        "$@" -x $language -std="$std" -pedantic -Wall -Wextra -Werror -I"$include" \
+        "$@" -x $language -std="$std" -pedantic -Wall -Wextra -Werror $padding -I"$include" \
             -fsyntax-only -; then
         echo "ok $std $header"
     else

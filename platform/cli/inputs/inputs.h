@@ -74,7 +74,7 @@ struct input {
     struct refocus_photo *photo;
     struct refocus_photo *side;             /* a depth file of its own, or NULL */
     const struct refocus_photo *depth_from; /* one of the two, or `made` */
-    struct refocus_photo made; /* of depth that is made of pictures: its parts follow */
+    struct refocus_photo made;              /* depth made of pictures; its parts follow */
     struct refocus_depth_map made_map;
     struct refocus_photo_info made_info;
     float *made_samples;
