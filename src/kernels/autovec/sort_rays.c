@@ -161,13 +161,14 @@ static RF_ALWAYS_INLINE void place_some(struct rf_sorted_rays *restrict sorted,
     }
 }
 
-/* Counts lie in bytes of a word, as chains of memory accesses would take longer. */
-static RF_ALWAYS_INLINE void put_in_order(struct rf_sorted_rays *restrict sorted,
-                                          uint8_t *restrict order,
-                                          const struct rf_sort_job *restrict job,
-                                          const struct state *restrict s, const struct way way)
+/* Counts lie in bytes of a word, as chains of memory accesses would take longer. One call for all
+ * ways: it costs little beside 64 rays, and is long. */
+static __attribute__((noinline)) void put_in_order(struct rf_sorted_rays *restrict sorted,
+                                                   uint8_t *restrict order,
+                                                   const struct rf_sort_job *restrict job,
+                                                   const struct state *restrict s)
 {
-    const int first = way.shared ? job->shared : 0;
+    const int first = job->shared;
     uint64_t count = 0, at, first_count;
     uint8_t class[RF_RAY_CHUNK]; /* bits from which its byte begins */
 
@@ -201,7 +202,7 @@ static RF_ALWAYS_INLINE void place_all(struct rf_sorted_rays *restrict sorted,
     const uint8_t *const begin = sorted->begin;
     uint8_t order[RF_RAY_CHUNK];
 
-    put_in_order(sorted, order, job, s, way);
+    put_in_order(sorted, order, job, s);
     place_some(sorted, job, s, order, begin[0], begin[1], 0, way);
     place_some(sorted, job, s, order, begin[1], begin[2], 1, way);
     place_some(sorted, job, s, order, begin[2], begin[3], 2, way);
