@@ -2,10 +2,11 @@
  * it fails.
  *
  *     live_camera v4l2:/dev/video0 v4l2:/dev/video2 v4l2:/dev/video9 100
- *     live_camera libcamera:0      v4l2:/dev/video2 null 100
+ *     live_camera libcamera:0      v4l2:/dev/video2 null 100 LensPosition=1.5
  *     live_camera "replay::size 320x240" "replay::format Z16;size 160x120" null 30
  *
- * Here one thread does everything; `refocus live` shows how the steps overlap. */
+ * Behind the number of frames, controls of the camera may be set, by the names that it has for
+ * them. Here one thread does everything; `refocus live` shows how the steps overlap. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -46,6 +47,19 @@ static const struct refocus_frame *next(struct refocus_source *source)
     }
 }
 
+/* "focus_absolute=120": the camera is told, and not the renderer. */
+static void set_control(struct refocus_source *source, const char *text)
+{
+    char name[64];
+    double value;
+
+    if (sscanf(text, "%63[^=]=%lf", name, &value) != 2) {
+        fprintf(stderr, "%s: give NAME=VALUE\n", text);
+        exit(2);
+    }
+    check(refocus_source_set_control(source, name, value, &reason));
+}
+
 static uint16_t *read_depth(struct refocus_source *source, struct refocus_converter *converter,
                             struct refocus_disparity *disparity)
 {
@@ -83,12 +97,14 @@ int main(int argc, char **argv)
     struct refocus_disparity disparity;
     uint16_t *samples = NULL;
 
-    if (argc != 5) {
-        fprintf(stderr, "usage: live_camera CAMERA DEPTH_CAMERA SINK FRAMES\n");
+    if (argc < 5) {
+        fprintf(stderr, "usage: live_camera CAMERA DEPTH_CAMERA SINK FRAMES [NAME=VALUE...]\n");
         return 0;
     }
     check(refocus_source_open(&camera, argv[1], &reason));
     check(refocus_source_start(camera, NULL, &mode, &reason));
+    for (int i = 5; i < argc; i++)
+        set_control(camera, argv[i]);
     check(refocus_source_open(&depth_camera, argv[2], &reason));
     check(refocus_source_start(depth_camera, NULL, NULL, &reason));
     check(refocus_sink_open(&sink, argv[3], &reason));

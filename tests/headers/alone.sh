@@ -12,7 +12,8 @@ if [ "$(echo __SIZEOF_POINTER__ | "$@" -E -P -x c -)" = 8 ]; then
 fi
 for header in $(cd "$include" && find refocus -name '*.h' | sort); do
     count=$((count + 1))
-    case $header in */settings.h | */refocus.h) padding= ;; *) padding=$padded ;; esac # a program's own struct
+    # struct refocus_settings is the program's own.
+    case $header in */settings.h | */refocus.h) padding= ;; *) padding=$padded ;; esac
     if printf '#include <%s>\n#include <%s>\n' "$header" "$header" |
         "$@" -x $language -std="$std" -pedantic -Wall -Wextra -Werror $padding -I"$include" \
             -fsyntax-only -; then

@@ -3,6 +3,9 @@
 #include <stdlib.h>
 #include "live/live_steady.h"
 
+/* Depth that is older shows another moment: the camera was away, or a file begins again. */
+static const int64_t longest_gap_ns = 1000000000;
+
 static int fit(struct live_steady *steady, double strength, const struct live_depth_map *map)
 {
     struct refocus_temporal_params params =
@@ -20,6 +23,16 @@ static int fit(struct live_steady *steady, double strength, const struct live_de
     steady->map.width = map->width;
     steady->map.height = map->height;
     return steady->map.disparity ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
+}
+
+/* Forget the past where the next map does not follow on it in time. */
+static void follow_time(struct live_steady *steady, int64_t timestamp_ns)
+{
+    const int64_t step_ns = timestamp_ns - steady->map.timestamp_ns;
+
+    if (step_ns < 0 || step_ns > longest_gap_ns)
+        refocus_temporal_reset(steady->filter);
+    steady->map.timestamp_ns = timestamp_ns;
 }
 
 /* The past on the scale of a map, where its range has moved. */
@@ -48,12 +61,12 @@ int live_steady_run(struct live_steady *steady, double strength, const struct li
 
     if (status == REFOCUS_OK && steady->map.number != from->number) {
         /* One map may serve several frames. */
+        follow_time(steady, from->timestamp_ns);
         status = follow_range(steady, &from->range);
         if (status == REFOCUS_OK)
             status =
                 refocus_temporal_run(steady->filter, photo, &in, steady->map.disparity, stride);
         steady->map.number = from->number;
-        steady->map.timestamp_ns = from->timestamp_ns;
         live_times_add(&steady->times, (double)(live_now_ns() - begin) / 1e6);
     }
     if (status == REFOCUS_OK)
