@@ -116,11 +116,13 @@ static inline struct refocus_frame refocus_frame_default(void)
  */
 static inline struct refocus_frame refocus_frame_copy(const struct refocus_frame *frame)
 {
+    const size_t smallest = REFOCUS_SIZE_TO(struct refocus_frame, dmabuf);
     struct refocus_frame copy = refocus_frame_default();
 
-    if (frame && frame->struct_size <= REFOCUS_MAX_STRUCT_SIZE)
-        refocus_struct_write(&copy, REFOCUS_SIZE_TO(struct refocus_frame, dmabuf), frame,
-                             frame->struct_size);
+    if (frame && frame->struct_size >= smallest && frame->struct_size <= REFOCUS_MAX_STRUCT_SIZE) {
+        memcpy(&copy, frame, frame->struct_size < sizeof copy ? frame->struct_size : sizeof copy);
+        copy.struct_size = sizeof copy;
+    }
     return copy;
 }
 
