@@ -18,6 +18,13 @@ ENDING = ['SIGHUP', 'SIGQUIT', 'SIGALRM', 'SIGVTALRM', 'SIGPROF', 'SIGUSR1', 'SI
 STUCK = '#!/bin/sh\nfor out; do :; done\n: >"${out#file:}"\necho $$ >process\nexec sleep 600\n'
 
 
+# Who starts the tests in the background, or by nohup, may have these ignored, and children would
+# inherit that.
+for number in (signal.SIGHUP, signal.SIGQUIT, signal.SIGTERM):
+    signal.signal(number, signal.SIG_DFL)
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
 def no_core():
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
