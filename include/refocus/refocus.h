@@ -4,6 +4,7 @@
 
 #include <refocus/aperture.h>
 #include <refocus/depth.h>
+#include <refocus/depth_edges.h>
 #include <refocus/focus.h>
 #include <refocus/image.h>
 #include <refocus/lens.h>

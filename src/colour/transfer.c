@@ -1,6 +1,8 @@
 /* transfer.c: makes the tables between 8-bit codes and the values that are averaged. */
 #include "colour/transfer.h"
 
+#include "support/exp_minus.h"
+
 #include <refocus/render.h>
 
 #include "tables/transfer.inc"
@@ -26,25 +28,11 @@ void rf_transfer_init(struct rf_transfer *transfer, int blend)
     }
 }
 
-/* exp(-x) for x >= 0 from IEEE operations alone: the C library's exp may round
- * differently from one system to the next, and pictures must not. exp(-x) is the 1024th
- * power of a 5-term series of exp(-x / 1024), good to 1e-13 for the x used here. */
-static double exp_minus(double x)
-{
-    double e;
-
-    x = x > 64.0 ? -64.0 / 1024 : -x / 1024;
-    e = 1 + x * (1 + x / 2 * (1 + x / 3 * (1 + x / 4 * (1 + x / 5))));
-    for (int i = 0; i < 10; i++)
-        e *= e;
-    return e;
-}
-
 void rf_highlight_weights(uint16_t weight[256], double sigma)
 {
     for (int c = 0; c < 256; c++) {
         const double below = (255 - c) / sigma;
-        const double w = RF_WEIGHT_MAX * exp_minus(below * below / 2) + 0.5;
+        const double w = RF_WEIGHT_MAX * rf_exp_minus(below * below / 2) + 0.5;
 
         weight[c] = w < 1 ? 1 : (uint16_t)w;
     }

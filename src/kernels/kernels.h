@@ -15,6 +15,7 @@
  *     thin.h        thin structures
  *     upsample.h    the depth upsampler
  *     codes.h       disparity maps of few codes
+ *     edges.h       edges of disparity maps
  *     series.h      diffusion
  *
  * Every kernel has a line in kernels.def and lives in the file of its name. There are three kinds:
@@ -44,6 +45,7 @@
 #include "kernels/blur.h"
 #include "kernels/codes.h"
 #include "kernels/discs.h"
+#include "kernels/edges.h"
 #include "kernels/gather.h"
 #include "kernels/light.h"
 #include "kernels/ranges.h"

@@ -221,6 +221,7 @@ static int run(int argc, char **argv)
     const char *files[2];
     int status;
 
+    settings.depth.edges = EDGES_AS_GIVEN;
     settings.statistics = take_bare_rays(&argc, argv);
     status = options_parse(&bench_command, argc, argv, &settings, files);
     if (status != OPTIONS_PARSED)

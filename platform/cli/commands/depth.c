@@ -69,6 +69,14 @@ static const struct option options[] = {
      .name = "--full",
      .offset = offsetof(struct settings, depth.full),
      .help = "bring the depth to the photo's size, its edges on the photo's"},
+    {.kind = OPTION_CHOICE,
+     .name = "--depth-edges",
+     .argument = "HOW",
+     .offset = offsetof(struct settings, depth.edges),
+     .choice = edges_name,
+     .summary = edges_summary,
+     .help = "the edges of the depth map",
+     .needs = "--full"},
     {.kind = OPTION_INTEGER,
      .name = "--snap",
      .argument = "N",
@@ -208,9 +216,10 @@ static int print_report(const struct settings *settings, const struct input *inp
 
     if (settings->json) {
         json_t *json =
-            json_pack("{s:o, s:o, s:i, s:i, s:o}", "file", report_text_json(input->photo_name),
+            json_pack("{s:o, s:o, s:i, s:i, s:o, s:o}", "file", report_text_json(input->photo_name),
                       "output", report_text_json(settings->output), "width", input->width, "height",
-                      input->height, "depth", report_depth_json(input->depth_from, report));
+                      input->height, "depth", report_depth_json(input->depth_from, report), "edges",
+                      edges_json(&input->edges));
         return report_print_json(with_evidence(json, &input->made_info));
     }
     printf("size     %dx%d\n", input->width, input->height);
@@ -449,6 +458,8 @@ static int run(int argc, char **argv)
     status = check(&settings, files, argc, argv);
     if (status != EXIT_DONE)
         return status;
+    if (!settings.depth.full)
+        settings.depth.edges = EDGES_AS_GIVEN;
     settings.depth.full |= settings.strokes != NULL;
     report_progress("reading", 0);
     status = read_input(&settings, files, &input);

@@ -30,6 +30,7 @@ static const struct option options[] = {
                   "a picture of labelled crops where depth jumps: " OUTPUT_PICTURES),
     DEPTH_FILE_OPTION(struct settings, depth),
     DEPTH_UNIT_OPTIONS(struct settings, depth),
+    DEPTH_EDGES_OPTION(struct settings, depth),
     {.kind = OPTION_HEADING, .help = "What is compared"},
     {.kind = OPTION_TEXT,
      .name = "--methods",

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "inputs/inputs.h"
+#include "inputs/edges.h"
 #include "inputs/upsample.h"
 #include "line/report.h"
 
@@ -150,12 +151,36 @@ static bool worth_snapping(const struct input *input, const struct depth_setting
            input->photo->image->height == input->height;
 }
 
+/* An explicit filter or --snap says how edges are to be. */
+static bool worth_placing(const struct input *input, const struct depth_settings *settings)
+{
+    return settings->edges == EDGES_AUTO && settings->upsample == 0 && settings->snap == 0 &&
+           input->photo && input->photo->image->plane[0];
+}
+
 static bool worth_enlarging(const struct input *input, const struct depth_settings *settings)
 {
     return input->photo && input->photo->image->plane[0] &&
            (input->photo->image->width != input->width ||
             input->photo->image->height != input->height) &&
-           (settings->full || input->report.unknown + input->report.specks > 0);
+           ((settings->full && !worth_placing(input, settings)) ||
+            input->report.unknown + input->report.specks > 0);
+}
+
+/* Filled samples count least when the map is enlarged, which the edges are then looked for in. */
+static int fit(struct input *input, const struct depth_settings *settings)
+{
+    int status = worth_enlarging(input, settings) ? enlarge(input, settings) : EXIT_DONE;
+
+    if (status != EXIT_DONE || !worth_placing(input, settings))
+        return status;
+    status = edges_place(input->photo->image, &input->disparity, input->width, input->height,
+                         &input->edges, input->depth_name);
+    if (status == EXIT_DONE) {
+        input->width = input->photo->image->width;
+        input->height = input->photo->image->height;
+    }
+    return status;
 }
 
 int input_convert(struct input *input, const struct depth_settings *settings)
@@ -203,7 +228,7 @@ int input_convert(struct input *input, const struct depth_settings *settings)
                               "instead",
                               input->width, input->height, input->photo->image->width,
                               input->photo->image->height);
-    return worth_enlarging(input, settings) ? enlarge(input, settings) : EXIT_DONE;
+    return fit(input, settings);
 }
 
 static int report_no_depth(const char *photo)

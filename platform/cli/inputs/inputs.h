@@ -7,6 +7,7 @@
 #include <jansson.h>
 #include <refocus/refocus.h>
 #include <refocus/platform/file.h>
+#include "inputs/edges.h"
 #include "line/option.h"
 
 struct depth_settings {
@@ -19,6 +20,7 @@ struct depth_settings {
                              then */
     double snap;          /* edges of a map of the photo's size may be off by so much;
                              0: as they are */
+    int edges;            /* enum edges */
     int upsample;         /* how; 0: as the core does, else 1 + enum
                              refocus_cv_filter */
 };
@@ -57,6 +59,12 @@ struct depth_settings {
         .offset = offsetof(type, member.far_m), .least = 0, .above = true, .greatest = INFINITY,   \
         .help = "metres of disparity 0, also 'inf'; default as for --near"                         \
     }
+#define DEPTH_EDGES_OPTION(type, member)                                                           \
+    {                                                                                              \
+        .kind = OPTION_CHOICE, .name = "--depth-edges", .argument = "HOW",                         \
+        .offset = offsetof(type, member.edges), .choice = edges_name, .summary = edges_summary,    \
+        .help = "the edges of the depth map"                                                       \
+    }
 #define REPAIR_OPTIONS(type, member)                                                               \
     {.kind = OPTION_TEXT,                                                                          \
      .name = "--invalid",                                                                          \
@@ -82,6 +90,7 @@ struct input {
     uint8_t *confidence; /* one for each sample of the map: 0 = filled */
     int width, height;   /* size of the disparities: the map's, or the photo's */
     struct refocus_depth_report report;
+    struct refocus_depth_edges_report edges; /* struct_size 0: as given */
 };
 
 /* These return exit codes and print why it is not EXIT_DONE. */

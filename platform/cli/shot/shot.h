@@ -24,7 +24,7 @@ struct shot_settings {
 /* Rows of tables of options, for settings with a member of that type. */
 #define SHOT_DEPTH_OPTIONS(type, member)                                                           \
     DEPTH_FILE_OPTION(type, member.depth), DEPTH_UNIT_OPTIONS(type, member.depth),                 \
-        REPAIR_OPTIONS(type, member.depth)
+        REPAIR_OPTIONS(type, member.depth), DEPTH_EDGES_OPTION(type, member.depth)
 #define SHOT_LENS_OPTIONS(type, member)                                                            \
     {.kind = OPTION_HEADING, .help = "Focus and blur"}, FOCUS_OPTIONS(type, member.lens),          \
         LENS_OPTIONS(type, member.lens), CONTROL_OPTIONS(type, member.engine.controls),            \

@@ -1,0 +1,23 @@
+/* edges.h: the edges of a depth map are put where the photo has them. */
+#ifndef RF_CLI_EDGES_H
+#define RF_CLI_EDGES_H
+
+#include <stdint.h>
+#include <jansson.h>
+#include <refocus/refocus.h>
+
+enum edges { EDGES_AUTO, EDGES_AS_GIVEN };
+
+/* Words of --depth-edges, and a line on each; NULL ends them. */
+const char *edges_name(uint32_t index);
+const char *edges_summary(uint32_t index);
+
+/* Make packed disparities of the photo's size in place of *disparity, of width x height; an exit
+ * code, and prints why. */
+int edges_place(const struct refocus_image *photo, uint16_t **disparity, int width, int height,
+                struct refocus_depth_edges_report *report, const char *name);
+
+/* What was found and done; null for a report of nothing. */
+json_t *edges_json(const struct refocus_depth_edges_report *report);
+
+#endif

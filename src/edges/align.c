@@ -1,0 +1,543 @@
+/* align.c: moves the edges of a disparity map onto the photo's, where they do not lie on them.
+ *
+ * How well edges lie on the photo is the mean, over them, of the photo's gradient across them. An
+ * exact map has about twice as much of it in place as a few pixels beside. So
+ *
+ *   1. For each block the shift with the most of it is looked for. The map is on the photo where
+ *      most blocks want none: nothing is done.
+ *   2. Else one shift of the whole map, or one number of pixels by which near surfaces are too
+ * large or too small, is undone if it is clearly better than none.
+ *   3. Else each block's edges go where they fit best, and then once more in blocks half as large,
+ *      if they fit clearly better there.
+ *
+ * A worked example: 'grown by 4 pixels' has 0.65 of the median support in place, 2.3 with near
+ * surfaces smaller by 4: step 2. A map of a network has 1.2 in place, no shift is better, and 1.6
+ * after step 3. An exact map by night, where blocks are unsure, has 1.5 in place: it stays.
+ */
+#include "edges/edges.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/compare.h"
+
+enum {
+    REACH = RF_EDGE_SHIFT,
+    SHIFTS = 89, /* that are no longer than sqrt(REACH^2 + 1) */
+    GROWTHS = 2 * REACH + 3,
+    FEWEST = 200, /* edges that can tell */
+    LARGE_BLOCK = 16,
+    SMALL_BLOCK = 8,
+    SMALL_REACH = 3,
+    MOST_LOOKED_AT = 1 << 15, /* edges; of more every second, third ... */
+};
+static const double ON_PHOTO = 0.75; /* share of edges: the map needs nothing */
+static const double FITS = 1.4;      /* support in place: blocks are unsure, not wrong */
+static const double CLEARLY = 1.15;  /* times better */
+static const double SOFTEST = 3.2;   /* pixels: softer edges say little of their place */
+
+struct shift {
+    int x, y;
+};
+
+/* What the blocks of a map say. Sums are over the edges of a block, smoothed over neighbours. */
+struct blocks {
+    struct rf_edges *e;
+    int side, across, down;
+    int shifts, every;
+    struct shift shift[SHIFTS];
+    int32_t *support;      /* for each shift and block */
+    int32_t *count;        /* of edges, in 1/256 */
+    double *right, *below; /* where the edges of a block fit best, pixels */
+    double *weight;
+    int64_t total[SHIFTS];
+};
+
+static int list_shifts(struct shift shift[SHIFTS], int reach)
+{
+    int n = 0;
+
+    for (int y = -reach; y <= reach; y++)
+        for (int x = -reach; x <= reach; x++)
+            if (x * x + y * y <= reach * reach + 1)
+                shift[n++] = (struct shift){x, y};
+    return n;
+}
+
+static double length(struct shift shift)
+{
+    return sqrt(shift.x * shift.x + shift.y * shift.y);
+}
+
+/* Weights 1 4 6 4 1 along n values that lie `step` apart: 16 times a mean. */
+static void smooth_line(int32_t *at, int n, ptrdiff_t step)
+{
+    int32_t before[2] = {0, 0};
+
+    for (int k = 0; k < n; k++) {
+        const int32_t own = at[k * step], next = k + 1 < n ? at[(k + 1) * step] : 0;
+        const int32_t last = k + 2 < n ? at[(k + 2) * step] : 0;
+
+        at[k * step] = before[0] + 4 * before[1] + 6 * own + 4 * next + last;
+        before[0] = before[1];
+        before[1] = own;
+    }
+}
+
+/* Sums over neighbouring blocks, 256 times a mean. */
+static void smooth_blocks(const struct blocks *b, int32_t *sum)
+{
+    for (int y = 0; y < b->down; y++)
+        smooth_line(sum + (ptrdiff_t)y * b->across, b->across, 1);
+    for (int x = 0; x < b->across; x++)
+        smooth_line(sum + x, b->down, b->across);
+}
+
+static ptrdiff_t block_of(const struct blocks *b, const struct rf_map_edge *edge)
+{
+    return (ptrdiff_t)(edge->y / b->side) * b->across + edge->x / b->side;
+}
+
+static void add_support(void *context, int shift, int worker)
+{
+    struct blocks *b = context;
+    const struct rf_edges *e = b->e;
+    const ptrdiff_t n = (ptrdiff_t)b->across * b->down;
+    int32_t *support = b->support + shift * n;
+    int64_t total = 0;
+
+    (void)worker;
+    memset(support, 0, (size_t)n * sizeof *support);
+    for (int i = 0; i < e->edges; i += b->every) {
+        const struct rf_map_edge *edge = &e->edge[i];
+        const int photo =
+            rf_photo_edge_at(e, edge, edge->x + b->shift[shift].x, edge->y + b->shift[shift].y);
+
+        support[block_of(b, edge)] += photo;
+        total += photo;
+    }
+    b->total[shift] = total;
+    smooth_blocks(b, support);
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const int64_t one = *(const int64_t *)a, other = *(const int64_t *)b;
+
+    return (one > other) - (one < other);
+}
+
+static int64_t median(const int64_t *value, int n)
+{
+    int64_t sorted[SHIFTS + GROWTHS];
+
+    memcpy(sorted, value, (size_t)n * sizeof *sorted);
+    qsort(sorted, (size_t)n, sizeof *sorted, ascending);
+    return sorted[n / 2];
+}
+
+/* What one block wants. */
+struct wish {
+    struct shift shift;
+    double gain; /* in support over that in place, in medians; longer shifts have to gain more */
+    double best; /* greatest support, in medians */
+};
+
+static struct wish ask_block(const struct blocks *b, ptrdiff_t block)
+{
+    const ptrdiff_t n = (ptrdiff_t)b->across * b->down;
+    /* The median of no edge would be 0: half an edge with a gradient of a code is added. */
+    const double count = b->count[block] + 128;
+    struct wish wish = {{0, 0}, 0, 0};
+    int64_t support[SHIFTS];
+    double middle, zero = 0, most = -1e9;
+
+    for (int i = 0; i < b->shifts; i++)
+        support[i] = b->support[i * n + block];
+    middle = (double)median(support, b->shifts) / count + 16;
+    for (int i = 0; i < b->shifts; i++) {
+        const double times = (double)support[i] / count / middle;
+        const double worth = times - 0.02 * length(b->shift[i]);
+
+        if (worth > most) {
+            most = worth;
+            wish.shift = b->shift[i];
+        }
+        if (b->shift[i].x == 0 && b->shift[i].y == 0)
+            zero = worth;
+        wish.best = times > wish.best ? times : wish.best;
+    }
+    wish.gain = most - zero;
+    return wish;
+}
+
+/* Weights 1 4 6 4 1 over the blocks around, of what those want that know. */
+static void smooth_field(const struct blocks *b, double *field)
+{
+    for (int way = 0; way < 2; way++) {
+        const int lines = way ? b->across : b->down, n = way ? b->down : b->across;
+        const ptrdiff_t step = way ? b->across : 1, next = way ? 1 : b->across;
+
+        for (int i = 0; i < lines; i++) {
+            double *at = field + i * next, before[2] = {0, 0};
+
+            for (int k = 0; k < n; k++) {
+                const double own = at[k * step], after = k + 1 < n ? at[(k + 1) * step] : 0;
+                const double last = k + 2 < n ? at[(k + 2) * step] : 0;
+
+                at[k * step] = before[0] + 4 * before[1] + 6 * own + 4 * after + last;
+                before[0] = before[1];
+                before[1] = own;
+            }
+        }
+    }
+}
+
+/*
+ * Finds where the edges of each block fit best. A shift that gains less than `margin` counts as
+ * none. Returns the share of the edges, by how clearly they can tell, whose block wants at most a
+ * pixel and a half.
+ */
+static double ask_blocks(struct blocks *b, double margin)
+{
+    const ptrdiff_t n = (ptrdiff_t)b->across * b->down;
+    double content = 0, all = 0;
+
+    memset(b->count, 0, (size_t)n * sizeof *b->count);
+    b->every = b->e->edges / MOST_LOOKED_AT + 1;
+    for (int i = 0; i < b->e->edges; i += b->every)
+        b->count[block_of(b, &b->e->edge[i])]++;
+    smooth_blocks(b, b->count);
+    rf_pool_run(b->e->pool, add_support, b, b->shifts);
+    for (ptrdiff_t i = 0; i < n; i++) {
+        const double count = b->count[i] / 256.0;
+        struct wish wish;
+        double clear, weight;
+
+        b->right[i] = b->below[i] = b->weight[i] = 0;
+        if (b->count[i] == 0)
+            continue;
+        wish = ask_block(b, i);
+        clear = count * fmin(fmax(wish.best - 1.3, 0), 1);
+        all += clear;
+        content += length(wish.shift) <= 1.5 ? clear : 0;
+        weight = wish.gain > margin ? count * fmin(wish.gain, 1) : count * 0.2;
+        b->weight[i] = weight;
+        if (wish.gain > margin) {
+            b->right[i] = weight * wish.shift.x;
+            b->below[i] = weight * wish.shift.y;
+        }
+    }
+    smooth_field(b, b->right);
+    smooth_field(b, b->below);
+    smooth_field(b, b->weight);
+    for (ptrdiff_t i = 0; i < n; i++)
+        if (b->weight[i] > 0) {
+            b->right[i] /= b->weight[i];
+            b->below[i] /= b->weight[i];
+        }
+    return all > 0 ? content / all : 1;
+}
+
+/* ----- what is common to all edges ----- */
+
+/* The mean support of all edges in place. */
+static double support_in_place(const struct rf_edges *e)
+{
+    const int every = e->edges / MOST_LOOKED_AT + 1;
+    int64_t total = 0;
+    int n = 0;
+
+    for (int i = 0; i < e->edges; i += every, n++)
+        total += rf_photo_edge_at(e, &e->edge[i], e->edge[i].x, e->edge[i].y);
+    return n ? (double)total / n : 0;
+}
+
+/* The support `along` pixels towards the nearer side of each edge; from -REACH - 1 on. */
+static void ask_growths(const struct rf_edges *e, int64_t total[GROWTHS])
+{
+    const int every = e->edges / MOST_LOOKED_AT + 1;
+
+    for (int k = 0; k < GROWTHS; k++) {
+        const int along = k - REACH - 1;
+
+        total[k] = 0;
+        for (int i = 0; i < e->edges; i += every) {
+            const struct rf_map_edge *edge = &e->edge[i];
+            const int x = (along * edge->normal_x + 64) >> 7,
+                      y = (along * edge->normal_y + 64) >> 7;
+
+            total[k] += rf_photo_edge_at(e, edge, edge->x + x, edge->y + y);
+        }
+    }
+}
+
+/* One correction of the whole map. */
+struct whole {
+    struct shift shift;
+    double grown;       /* pixels that near surfaces are too large by, a fraction too */
+    double worth, zero; /* support with it and without, in medians */
+};
+
+/* The peak of a parabola through three values, from the middle one. */
+static double peak(double before, double middle, double after)
+{
+    const double bend = before - 2 * middle + after;
+
+    return bend < 0 ? 0.5 * (before - after) / bend : 0;
+}
+
+static struct whole ask_whole(const struct blocks *b)
+{
+    /* In the photo the silhouette of a near thing lies a little on its far side: it is mixed. */
+    static const double FAR_SIDE = 0.2;
+    int64_t growth[GROWTHS], all[SHIFTS + GROWTHS];
+    struct whole whole = {{0, 0}, 0, -1e9, 0};
+    double middle;
+
+    ask_growths(b->e, growth);
+    memcpy(all, b->total, (size_t)b->shifts * sizeof *all);
+    memcpy(all + b->shifts, growth, sizeof growth);
+    middle = (double)median(all, b->shifts + GROWTHS) + 1e-9;
+    for (int k = 1; k < GROWTHS - 1; k++) {
+        const int along = k - REACH - 1;
+        const double worth = (double)growth[k] / middle - 0.03 * abs(along);
+
+        if (worth <= whole.worth)
+            continue;
+        whole.worth = worth;
+        whole.grown =
+            along + FAR_SIDE +
+            (along ? peak((double)growth[k - 1], (double)growth[k], (double)growth[k + 1]) : 0);
+    }
+    for (int i = 0; i < b->shifts; i++) {
+        const double worth = (double)b->total[i] / middle - 0.03 * length(b->shift[i]);
+
+        if (b->shift[i].x == 0 && b->shift[i].y == 0)
+            whole.zero = worth;
+        if (worth > whole.worth) {
+            whole.worth = worth;
+            whole.shift = b->shift[i];
+            whole.grown = 0;
+        }
+    }
+    return whole;
+}
+
+/* ----- corrections ----- */
+
+struct change {
+    struct rf_edges *e;
+    const struct blocks *blocks; /* or NULL */
+    struct shift shift;
+    int grown;
+};
+
+/* The least (grown > 0) or greatest disparity within a disc. What differs little from the pixel's
+ * own belongs to its surface: slopes stay. */
+static uint16_t extreme(const struct rf_edges *e, int x, int y, int grown)
+{
+    const int radius = abs(grown);
+    const int own = e->map[y * e->stride + x];
+    int found = own;
+
+    for (int v = -radius; v <= radius; v++) {
+        const uint16_t *row = e->map + rf_smaller(rf_larger(y + v, 0), e->height - 1) * e->stride;
+
+        for (int u = -radius; u <= radius; u++) {
+            const int d = row[rf_smaller(rf_larger(x + u, 0), e->width - 1)];
+
+            if (u * u + v * v <= radius * radius + radius / 2)
+                found = grown > 0 ? rf_smaller(found, d) : rf_larger(found, d);
+        }
+    }
+    return (uint16_t)(abs(found - own) > RF_EDGE_STEP ? found : own);
+}
+
+static void regrow_band(void *context, int band, int worker)
+{
+    const struct change *change = context;
+    const struct rf_edges *e = change->e;
+    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+
+    (void)worker;
+    for (int y = band * RF_EDGE_BAND; y < end; y++)
+        for (int x = 0; x < e->width; x++)
+            e->spare[y * e->stride + x] = rf_edge_is_rough(e, x, y)
+                                              ? extreme(e, x, y, change->grown)
+                                              : e->map[y * e->stride + x];
+}
+
+/* A field between the middles of blocks. */
+static double between(const struct blocks *b, const double *field, int x, int y)
+{
+    const double fx = fmin(fmax((x + 0.5) / b->side - 0.5, 0), b->across - 1);
+    const double fy = fmin(fmax((y + 0.5) / b->side - 0.5, 0), b->down - 1);
+    const int u = rf_smaller((int)fx, rf_larger(b->across - 2, 0));
+    const int v = rf_smaller((int)fy, rf_larger(b->down - 2, 0));
+    const double *at = field + (ptrdiff_t)v * b->across + u;
+    const ptrdiff_t right = b->across > 1, below = b->down > 1 ? b->across : 0;
+
+    return (at[0] * (1 - (fx - u)) + at[right] * (fx - u)) * (1 - (fy - v)) +
+           (at[below] * (1 - (fx - u)) + at[below + right] * (fx - u)) * (fy - v);
+}
+
+static void move_band(void *context, int band, int worker)
+{
+    const struct change *change = context;
+    const struct blocks *b = change->blocks;
+    const struct rf_edges *e = change->e;
+    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+
+    (void)worker;
+    for (int y = band * RF_EDGE_BAND; y < end; y++)
+        for (int x = 0; x < e->width; x++) {
+            int u = x - change->shift.x, v = y - change->shift.y;
+
+            if (b) {
+                u = (int)floor(x - between(b, b->right, x, y) + 0.5);
+                v = (int)floor(y - between(b, b->below, x, y) + 0.5);
+            }
+            e->spare[y * e->stride + x] =
+                e->map[rf_smaller(rf_larger(v, 0), e->height - 1) * e->stride +
+                       rf_smaller(rf_larger(u, 0), e->width - 1)];
+        }
+}
+
+static void take_over(struct rf_edges *e, uint16_t *to, const uint16_t *from)
+{
+    for (int y = 0; y < e->height; y++)
+        memcpy(to + y * e->stride, from + y * e->stride, (size_t)e->width * sizeof *to);
+}
+
+static void regrow(struct rf_edges *e, int grown)
+{
+    struct change change = {.e = e, .grown = grown};
+
+    rf_find_rough_blocks(e, e->map);
+    rf_pool_run(e->pool, regrow_band, &change, rf_edge_bands(e));
+    take_over(e, e->map, e->spare);
+}
+
+static void move(struct rf_edges *e, const struct blocks *blocks, struct shift shift)
+{
+    struct change change = {.e = e, .blocks = blocks, .shift = shift};
+
+    rf_pool_run(e->pool, move_band, &change, rf_edge_bands(e));
+    take_over(e, e->map, e->spare);
+}
+
+/* Ramps and edges of the map as it is now. */
+static void look_again(struct rf_edges *e, struct rf_ramp_limits limits)
+{
+    rf_find_ramps(e, limits);
+    rf_find_map_edges(e, e->label);
+}
+
+/* Makes near surfaces smaller or larger by the whole number of pixels that fits best. */
+static int undo_growth(struct rf_edges *e, double grown, struct rf_ramp_limits limits)
+{
+    const int sign = grown < 0 ? -1 : 1, least = (int)fabs(grown);
+    double support[2];
+
+    take_over(e, e->kept, e->map);
+    for (int i = 0; i < 2; i++) {
+        take_over(e, e->map, e->kept);
+        regrow(e, sign * (least + i));
+        look_again(e, limits);
+        support[i] = support_in_place(e);
+    }
+    if (support[1] > support[0])
+        return sign * (least + 1);
+    take_over(e, e->map, e->kept);
+    regrow(e, sign * least);
+    look_again(e, limits);
+    return sign * least;
+}
+
+static struct blocks blocks_of(struct rf_edges *e, int side, int reach)
+{
+    struct blocks b = {
+        .e = e,
+        .side = side,
+        .across = (e->width + side - 1) / side,
+        .down = (e->height + side - 1) / side,
+        .support = e->blocks.support,
+        .count = e->blocks.count,
+        .right = e->blocks.right,
+        .below = e->blocks.below,
+        .weight = e->blocks.weight,
+    };
+
+    b.shifts = list_shifts(b.shift, reach);
+    return b;
+}
+
+/* Moves edges block by block; false, and the map is as it was, if they do not fit clearly better.
+ */
+static bool bend(struct rf_edges *e, const struct blocks *large, struct rf_ramp_limits limits)
+{
+    const double before = support_in_place(e);
+    struct blocks small = blocks_of(e, SMALL_BLOCK, SMALL_REACH);
+
+    take_over(e, e->kept, e->map);
+    move(e, large, (struct shift){0, 0});
+    look_again(e, limits);
+    ask_blocks(&small, 0.05);
+    move(e, &small, (struct shift){0, 0});
+    look_again(e, limits);
+    if (support_in_place(e) > CLEARLY * before)
+        return true;
+    take_over(e, e->map, e->kept);
+    rf_find_ramps(e, limits);
+    return false;
+}
+
+struct rf_alignment rf_align(struct rf_edges *e, double softness, struct rf_ramp_limits limits)
+{
+    struct rf_alignment found = {.on_photo = 1};
+    struct blocks large = blocks_of(e, LARGE_BLOCK, REACH);
+    struct whole whole;
+
+    rf_find_photo_gradient(e);
+    rf_find_map_edges(e, e->label);
+    if (e->edges < FEWEST)
+        return found;
+    found.on_photo = ask_blocks(&large, 0.1);
+    if (found.on_photo >= ON_PHOTO)
+        return found;
+    whole = ask_whole(&large);
+    if (whole.worth > CLEARLY * whole.zero) {
+        if (fabs(whole.grown) >= 1.5 && (softness == 0 || fabs(whole.grown) > softness))
+            found.grown = undo_growth(e, whole.grown, limits);
+        else if (length(whole.shift) >= 2) {
+            found.shift_x = whole.shift.x;
+            found.shift_y = whole.shift.y;
+            move(e, NULL, whole.shift);
+            look_again(e, limits);
+        }
+        found.on_photo = ask_blocks(&large, 0.1);
+    }
+    if (found.on_photo < ON_PHOTO && softness < SOFTEST && whole.zero < FITS)
+        found.bent = bend(e, &large, limits);
+    return found;
+}
+
+/* The bytes that blocks of each size need. */
+void rf_align_lay_out(struct rf_edges *e, struct rf_arena *arena)
+{
+    const uint64_t large = (uint64_t)((e->width + LARGE_BLOCK - 1) / LARGE_BLOCK) *
+                           (uint64_t)((e->height + LARGE_BLOCK - 1) / LARGE_BLOCK);
+    const uint64_t small = 4 * large;
+    struct shift shift[SHIFTS];
+    const uint64_t few = (uint64_t)list_shifts(shift, SMALL_REACH);
+
+    e->blocks.support =
+        rf_arena_take(arena, large * SHIFTS > small * few ? large * SHIFTS : small * few,
+                      sizeof *e->blocks.support);
+    e->blocks.count = rf_arena_take(arena, small, sizeof *e->blocks.count);
+    e->blocks.right = rf_arena_take(arena, small, sizeof *e->blocks.right);
+    e->blocks.below = rf_arena_take(arena, small, sizeof *e->blocks.below);
+    e->blocks.weight = rf_arena_take(arena, small, sizeof *e->blocks.weight);
+}

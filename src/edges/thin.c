@@ -1,0 +1,156 @@
+/* thin.c: gives wires, stems and hair back the disparity that the softness of a map took.
+ *
+ * In a soft map the peak of a thin surface is a mixture of it and of what is behind. With G the
+ * Gaussian of the map's softness, S the pixels of the thin surface and o the disparities of the
+ * others, the map is at pixel q
+ *
+ *     m(q) = v B(q) + O(q),    B(q) = sum of G over S,    O(q) = sum of G o over the others
+ *
+ * and the v that fits best over the pixels of S around p is
+ *
+ *     v = sum B (m - O) / sum B^2
+ *
+ * A wire of 2 pixels in a map of softness 2: B = 0.38 in its middle. With the wire at 0.9 and 0.1
+ * behind it the map's peak is 0.38 0.9 + 0.62 0.1 = 0.40; v = (0.40 - 0.062) / 0.38 = 0.9.
+ */
+#include "edges/edges.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "support/compare.h"
+#include "support/exp_minus.h"
+
+enum {
+    MOST_REACH = 16,
+    SIDE = 2 * MOST_REACH + 1,
+    WHOLE = 65536,
+    MOST_OWN = WHOLE * 85 / 100, /* a surface that has this much of the window is not thin */
+    LEAST_OWN = 2,               /* of which too little is seen: the mean of B^2 is 1/50 */
+};
+
+struct thin {
+    struct rf_edges *e;
+    uint16_t *own;   /* B, Q16 */
+    uint16_t *other; /* O */
+    int reach, near_by;
+    uint16_t gauss[SIDE][SIDE]; /* Q16, of sum 1 */
+};
+
+static void make_gauss(struct thin *thin, double softness)
+{
+    double line[SIDE], sum = 0;
+
+    for (int i = 0; i <= 2 * thin->reach; i++) {
+        const double off = (i - thin->reach) / softness;
+
+        line[i] = rf_exp_minus(off * off / 2);
+        sum += line[i];
+    }
+    for (int y = 0; y <= 2 * thin->reach; y++)
+        for (int x = 0; x <= 2 * thin->reach; x++)
+            thin->gauss[y][x] = (uint16_t)(WHOLE * line[y] * line[x] / (sum * sum) + 0.5);
+}
+
+/* Beyond the sides the last pixel is repeated, as a Gaussian filter does. */
+static void part_window(const struct thin *thin, int x, int y)
+{
+    const struct rf_edges *e = thin->e;
+    const ptrdiff_t at = y * e->stride + x;
+    const int surface = e->label[at], reach = thin->reach;
+    uint32_t own = 0;
+    uint64_t other = 0;
+
+    for (int v = -reach; v <= reach; v++) {
+        const uint16_t *row = e->label + rf_smaller(rf_larger(y + v, 0), e->height - 1) * e->stride;
+        const uint16_t *gauss = thin->gauss[v + reach];
+
+        for (int u = -reach; u <= reach; u++) {
+            const int d = row[rf_smaller(rf_larger(x + u, 0), e->width - 1)];
+
+            if (abs(d - surface) < RF_EDGE_STEP)
+                own += gauss[u + reach];
+            else
+                other += (uint32_t)gauss[u + reach] * (uint32_t)d;
+        }
+    }
+    thin->own[at] = (uint16_t)(own < WHOLE ? own : WHOLE - 1);
+    thin->other[at] = (uint16_t)(other >> 16 < WHOLE ? other >> 16 : WHOLE - 1);
+}
+
+static void part_band(void *context, int band, int worker)
+{
+    const struct thin *thin = context;
+    const struct rf_edges *e = thin->e;
+    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+
+    (void)worker;
+    for (int y = band * RF_EDGE_BAND; y < end; y++)
+        for (int x = 0; x < e->width; x++) {
+            thin->own[y * e->stride + x] = WHOLE - 1;
+            if (rf_edge_is_rough(e, x, y))
+                part_window(thin, x, y);
+        }
+}
+
+/* The disparity that explains the map best, or the label where the surface is wide. */
+static uint16_t explain(const struct thin *thin, int x, int y)
+{
+    const struct rf_edges *e = thin->e;
+    const int surface = e->label[y * e->stride + x], reach = thin->near_by;
+    const int y1 = rf_smaller(y + reach, e->height - 1), x0 = rf_larger(x - reach, 0);
+    const int x1 = rf_smaller(x + reach, e->width - 1);
+    int64_t product = 0, square = 0, value;
+    int pixels = 0;
+
+    for (int v = rf_larger(y - reach, 0); v <= y1; v++)
+        for (int u = x0; u <= x1; u++) {
+            const ptrdiff_t at = v * e->stride + u;
+            const int64_t own = thin->own[at];
+
+            if (abs(e->label[at] - surface) >= RF_EDGE_STEP)
+                continue;
+            if (own > MOST_OWN)
+                return (uint16_t)surface;
+            product += own * (e->map[at] - thin->other[at]);
+            square += own * own;
+            pixels++;
+        }
+    if ((square >> 16) * 100 <= (int64_t)WHOLE * LEAST_OWN * pixels)
+        return (uint16_t)surface;
+    value = product * WHOLE / square;
+    return (uint16_t)(value < 0 ? 0 : value < WHOLE ? value : WHOLE - 1);
+}
+
+static void explain_band(void *context, int band, int worker)
+{
+    const struct thin *thin = context;
+    const struct rf_edges *e = thin->e;
+    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+
+    (void)worker;
+    for (int y = band * RF_EDGE_BAND; y < end; y++)
+        for (int x = 0; x < e->width; x++) {
+            const ptrdiff_t at = y * e->stride + x;
+
+            e->spare[at] =
+                e->is_wide[at] || thin->own[at] > MOST_OWN ? e->label[at] : explain(thin, x, y);
+        }
+}
+
+void rf_restore_thin(struct rf_edges *e, double softness)
+{
+    const double spread = 1.15 * softness; /* with what the decision of pixels adds */
+    struct thin thin = {.e = e, .own = e->near, .other = e->far};
+
+    thin.reach = rf_smaller((int)ceil(2.2 * spread), MOST_REACH);
+    thin.near_by = rf_larger(thin.reach, 3);
+    make_gauss(&thin, spread);
+    rf_find_rough_blocks(e, e->label);
+    rf_pool_run(e->pool, part_band, &thin, rf_edge_bands(e));
+    rf_pool_run(e->pool, explain_band, &thin, rf_edge_bands(e));
+    for (int y = 0; y < e->height; y++)
+        memcpy(e->label + y * e->stride, e->spare + y * e->stride,
+               (size_t)e->width * sizeof *e->label);
+}

@@ -1,0 +1,180 @@
+/* vote.c: gives each pixel of a ramp to the surface at one of its ends.
+ *
+ * A pixel p between the ends N (near) and F (far) of its ramp lies at a share a = (d - F) / (N -
+ * F). Those around it that are on no ramp, and whose disparity fits N or F, vote by how near they
+ * are to p and how much they look like it, as in joint bilateral filters:
+ *
+ *     p is near where  (near - far) / (near + far) + a - 1/2 > 0
+ *
+ * and takes the mean of those that it was given to. The second term is what the map itself says: it
+ * decides where the photo does not.
+ */
+#include "edges/edges.h"
+
+#include "support/compare.h"
+#include "support/exp_minus.h"
+
+enum {
+    MOST_REACH = 16,
+    DENSE_REACH = 9, /* of more, every other row votes */
+    SIDE = 2 * MOST_REACH + 1,
+};
+_Static_assert((2 * DENSE_REACH + 1) * (2 * DENSE_REACH + 1) <= RF_MOST_VOTERS &&
+                   SIDE * (MOST_REACH + 1) <= RF_MOST_VOTERS,
+               "no window has more voters");
+
+struct vote {
+    struct rf_edges *e;
+    uint16_t *voter;
+    int reach, step;
+    uint8_t nearness[SIDE][SIDE]; /* a Gaussian of 3/4 of the reach */
+};
+
+static void find_voters(void *context, int band, int worker)
+{
+    const struct vote *vote = context;
+    const struct rf_edges *e = vote->e;
+    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+
+    (void)worker;
+    for (int y = band * RF_EDGE_BAND; y < end; y++)
+        for (int x = 0; x < e->width; x++) {
+            const ptrdiff_t at = y * e->stride + x;
+
+            vote->voter[at] =
+                rf_is_between(e, at, e->map[at]) ? 0 : (uint16_t)rf_larger(e->label[at], 1);
+        }
+}
+
+/* The rows of a window are those whose distance from its middle is a multiple of the step. */
+static struct rf_votes ask(const struct vote *vote, int x, int y)
+{
+    const struct rf_edges *e = vote->e;
+    const ptrdiff_t at = y * e->stride + x;
+    const int near = e->near[at], far = e->far[at], half = (near - far) / 2;
+    const int left = rf_smaller(vote->reach, x), right = rf_smaller(vote->reach, e->width - 1 - x);
+    const int above = rf_smaller(vote->reach, y) / vote->step;
+    const int below = rf_smaller(vote->reach, e->height - 1 - y) / vote->step;
+    const ptrdiff_t first = at - above * vote->step * e->stride - left;
+    const struct rf_vote_window window = {
+        .colour = {e->colour[0] + first, e->colour[1] + first, e->colour[2] + first},
+        .voter = vote->voter + first,
+        .stride = e->stride,
+        .nearness = &vote->nearness[MOST_REACH - above * vote->step][MOST_REACH - left],
+        .nearness_stride = SIDE * vote->step,
+        .columns = left + 1 + right,
+        .rows = above + 1 + below,
+        .step = vote->step,
+        .own = {e->colour[0][at], e->colour[1][at], e->colour[2][at]},
+        .least = (uint16_t)rf_larger(far - half, 1),
+        .middle = (uint16_t)((near + far) / 2),
+        .most = (uint16_t)rf_smaller(near + half, 65535),
+    };
+
+    return e->kernels->tally(&window);
+}
+
+/* The mean of those on one side, or the end of the ramp where there is none of them. */
+static uint16_t mean_of(uint32_t value, uint32_t weight, int least, uint16_t end)
+{
+    return weight ? (uint16_t)rf_smaller(least + (int)(value * UINT64_C(32) / weight) + 16, 65535)
+                  : end;
+}
+
+static uint16_t decide(const struct vote *vote, int x, int y)
+{
+    const struct rf_edges *e = vote->e;
+    const ptrdiff_t at = y * e->stride + x;
+    const int near = e->near[at], far = e->far[at];
+    const struct rf_votes votes = ask(vote, x, y);
+    const int64_t all = (int64_t)votes.near + votes.far + 1;
+    /* Twice the sum above, times `all` and the contrast. */
+    const int64_t photo = 2 * ((int64_t)votes.near - votes.far) * (near - far);
+    const int64_t map = (2 * ((int64_t)e->map[at] - far) - (near - far)) * all;
+    const int least = rf_larger(far - (near - far) / 2, 1);
+
+    return photo + map > 0 ? mean_of(votes.near_value, votes.near, least, e->near[at])
+                           : mean_of(votes.far_value, votes.far, least, e->far[at]);
+}
+
+static void decide_band(void *context, int band, int worker)
+{
+    const struct vote *vote = context;
+    struct rf_edges *e = vote->e;
+    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+
+    (void)worker;
+    for (int y = band * RF_EDGE_BAND; y < end; y++)
+        for (int x = 0; x < e->width; x++) {
+            const ptrdiff_t at = y * e->stride + x;
+
+            e->spare[at] = vote->voter[at] ? e->label[at] : decide(vote, x, y);
+        }
+}
+
+static inline void sort_two(uint16_t *a, uint16_t *b)
+{
+    const uint16_t least = *a < *b ? *a : *b;
+
+    *b = *a < *b ? *b : *a;
+    *a = least;
+}
+
+/* The middle one of nine: the greatest of the least, the middle of the middle and the least of the
+ * greatest of three columns in order. */
+static uint16_t median_of_nine(const uint16_t *middle, ptrdiff_t stride)
+{
+    uint16_t v[3][3];
+
+    for (int x = 0; x < 3; x++) {
+        for (int y = 0; y < 3; y++)
+            v[y][x] = middle[(y - 1) * stride + x - 1];
+        sort_two(&v[0][x], &v[1][x]);
+        sort_two(&v[1][x], &v[2][x]);
+        sort_two(&v[0][x], &v[1][x]);
+    }
+    for (int y = 0; y < 3; y++) {
+        sort_two(&v[y][0], &v[y][1]);
+        sort_two(&v[y][1], &v[y][2]);
+        sort_two(&v[y][0], &v[y][1]);
+    }
+    sort_two(&v[0][2], &v[1][1]);
+    sort_two(&v[1][1], &v[2][0]);
+    sort_two(&v[0][2], &v[1][1]);
+    return v[1][1];
+}
+
+/* Single pixels that were given to the other side than all around them are put right. */
+static void clean_band(void *context, int band, int worker)
+{
+    const struct vote *vote = context;
+    struct rf_edges *e = vote->e;
+    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+
+    (void)worker;
+    for (int y = band * RF_EDGE_BAND; y < end; y++)
+        for (int x = 0; x < e->width; x++) {
+            const ptrdiff_t at = y * e->stride + x;
+            const bool inside = x > 0 && y > 0 && x < e->width - 1 && y < e->height - 1;
+
+            e->label[at] = inside && !vote->voter[at] ? median_of_nine(e->spare + at, e->stride)
+                                                      : e->spare[at];
+        }
+}
+
+void rf_vote(struct rf_edges *e, double softness)
+{
+    struct vote vote = {.e = e, .voter = e->largest};
+    double spread;
+
+    vote.reach = rf_smaller(rf_larger((int)(3.5 * softness + 0.5), 6), MOST_REACH);
+    vote.step = vote.reach > DENSE_REACH ? 2 : 1;
+    spread = 0.75 * vote.reach;
+    for (int y = -MOST_REACH; y <= MOST_REACH; y++)
+        for (int x = -MOST_REACH; x <= MOST_REACH; x++)
+            vote.nearness[MOST_REACH + y][MOST_REACH + x] =
+                (uint8_t)(255 * rf_exp_minus((x * x + y * y) / (2 * spread * spread)) + 0.5);
+    rf_pool_run(e->pool, find_voters, &vote, rf_edge_bands(e));
+    rf_pool_run(e->pool, decide_band, &vote, rf_edge_bands(e));
+    rf_pool_run(e->pool, clean_band, &vote, rf_edge_bands(e));
+}
