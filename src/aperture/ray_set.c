@@ -1,4 +1,4 @@
-/* ray_set.c: draws the sets of rays for an aperture, and picks the one that suits a tile. */
+/* ray_set.c: makes sets of few and of many rays for an aperture, and chooses one for each tile. */
 #include "aperture/ray_set.h"
 
 #include "aperture/aperture.h"
@@ -6,8 +6,9 @@
 
 #include <string.h>
 
-/* The sizes of sets. A tile uses the smallest set that is dense enough, at most the preset's; a
- * tile that a highlight reaches, whose disc would show the single rays, uses at most twice that. */
+/* The sizes of sets. A tile uses the smallest set that is dense enough for its blur, at most the
+ * preset's. Where a small highlight is in reach, whose disc would show the single rays, it is at
+ * most twice that. */
 static const int class_rays[] = {24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
 enum { CLASSES = sizeof class_rays / sizeof *class_rays, DENSER = 2 };
 
@@ -175,8 +176,8 @@ static int make_classes(struct rf_ray_sets *sets, const struct rf_ray_request *r
     return filled;
 }
 
-static bool are_for(const struct rf_ray_sets *sets, const struct rf_ray_request *request,
-                    float blur)
+static bool are_made_for(const struct rf_ray_sets *sets, const struct rf_ray_request *request,
+                         float blur)
 {
     return sets->sets && sets->aperture == request->aperture->id && sets->rays == request->rays &&
            sets->denser == request->denser && sets->blur == blur && sets->shared == request->chroma;
@@ -189,7 +190,7 @@ void rf_ray_sets_make(struct rf_ray_sets *sets, const struct rf_ray_request *req
     const float blur = full ? request->max_blur_radius : 0; /* sets of N rays do not depend on it */
     int filled = 1;
 
-    if (are_for(sets, request, blur))
+    if (are_made_for(sets, request, blur))
         return;
     sets->sets = 0;
     if (full)
@@ -206,12 +207,13 @@ void rf_ray_sets_make(struct rf_ray_sets *sets, const struct rf_ray_request *req
     sets->blur = blur;
 }
 
-/* N >= 1.3 pi reach^2 rays are as good as all: 66 of them for a reach of 4 pixels, so a tile uses
- * the set of 96. */
-const struct rf_ray_set *rf_rays_for(const struct rf_ray_sets *sets, int reach, bool highlight)
+/* N >= 1.3 pi reach^2 rays are as good as all. A tile that blurs of up to 4 pixels reach needs 66
+ * of them, so it uses the set of 96; with a preset of 64 rays it uses these. */
+const struct rf_ray_set *rf_choose_ray_set(const struct rf_ray_sets *sets, int reach,
+                                           bool undersampled)
 {
     const int64_t need = (int64_t)reach * reach * 4084 / 1000; /* Q16 */
-    const int last = highlight ? sets->sets - 1 : sets->preset;
+    const int last = undersampled ? sets->sets - 1 : sets->preset;
 
     for (int i = 0; i < last; i++)
         if ((int64_t)sets->set[i].count << 16 >= need)
@@ -219,7 +221,7 @@ const struct rf_ray_set *rf_rays_for(const struct rf_ray_sets *sets, int reach, 
     return &sets->set[last];
 }
 
-int rf_rays_alike(const struct rf_ray_set *set, int first)
+int rf_rays_of_equal_weight(const struct rf_ray_set *set, int first)
 {
     const int most = chunk_end(set, first) - first;
     int n = set->equal ? most : 1;

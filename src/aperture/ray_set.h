@@ -1,5 +1,4 @@
-/* ray_set.h: sets of rays through the aperture in use, of which each tile takes the one it needs.
- */
+/* ray_set.h: sets of few and of many rays through the aperture; each tile uses the one it needs. */
 #ifndef RF_RAY_SET_H
 #define RF_RAY_SET_H
 
@@ -27,7 +26,7 @@ struct rf_ray_set {
 };
 
 /* The number of rays that chroma of a photo of Y, U and V shares with luma, of rays first to end -
- * 1, which are of one chunk: they are the first so many of these. */
+ * 1, which are of one chunk. The first ones of these are shared. */
 static inline int rf_shared_rays(const struct rf_ray_set *set, int first, int end)
 {
     const int64_t shared = set->shared;
@@ -63,11 +62,12 @@ struct rf_ray_request {
 void rf_ray_sets_make(struct rf_ray_sets *sets, const struct rf_ray_request *request,
                       struct rf_run *run);
 
-/* The set for a reach (Q7.8): enough rays for it, at most the preset's, or a denser one where a
- * highlight is in reach. */
-const struct rf_ray_set *rf_rays_for(const struct rf_ray_sets *sets, int reach, bool highlight);
+/* The set for a tile that blurs of up to `reach` (Q7.8) reach: it has enough rays for these, at
+ * most as many as the preset, or more where a highlight in reach is undersampled. */
+const struct rf_ray_set *rf_choose_ray_set(const struct rf_ray_sets *sets, int reach,
+                                           bool undersampled);
 
 /* The number of rays from `first` on that weigh the same, RF_RAY_CHUNK at the most. */
-int rf_rays_alike(const struct rf_ray_set *set, int first);
+int rf_rays_of_equal_weight(const struct rf_ray_set *set, int first);
 
 #endif

@@ -141,7 +141,7 @@ static void search_runs(const struct rf_frame *f, int tx, int ty, const struct r
 
         if (rf_cancelled(f->exec))
             return;
-        rays = rf_rays_alike(set, n);
+        rays = rf_rays_of_equal_weight(set, n);
         set_chunk(&chunk, f, ray, rays);
         for (int i = 0; i < RF_TILE * RF_TILE; i += RF_STRIP_LANES)
             search_strip(f, &chunk, tx, ty * RF_TILE + i / RF_TILE,

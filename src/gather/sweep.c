@@ -218,7 +218,7 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
 
         if (rf_cancelled(f->exec))
             return;
-        lookups.rays = rf_rays_alike(set, n);
+        lookups.rays = rf_rays_of_equal_weight(set, n);
         rays += lookups.rays;
         set_lookups(&lookups, f, plan, tile_rays, n, background_blur);
         sweep_strips(f, plan, &lookups, tx, ty, rows, run);
@@ -325,7 +325,8 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         return;
     }
     rf_expect_tile(f, rect);
-    rf_tile_rays_make(&rays, f, rf_rays_for(f->ray_sets, plan.reach, plan.dots), tx, ty);
+    rf_tile_rays_make(&rays, f, rf_choose_ray_set(f->ray_sets, plan.reach, plan.undersampled), tx,
+                      ty);
     for (int pass = 0; pass < (f->params->fringe != 0 ? 2 : 1); pass++) {
         const int from = pass, to = pass ? 2 : 3; /* all channels, and green again */
 

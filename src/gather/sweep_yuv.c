@@ -49,7 +49,7 @@ struct lookups {
 
 static void set_rays(struct lookups *lookups, const struct rf_ray_set *set, int first)
 {
-    lookups->rays = rf_rays_alike(set, first);
+    lookups->rays = rf_rays_of_equal_weight(set, first);
     lookups->u = set->u ? set->u + first : lookups->own_u;
     lookups->v = set->u ? set->v + first : lookups->own_v;
     for (int n = 0; !set->u && n < lookups->rays; n++) {
@@ -305,7 +305,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
         rf_copy_yuv_tile(f, rect);
         return;
     }
-    tile.set = rf_rays_for(f->ray_sets, tile.plan.reach, tile.plan.dots);
+    tile.set = rf_choose_ray_set(f->ray_sets, tile.plan.reach, tile.plan.undersampled);
     set_planes(&tile, tx, ty);
     if (tile.set->equal)
         sweep_means(&tile, &sums, &means);

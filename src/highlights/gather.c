@@ -16,7 +16,7 @@ enum {
     BLURRED = 512, /* Q7.8: what it may be widened over, */
     ALIKE = 256, /* if it is farther away than that: else the pre-filter takes it for the same; and
                     how much blurs may differ that a highlight's light is spread over */
-    DOTS = 2,    /* gaps of the rays that a highlight has to be wide not to show as dots */
+    WELL_SAMPLED = 2, /* gaps of the rays that a highlight has to be wide for its disc to be even */
     PLACES = (2 * WIDEST + 1) * (2 * WIDEST + 1), /* pixels that light spreads over */
 };
 
@@ -59,9 +59,9 @@ static int reach_of(int blur, double gap)
 }
 
 /*
- * Rays whose gaps are wider than a highlight would show it as a disc of dots. What is around
- * it within half a gap, farther away and blurred itself, takes its blur: then the pre-filter
- * spreads its light over that.
+ * Where gaps between rays are wider than a highlight, few rays hit it, and its disc is a pattern of
+ * single points. So the pixels within half a gap of it that are farther away, and blurred
+ * themselves, take its blur: then the pre-filter spreads its light over them.
  */
 static void widen_pixel(const struct gather *g, int cx, int cy)
 {
@@ -82,11 +82,11 @@ static void widen_pixel(const struct gather *g, int cx, int cy)
     }
 }
 
-/* Notes highlights that rays lie so far apart at that few hit them, and show them as dots. */
-static void note_dots(const struct gather *g, const struct rf_highlight *run)
+/* Notes in the bins of tiles the highlights that rays sample too sparsely at their blur. */
+static void note_undersampled(const struct gather *g, const struct rf_highlight *run)
 {
     const struct rf_highlight_window *w = g->window;
-    const double dots = run->size * 256 / (DOTS * g->gap); /* from this blur on */
+    const double from = run->size * 256 / (WELL_SAMPLED * g->gap); /* from this blur on */
 
     for (int i = 0, x, y; i < run->count; i++) {
         struct rf_bins *bins;
@@ -96,8 +96,8 @@ static void note_dots(const struct gather *g, const struct rf_highlight *run)
             continue;
         bins = &w->bins[(size_t)(y / RF_TILE) * w->view->tiles_x + x / RF_TILE];
         blur = abs(blur_at(g, x, y));
-        if (blur > dots && blur > bins->dots)
-            bins->dots = (int16_t)blur;
+        if (blur > from && blur > bins->undersampled)
+            bins->undersampled = (int16_t)blur;
     }
 }
 
@@ -122,7 +122,7 @@ void rf_widen_highlights(const struct rf_executor *exec, const struct rf_highlig
     const struct rf_highlight_parts parts = rf_parts_in(window->view);
 
     for (int i = 0; i < parts.count; i++) {
-        for_each(&g, parts.first + i, note_dots);
+        for_each(&g, parts.first + i, note_undersampled);
         for_each(&g, parts.first + i, widen_run);
     }
 }

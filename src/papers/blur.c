@@ -15,7 +15,7 @@ static void gather(const struct rf_frame *f, int x, int y, struct rf_sums *sums)
 {
     const ptrdiff_t p = y * f->view->stride + x;
     const int s = f->blur.at[p], i = y % RF_TILE * RF_TILE + x % RF_TILE;
-    const struct rf_ray_set *set = rf_rays_for(f->ray_sets, abs(s), false);
+    const struct rf_ray_set *set = rf_choose_ray_set(f->ray_sets, abs(s), false);
     uint64_t light[3] = {0, 0, 0}, weight = 0;
 
     for (int n = 0; n < set->count; n++) {

@@ -186,13 +186,13 @@ static struct rf_kept kept_at(struct rf_bin_scale scale, int gx, int gy, bool sq
 void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float largest_blur, int pad,
                    bool square)
 {
-    /* gap_of() - 1 of tiles farther away is more than any blur, even a whole bin less */
-    const int met = (int)((largest_blur + 1) / RF_TILE) + 1;
+    /* No blur, not even one a bin larger, exceeds gap_of() - 1 of a tile farther away. */
+    const int farthest = (int)((largest_blur + 1) / RF_TILE) + 1;
 
     reach->scale = scale;
     reach->tiles = (pad - 2 + RF_TILE - 1) / RF_TILE;
-    if (reach->tiles > met)
-        reach->tiles = met;
+    if (reach->tiles > farthest)
+        reach->tiles = farthest;
     for (int j = 0; j <= reach->tiles; j++)
         for (int i = 0; i <= reach->tiles; i++)
             reach->kept[j][i] = kept_at(scale, gap_of(i), gap_of(j), square);
@@ -209,8 +209,8 @@ static inline void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
         sum->brightest = bins->brightest;
     if (bins->highlight > sum->highlight && bins->highlight >= kept->blur)
         sum->highlight = bins->highlight;
-    if (bins->dots > sum->dots && bins->dots >= kept->blur)
-        sum->dots = bins->dots;
+    if (bins->undersampled > sum->undersampled && bins->undersampled >= kept->blur)
+        sum->undersampled = bins->undersampled;
     if (!near && !far)
         return;
     for (int k = 0; k < RF_BINS / 64; k++)
@@ -324,6 +324,6 @@ void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,
 
     cover(&in_reach, reach->scale, plan);
     plan->highlight = in_reach.highlight;
-    plan->dots = in_reach.dots > 0;
+    plan->undersampled = in_reach.undersampled > 0;
     plan->brightest = in_reach.brightest;
 }

@@ -26,7 +26,7 @@ struct rf_tile_plan {
     int least;          /* the least |s| that reaches it */
     bool sharp;         /* nothing here or reaching here is blurred by half a pixel */
     int highlight;      /* largest |s| of a highlight in reach, Q7.8; 0: none is in reach */
-    bool dots;          /* a highlight that is small beside the gaps of the rays is in reach */
+    bool undersampled;  /* a highlight that is narrow beside the gaps of the rays is in reach */
     uint16_t brightest; /* brightest light of the tiles in reach, as in rf_bins */
     struct rf_slab slab[RF_MAX_SLABS];
     bool joined[RF_MAX_SLABS]; /* slab k overlaps slab k - 1, and a test may be of both */
@@ -41,7 +41,7 @@ struct rf_kept {
 enum { RF_REACH_TILES = (127 + RF_TILE - 1) / RF_TILE };
 struct rf_reach {
     struct rf_bin_scale scale;
-    int tiles;                                                   /* how far tiles are met at all */
+    int tiles; /* tiles farther away than this reach none */
     struct rf_kept kept[RF_REACH_TILES + 1][RF_REACH_TILES + 1]; /* [tiles down][across] */
 };
 /* Tabulates the reach of blurs up to the largest there can be in this frame, pixels, and pad - 2.

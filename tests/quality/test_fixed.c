@@ -148,7 +148,7 @@ static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
                 memcpy(out, s->photo + 3 * pixel_at(s, x, y), 3);
                 continue;
             }
-            const struct rf_ray_set *set = rf_rays_for(&r->ray_sets, plan.reach, false);
+            const struct rf_ray_set *set = rf_choose_ray_set(&r->ray_sets, plan.reach, false);
             for (int n = 0; n < set->count; n++)
                 sweep_ray(s, r, &plan, &set->ray[n], x, y, r->background.blur.at[middle] / 256.0,
                           light, sum);
