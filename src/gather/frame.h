@@ -96,9 +96,9 @@ static inline bool rf_is_sweep(const struct rf_frame *f)
     return f->params->method == REFOCUS_METHOD_SWEEP;
 }
 
-/* Whether a ray that meets only the deepest surface of a tile sees the hidden background there
- * without a test: kernels->sort_rays. */
-static inline bool rf_looks_beneath(const struct rf_frame *f)
+/* Whether rays skip the test of the deepest surface in reach and see the background layer there:
+ * kernels->sort_rays. */
+static inline bool rf_skips_deepest_test(const struct rf_frame *f)
 {
     return f->params->rays != REFOCUS_RAYS_FULL && f->params->rays <= RF_LIVE_RAYS;
 }

@@ -90,7 +90,7 @@ static void set_lookups(struct lookups *lookups, const struct rf_frame *f,
  * the offsets of a ray constant. Looking it up for each pixel measured no better. */
 static int background_blur_of(const struct rf_frame *f, int tx, int ty)
 {
-    return f->bins[(size_t)ty * f->view->tiles_x + tx].behind;
+    return f->bins[(size_t)ty * f->view->tiles_x + tx].background_blur;
 }
 
 /* The sums of a tile: of light, plain or times weight, and of weights. */
@@ -127,12 +127,12 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
         .range = range,
         .below = strip.step > 2 ? range + STRIP_CELLS * f->range.stride : NULL,
         .front = f->smooth.channel[0] + at,
-        .behind = f->background.light.channel[0] + at,
+        .background = f->background.light.channel[0] + at,
         .weight = f->weighted ? f->weight.at + weight_at : NULL,
         .background_weight = f->background_weight.at + at,
         .rays = lookups->rays,
         .slabs = plan->slabs,
-        .beneath = rf_looks_beneath(f),
+        .skip_deepest = rf_skips_deepest_test(f),
         .slab = plan->slab,
         .joined = plan->joined,
         .offset = (const int32_t(*)[RF_RAY_CHUNK])lookups->offset,

@@ -104,10 +104,10 @@ static void sort_rays(const struct tile *tile, struct lookups *lookups, int shar
     const struct rf_sort_job job = {
         .range = tile->range,
         .front = tile->luma.light,
-        .behind = tile->luma.background,
+        .background = tile->luma.background,
         .rays = lookups->rays,
         .slabs = tile->plan.slabs,
-        .beneath = rf_looks_beneath(tile->f),
+        .skip_deepest = rf_skips_deepest_test(tile->f),
         .slab = tile->plan.slab,
         .joined = tile->plan.joined,
         .offset = (const int32_t(*)[RF_RAY_CHUNK])lookups->offset,
@@ -299,7 +299,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
 
     (void)worker;
     tile.f = f;
-    tile.background_blur = f->bins[(size_t)ty * f->view->tiles_x + tx].behind;
+    tile.background_blur = f->bins[(size_t)ty * f->view->tiles_x + tx].background_blur;
     rf_plan_tile(f->view, f->bins, &f->reach, tx, ty, &tile.plan);
     if (tile.plan.sharp) {
         rf_copy_yuv_tile(f, rect);

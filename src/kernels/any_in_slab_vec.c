@@ -8,14 +8,14 @@ bool RF_VEC(rf_any_in_slab)(const int16_t *blur, ptrdiff_t stride, int width, in
     const vec_u16 from = vec_u16_set(rf_range_from(slab));
     const vec_u16 to = vec_u16_set(rf_range_to(slab, slab));
     const int last = width - (int)VEC_U16;
-    vec_u16 met = vec_u16_set(0);
+    vec_u16 hit = vec_u16_set(0);
 
     for (int y = 0; y < height; y++, blur += stride)
         for (int x = 0; x < width; x += (int)VEC_U16) {
             const int16_t *const s = blur + (x < last ? x : last);
             const vec_u16 away = vec_u16_sub(vec_u16_load((const uint16_t *)s), from);
 
-            met = vec_u16_or(met, vec_s16_less(away, to));
+            hit = vec_u16_or(hit, vec_s16_less(away, to));
         }
-    return vec_u16_any(met);
+    return vec_u16_any(hit);
 }

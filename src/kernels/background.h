@@ -33,8 +33,8 @@ typedef void rf_dilate_from_fn(uint16_t *row, const uint16_t *before, int n);
 
 /* mark_foreground: the blur of pixels that are not foreground, RF_NO_BLUR of those whose dilated
  * value is more than half a pixel above their own. `dilated` is s + 2^15. */
-typedef void rf_mark_foreground_fn(int16_t *behind, const int16_t *blur, const uint16_t *dilated,
-                                   int n);
+typedef void rf_mark_foreground_fn(int16_t *background_blur, const int16_t *blur,
+                                   const uint16_t *dilated, int n);
 
 /* push: n parents of 2 x 2 children: the mean of the known ones, half up, and their
  * farthest blur; 0 and RF_NO_BLUR if none is known. */
@@ -58,12 +58,12 @@ typedef void rf_push1_fn(uint16_t *out, int16_t *out_blur, const uint16_t *upper
 /* split2: n means of two rows of pairs, half up, the firsts and the seconds apart.
  * join2: pairs of them again.
  * restore_known2: n pairs become `own` where either of the two pixels has the same blur in front
- * and behind.
+ * * and in the background.
  */
 typedef void rf_split2_fn(uint16_t *first, uint16_t *second, const uint16_t *upper,
                           const uint16_t *lower, int n);
 typedef void rf_join2_fn(uint16_t *out, const uint16_t *first, const uint16_t *second, int n);
 typedef void rf_restore_known2_fn(uint16_t *out, const uint16_t *own, const int16_t *blur,
-                                  const int16_t *behind, int n);
+                                  const int16_t *background_blur, int n);
 
 #endif

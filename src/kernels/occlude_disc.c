@@ -27,9 +27,9 @@ void rf_occlude_disc_c(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
                          : rf_larger(rf_smaller(whole, 2 * job->right[like]), 2 * job->left[like]);
         const int down = go(way, 64 * way->middle - 128 * like + 32 * side);
 
-        const int16_t met = blur[(like + down) * stride + x + go(way, away)];
+        const int16_t hit = blur[(like + down) * stride + x + go(way, away)];
 
         visible[(side > 0 ? RF_TILE * RF_TILE : 0) + y * RF_TILE + x] =
-            rf_in_range(low, to, met) ? 0 : 0xffff;
+            rf_in_range(low, to, hit) ? 0 : 0xffff;
     }
 }

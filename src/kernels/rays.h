@@ -37,7 +37,8 @@ typedef void rf_aim_chroma_fn(int32_t *offset, int32_t *pixel, const int16_t *u,
  *         for k = 0 .. slabs - 1, with the range at range[cell[k][n]]:
  *             no blur in the range is in slab k: go on
  *             all blurs are in it:               the last is its light at offset[k][n]; end
- *             none is deeper, and it is bare:    the last is the background at offset[k][n]; end
+ *             *             none is deeper, and the range is
+ *             RF_IN_BACKGROUND:                  the last is the background at offset[k][n]; end
  *             else:                              test slab k at offset[k][n]
  *         the last is the background at offset[slabs][n]
  *
@@ -53,22 +54,22 @@ typedef void rf_aim_chroma_fn(int32_t *offset, int32_t *pixel, const int16_t *u,
  * are not merged across multiples of RF_JOIN_BLOCK.
  *
  * Rays come out with fewer tests first, those of RF_SORTED_TESTS - 1 or more at the end, and
- * otherwise in their order. Nothing is lost by that: tests that are left out could not hit, would
- * all hit, or lead to the same light. There is one exception: where `beneath` is set, the deepest
- * slab is not tested if it is bare. The pixels in it have the same light in the background; the
- * others are nearer and were not hit, so the ray passes beneath them, most likely to this slab. A
- * third of all tests is of that kind. Slabs wider than the least rf_bare_depth() of their blurs are
- * tested.
+ * otherwise in their order. Tests that are culled could not hit, would all hit, or lead to the same
+ * light, so nothing changes by that. There is one exception: where `skip_deepest` is set, the
+ * deepest slab is not tested if it is in the background layer too. Pixels in this slab have the
+ * same light there. Others are nearer and were not hit, so the ray passes them and hits a surface
+ * that they occlude, most likely one of this slab. A third of all tests is of that kind. Slabs
+ * wider than the least rf_background_depth() of their blurs are tested.
  */
 enum { RF_SORTED_TESTS = 8, RF_JOIN_BLOCK = 16 };
 
 struct rf_sort_job {
     const uint32_t *range;                      /* at the strip's first pixel */
     const uint32_t *below;                      /* at the strip below, if both are one; else NULL */
-    const uint16_t *front, *behind;             /* first of three planes of light, there */
+    const uint16_t *front, *background;         /* first of three planes of light, there */
     const uint16_t *weight, *background_weight; /* for sweep_weighted, else NULL: see there */
     int rays, slabs;
-    bool beneath;
+    bool skip_deepest;
     const struct rf_slab *slab;
     const bool *joined;                                           /* [slabs]: slab k to k - 1 */
     const int32_t (*offset)[RF_RAY_CHUNK], (*cell)[RF_RAY_CHUNK]; /* [slabs + 1], [slabs] */
@@ -95,7 +96,7 @@ struct rf_sorted_rays {
     /* Where the weights lie, like `offset` and `last`; only set if there are weights. */
     int32_t weight_offset[RF_BINS][RF_RAY_CHUNK];
     const uint16_t *last_weight[RF_RAY_CHUNK];
-    bool last_behind[RF_RAY_CHUNK]; /* last_weight is in the background */
+    bool last_is_background[RF_RAY_CHUNK]; /* last_weight is in the background */
 
     /* How many of the rays with so many tests chroma shares, the first ones; and for these, like
      * `offset` and `last`, where its samples and weights lie. */

@@ -27,7 +27,7 @@ static RF_ALWAYS_INLINE struct rf_sweep_hit rf_sweep_hit(const struct rf_sweep_v
                                                          ptrdiff_t p, ptrdiff_t w, const int planes,
                                                          const bool weighted)
 {
-    const bool as_light = planes > 1 && weighted && v->rays->last_behind[n];
+    const bool as_light = planes > 1 && weighted && v->rays->last_is_background[n];
 
     for (int t = 0; t < v->rays->tests[n]; t++) {
         const ptrdiff_t q = p + v->offset[t][n];

@@ -105,7 +105,7 @@ static RF_ALWAYS_INLINE void rf_sweep_forwards(rf_sums sum, const struct rf_swee
     }
     for (int c = 0; c < planes; c++)
         rf_add_plane(sum[c], v->last[n], g->at + c * v->pitch, &v->layout, left, g);
-    if (weighted && rays->last_behind[n])
+    if (weighted && rays->last_is_background[n])
         rf_add_plane(sum[planes], v->last_weight[n], g->at, &v->layout, left, g);
     else if (weighted)
         rf_add_plane(sum[planes], v->last_weight[n], g->weight_at, &v->weight_layout, left, g);

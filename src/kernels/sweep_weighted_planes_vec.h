@@ -14,7 +14,7 @@
 enum { RF_WEIGHTED_VECS = 2 }; /* at most, together */
 
 /* Light and weight that one ray of each lane hits. */
-struct rf_met {
+struct rf_hits {
     vec_u16 light[3][RF_WEIGHTED_VECS], weight[RF_WEIGHTED_VECS];
 };
 
@@ -23,23 +23,23 @@ struct rf_vec_place {
     ptrdiff_t at[RF_WEIGHTED_VECS], weight_at[RF_WEIGHTED_VECS];
 };
 
-static RF_ALWAYS_INLINE void rf_put_where(struct rf_met *met, int j, const uint16_t *light,
+static RF_ALWAYS_INLINE void rf_put_where(struct rf_hits *hits, int j, const uint16_t *light,
                                           ptrdiff_t at, ptrdiff_t pitch, const uint16_t *weight,
                                           vec_mask where, const int planes)
 {
     for (int c = 0; c < planes; c++)
-        met->light[c][j] =
-            vec_u16_put_where(where, met->light[c][j], vec_u16_load(light + (at + c * pitch)));
-    met->weight[j] = vec_u16_put_where(where, met->weight[j], vec_u16_load(weight));
+        hits->light[c][j] =
+            vec_u16_put_where(where, hits->light[c][j], vec_u16_load(light + (at + c * pitch)));
+    hits->weight[j] = vec_u16_put_where(where, hits->weight[j], vec_u16_load(weight));
 }
 
 /* Ray n of three planes, from the front to the back; all that is hit is 0 before. */
-static RF_ALWAYS_INLINE void rf_follow_forwards(struct rf_met *met, const struct rf_sweep_view *v,
+static RF_ALWAYS_INLINE void rf_follow_forwards(struct rf_hits *hits, const struct rf_sweep_view *v,
                                                 const struct rf_vec_place *p, int n,
                                                 const int planes, const int vecs)
 {
     const struct rf_sorted_rays *rays = v->rays;
-    const bool behind = rays->last_behind[n];
+    const bool is_background = rays->last_is_background[n];
     vec_mask is_free[RF_WEIGHTED_VECS];
 
     for (int j = 0; j < vecs; j++)
@@ -53,25 +53,27 @@ static RF_ALWAYS_INLINE void rf_follow_forwards(struct rf_met *met, const struct
                 rf_in_limits(is_free[j], limits, vec_u16_load(v->blur + q + p->at[j]));
 
             is_free[j] = vec_mask_without(is_free[j], hit);
-            rf_put_where(met, j, v->light + q, p->at[j], v->pitch,
+            rf_put_where(hits, j, v->light + q, p->at[j], v->pitch,
                          v->weight + v->weight_offset[t][n] + p->weight_at[j], hit, planes);
         }
     }
     for (int j = 0; j < vecs; j++)
-        rf_put_where(met, j, v->last[n], p->at[j], v->pitch,
-                     v->last_weight[n] + (behind ? p->at[j] : p->weight_at[j]), is_free[j], planes);
+        rf_put_where(hits, j, v->last[n], p->at[j], v->pitch,
+                     v->last_weight[n] + (is_background ? p->at[j] : p->weight_at[j]), is_free[j],
+                     planes);
 }
 
 /* Ray n of one plane, from the back to the front. */
-static RF_ALWAYS_INLINE void rf_follow_backwards(struct rf_met *met, const struct rf_sweep_view *v,
+static RF_ALWAYS_INLINE void rf_follow_backwards(struct rf_hits *hits,
+                                                 const struct rf_sweep_view *v,
                                                  const struct rf_vec_place *p, int n,
                                                  const int vecs)
 {
     const struct rf_sorted_rays *rays = v->rays;
 
     for (int j = 0; j < vecs; j++) {
-        met->light[0][j] = vec_u16_load(v->last[n] + p->at[j]);
-        met->weight[j] = vec_u16_load(v->last_weight[n] + p->weight_at[j]);
+        hits->light[0][j] = vec_u16_load(v->last[n] + p->at[j]);
+        hits->weight[j] = vec_u16_load(v->last_weight[n] + p->weight_at[j]);
     }
     for (int t = rays->tests[n] - 1; t >= 0; t--) {
         const struct rf_limits limits = rf_limits_of(rays, t, n);
@@ -80,31 +82,31 @@ static RF_ALWAYS_INLINE void rf_follow_backwards(struct rf_met *met, const struc
             const ptrdiff_t q = p->at[j] + v->offset[t][n];
             const vec_mask hit = rf_in_limits(vec_mask_all(), limits, vec_u16_load(v->blur + q));
 
-            met->light[0][j] = vec_u16_load_where(hit, met->light[0][j], v->light + q);
-            met->weight[j] = vec_u16_load_where(
-                hit, met->weight[j], v->weight + v->weight_offset[t][n] + p->weight_at[j]);
+            hits->light[0][j] = vec_u16_load_where(hit, hits->light[0][j], v->light + q);
+            hits->weight[j] = vec_u16_load_where(
+                hit, hits->weight[j], v->weight + v->weight_offset[t][n] + p->weight_at[j]);
         }
     }
     for (int j = 0; v->chroma && j < vecs; j++)
-        met->weight[j] = vec_u16_twice(met->weight[j]);
+        hits->weight[j] = vec_u16_twice(hits->weight[j]);
 }
 
-static RF_ALWAYS_INLINE void rf_follow(struct rf_met *met, const struct rf_sweep_view *v,
+static RF_ALWAYS_INLINE void rf_follow(struct rf_hits *hits, const struct rf_sweep_view *v,
                                        const struct rf_vec_place *p, int n, const int planes,
                                        const int vecs)
 {
     if (planes > 1)
-        rf_follow_forwards(met, v, p, n, planes, vecs);
+        rf_follow_forwards(hits, v, p, n, planes, vecs);
     else
-        rf_follow_backwards(met, v, p, n, vecs);
+        rf_follow_backwards(hits, v, p, n, vecs);
 }
 
-static RF_ALWAYS_INLINE void rf_meet_nothing(struct rf_met *met, const int planes, const int vecs)
+static RF_ALWAYS_INLINE void rf_hit_nothing(struct rf_hits *hits, const int planes, const int vecs)
 {
     for (int j = 0; j < vecs; j++) {
         for (int c = 0; c < planes; c++)
-            met->light[c][j] = vec_u16_set(0);
-        met->weight[j] = vec_u16_set(0);
+            hits->light[c][j] = vec_u16_set(0);
+        hits->weight[j] = vec_u16_set(0);
     }
 }
 
@@ -126,11 +128,11 @@ static RF_ALWAYS_INLINE void rf_sweep_vectors(uint64_t *const *sum, int lane,
         }
         end = count - k < steps ? count : k + steps;
         for (int i = k; i < end; i += 2) {
-            struct rf_met a, b;
+            struct rf_hits a, b;
 
-            rf_meet_nothing(&a, planes, vecs);
+            rf_hit_nothing(&a, planes, vecs);
             rf_follow(&a, v, p, planes > 1 ? i : ray[i], planes, vecs);
-            rf_meet_nothing(&b, planes, vecs);
+            rf_hit_nothing(&b, planes, vecs);
             if (i + 1 < end)
                 rf_follow(&b, v, p, planes > 1 ? i + 1 : ray[i + 1], planes, vecs);
             for (int j = 0; j < vecs; j++) {

@@ -40,21 +40,22 @@ static void weigh_row(const struct rf_weights *pass, int y, int x0, int x1)
     }
 }
 
-/* Most of the background is what is seen. */
+/* Weighs luminance. Most pixels of the background layer are those of the picture, and so have their
+ * weight. */
 static void weigh_luminance_row(const struct rf_weights *pass, int y, int x0, int x1)
 {
     const uint16_t *const of_light = pass->light_weight;
     const uint16_t *seen = pass->smooth.channel[0] + y * pass->smooth.stride;
-    const uint16_t *behind = pass->background.channel[0] + y * pass->background.stride;
+    const uint16_t *background = pass->background.channel[0] + y * pass->background.stride;
     uint16_t *near = pass->weight.at + y * pass->weight.stride;
     uint16_t *far = pass->background_weight.at + y * pass->background_weight.stride;
 
     for (int x = x0; x < x1; x++)
         near[x] = of_light[seen[x] < RF_LIGHT_MAX ? seen[x] : RF_LIGHT_MAX];
     for (int x = x0; x < x1; x++)
-        far[x] = behind[x] == seen[x]
+        far[x] = background[x] == seen[x]
                      ? near[x]
-                     : of_light[behind[x] < RF_LIGHT_MAX ? behind[x] : RF_LIGHT_MAX];
+                     : of_light[background[x] < RF_LIGHT_MAX ? background[x] : RF_LIGHT_MAX];
 }
 
 void rf_weigh_rows(const struct rf_viewport *view, const struct rf_weights *pass, int ty)

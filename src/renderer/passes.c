@@ -297,7 +297,7 @@ static void bare_band(void *context, int band, int worker)
     struct refocus_renderer *r = context;
     const struct rf_range_pass pass = range_pass(r);
 
-    rf_mark_bare_ranges(&r->exec, &r->view, &pass, band, worker);
+    rf_mark_ranges_in_background(&r->exec, &r->view, &pass, band, worker);
 }
 
 static void weigh_band(void *context, int band, int worker)

@@ -13,10 +13,11 @@ struct rf_bins {
     int16_t least, most; /* Q7.8 */
     int16_t highlight;   /* largest |s| of a highlight, Q7.8; 0: it has none */
     int16_t
-        undersampled;   /* largest |s| of a highlight that is narrow beside the gaps of the rays */
-    int16_t behind;     /* blur of the hidden background in the middle, once it is inpainted */
-    uint16_t brightest; /* an upper bound of the light of either layer, as it is summed */
-    bool subtracted;    /* highlights are subtracted from its light, highlights/subtract.c */
+        undersampled; /* largest |s| of a highlight that is narrow beside the gaps of the rays */
+    int16_t
+        background_blur; /* the blur of the hidden background in the middle, once it is inpainted */
+    uint16_t brightest;  /* an upper bound of the light of either layer, as it is summed */
+    bool subtracted;     /* highlights are subtracted from its light, highlights/subtract.c */
 };
 
 /* The least and the greatest circle of confusion around each cell of a window; tiles/ranges.h. */

@@ -135,8 +135,8 @@ void rf_force_foreground(const struct rf_viewport *view,
             foreground->most[y * foreground->stride + x] = INT16_MAX;
 }
 
-void rf_mark_bare_ranges(const struct rf_executor *exec, const struct rf_viewport *view,
-                         const struct rf_range_pass *pass, int ty, int worker)
+void rf_mark_ranges_in_background(const struct rf_executor *exec, const struct rf_viewport *view,
+                                  const struct rf_range_pass *pass, int ty, int worker)
 {
     const struct window_rows rows = window_rows(view, ty);
     int16_t *const scratch = (int16_t *)rf_scratch(exec, worker);
@@ -148,7 +148,7 @@ void rf_mark_bare_ranges(const struct rf_executor *exec, const struct rf_viewpor
             cell[j] = pass->foreground.most + clamp(y + j, rows.last) * pass->foreground.stride;
         if (pass->whole_tiles)
             join_strips(cell, joined_rows(scratch, &rows), rows.cells, greater_row);
-        exec->kernels->mark_bare(pass->range.at + y * pass->range.stride - rows.border, cell,
-                                 scratch, rows.cells, rows.border);
+        exec->kernels->mark_in_background(pass->range.at + y * pass->range.stride - rows.border,
+                                          cell, scratch, rows.cells, rows.border);
     }
 }

@@ -51,13 +51,13 @@ void rf_add_to_cell(const struct rf_cells *cells, int x, int y, int16_t blur);
 /* Arguments of the passes that make ranges, and where these go. */
 struct rf_range_pass {
     struct rf_cells cells;                 /* read by rf_range_rows() */
-    struct rf_foreground_cells foreground; /* read by rf_mark_bare_ranges() */
+    struct rf_foreground_cells foreground; /* read by rf_mark_ranges_in_background() */
     bool whole_tiles;                      /* ranges are of both strips of a tile: a photo of Y, U
                                               and V is swept a tile at a time */
     struct rf_range_plane range;           /* written */
 };
 
-/* Writes the ranges of row ty, from the cells of all rows. None is bare yet. */
+/* Writes the ranges of row ty, from the cells of all rows. RF_IN_BACKGROUND is still clear. */
 void rf_range_rows(const struct rf_executor *exec, const struct rf_viewport *view,
                    const struct rf_range_pass *pass, int ty, int worker);
 
@@ -71,8 +71,10 @@ void rf_foreground_rows(const struct rf_executor *exec, const struct rf_viewport
 void rf_force_foreground(const struct rf_viewport *view,
                          const struct rf_foreground_cells *foreground, struct rf_rect pixels);
 
-/* Tells which ranges of row ty are bare (kernels.h), from the foreground of all rows. */
-void rf_mark_bare_ranges(const struct rf_executor *exec, const struct rf_viewport *view,
-                         const struct rf_range_pass *pass, int ty, int worker);
+/* Sets RF_IN_BACKGROUND (kernels/ranges.h) in the ranges of row ty, from the foreground of all
+ * rows.
+ */
+void rf_mark_ranges_in_background(const struct rf_executor *exec, const struct rf_viewport *view,
+                                  const struct rf_range_pass *pass, int ty, int worker);
 
 #endif

@@ -127,7 +127,7 @@ void rf_note_background_blur(const struct rf_viewport *view, struct rf_blur_q8 b
     const int16_t *row = background_blur.at + (ty * RF_TILE + RF_TILE / 2) * background_blur.stride;
 
     for (int tx = 0; tx < view->tiles_x; tx++)
-        bins[(size_t)ty * view->tiles_x + tx].behind = row[tx * RF_TILE + RF_TILE / 2];
+        bins[(size_t)ty * view->tiles_x + tx].background_blur = row[tx * RF_TILE + RF_TILE / 2];
 }
 
 static bool has(const struct rf_bins *bins, int bin)

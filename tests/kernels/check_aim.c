@@ -61,7 +61,7 @@ static bool check_aim_at(const struct subject *subject, int n, uint32_t seed)
 
 struct sight {
     uint32_t range[SIDE * SIDE], below[SIDE * SIDE];
-    uint16_t front[1000], behind[1000];
+    uint16_t front[1000], background[1000];
     struct rf_slab slab[MOST_SLABS];
     bool joined[MOST_SLABS];
     int32_t offset[MOST_SLABS + 1][RF_RAY_CHUNK], cell[MOST_SLABS][RF_RAY_CHUNK];
@@ -83,7 +83,7 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
         const int high = low + noise_between(&seed, 0, spread);
 
         s->range[i] = (uint32_t)(low & 0xffff) | (uint32_t)(high & ~1) << 16 |
-                      (noise(&seed) % 2 ? RF_BARE : 0);
+                      (noise(&seed) % 2 ? RF_IN_BACKGROUND : 0);
         s->below[i] = s->range[noise_between(&seed, 0, i)];
     }
     for (int k = 0; k <= slabs; k++) {
@@ -106,9 +106,9 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
     s->job = (struct rf_sort_job){
         .range = s->range,
         .below = seed % 4 == 1 ? s->below : NULL,
-        .beneath = seed % 8 < 5,
+        .skip_deepest = seed % 8 < 5,
         .front = s->front,
-        .behind = s->behind,
+        .background = s->background,
         .rays = n,
         .slabs = slabs,
         .slab = s->slab,
@@ -127,22 +127,22 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
 }
 
 /* Expects ray n, the m-th, to see last what lies in slab k, or the hidden background there. */
-static void expect_last(struct sight *s, int n, int m, int k, bool behind)
+static void expect_last(struct sight *s, int n, int m, int k, bool background)
 {
-    const uint16_t *weight = behind ? s->background_weight : s->weight;
+    const uint16_t *weight = background ? s->background_weight : s->weight;
 
-    s->expected.last[m] = (behind ? s->behind : s->front) + s->offset[k][n];
+    s->expected.last[m] = (background ? s->background : s->front) + s->offset[k][n];
     s->expected.chroma_last[m] =
-        (behind ? s->chroma_background : s->chroma_front) + s->chroma_offset[k][n];
-    s->expected.last_weight[m] = weight + (behind ? s->offset[k][n] : s->chroma_offset[k][n]);
-    s->expected.last_behind[m] = behind;
+        (background ? s->chroma_background : s->chroma_front) + s->chroma_offset[k][n];
+    s->expected.last_weight[m] = weight + (background ? s->offset[k][n] : s->chroma_offset[k][n]);
+    s->expected.last_is_background[m] = background;
     s->expected.chroma_last_weight[m] = weight + s->chroma_weight_offset[k][n];
 }
 
 /* Bounds of the light where ray n sees slab k. */
 struct seen {
     int low, high;
-    bool bare;
+    bool in_background;
 };
 
 static struct seen seen_by(const struct sight *s, int k, int n)
@@ -156,12 +156,12 @@ static struct seen seen_by(const struct sight *s, int k, int n)
 
         seen.low = low < seen.low ? low : seen.low;
         seen.high = high > seen.high ? high : seen.high;
-        seen.bare = seen.bare && range & RF_BARE;
+        seen.in_background = seen.in_background && range & RF_IN_BACKGROUND;
     }
     return seen;
 }
 
-/* The least rf_bare_depth() of blurs from low to high. */
+/* The least rf_background_depth() of blurs from low to high. */
 static int depth_in(int low, int high)
 {
     int least = INT16_MAX;
@@ -195,7 +195,8 @@ static bool expect_ray(struct sight *s, int n, int m, int wanted)
             tests -= beside;
             break;
         }
-        if (s->job.beneath && seen.bare && seen.high <= to && to - from <= depth_in(from, to)) {
+        if (s->job.skip_deepest && seen.in_background && seen.high <= to &&
+            to - from <= depth_in(from, to)) {
             expect_last(s, n, m, k, true);
             break;
         }
@@ -248,7 +249,7 @@ static bool check_weights(const struct subject *subject, const struct sight *s, 
 
     for (int i = 0; s->job.weight && i < n; i++) {
         if (is->last_weight[i] != should->last_weight[i] ||
-            is->last_behind[i] != should->last_behind[i])
+            is->last_is_background[i] != should->last_is_background[i])
             return fail(subject, "sort_rays", seed, n, i, is->last_weight[i] - s->weight,
                         should->last_weight[i] - s->weight);
         for (int t = 0; t < is->tests[i]; t++)
@@ -340,7 +341,7 @@ static bool check_settle(const struct subject *subject, int n, uint32_t seed)
         const int high = low + noise_between(&seed, 0, spread / 2);
 
         range[i] = (uint32_t)(low & 0xffff) | (uint32_t)(high & ~1) << 16 |
-                   (noise(&seed) % 2 ? RF_BARE : 0);
+                   (noise(&seed) % 2 ? RF_IN_BACKGROUND : 0);
     }
     for (int i = 0; i < n; i++) {
         rays.u[i] = (int16_t)noise_between(&seed, -32767, 32767);

@@ -60,7 +60,7 @@ static void follow(struct stage *s, int pixel, int ray)
         }
     }
     count(s, pixel, s->rays.last[ray] + p,
-          s->rays.last_weight[ray][s->rays.last_behind[ray] ? p : w]);
+          s->rays.last_weight[ray][s->rays.last_is_background[ray] ? p : w]);
 }
 
 /* An offset as far as the planes reach, at first to their corners; *weight is that of weights. */
@@ -97,10 +97,10 @@ static void make_rays(struct stage *s, const uint16_t *front, const uint16_t *be
             rays->offset[t][n] = make_offset(n, &rays->weight_offset[t][n], seed);
         }
         offset = make_offset(n, &weight_offset, seed);
-        rays->last_behind[n] = noise(seed) % 2;
-        rays->last[n] = (rays->last_behind[n] ? behind : front + PITCH) + offset;
-        rays->last_weight[n] =
-            rays->last_behind[n] ? behind + 3 * PITCH + offset : s->job.weight + weight_offset;
+        rays->last_is_background[n] = noise(seed) % 2;
+        rays->last[n] = (rays->last_is_background[n] ? behind : front + PITCH) + offset;
+        rays->last_weight[n] = rays->last_is_background[n] ? behind + 3 * PITCH + offset
+                                                           : s->job.weight + weight_offset;
     }
 }
 
@@ -300,7 +300,7 @@ static void fill_chunk(struct rf_sorted_rays *rays)
         rays->tests[n] = rays->tests[like];
         rays->last[n] = rays->last[like];
         rays->last_weight[n] = rays->last_weight[like];
-        rays->last_behind[n] = rays->last_behind[like];
+        rays->last_is_background[n] = rays->last_is_background[like];
         for (int t = 0; t < rays->tests[n]; t++) {
             rays->from[t][n] = rays->from[t][like];
             rays->to[t][n] = rays->to[t][like];

@@ -156,7 +156,7 @@ static bool check_bare(const struct subject *subject, struct stage *s, int n, en
     for (int x = 0; x < windows; x++)
         before[x] = range[x] = (uint32_t)(noise_between(&seed, -MOST_BLUR, MOST_BLUR) * 65536) |
                                (noise(&seed) & 0xffff);
-    subject->kernels.mark_bare(range, cell, scratch, n, border);
+    subject->kernels.mark_in_background(range, cell, scratch, n, border);
     for (int x = 0; x < windows; x++) {
         const int most = (int16_t)(before[x] >> 16 & 0xfffe);
         int high = RF_NO_BLUR;
@@ -167,9 +167,10 @@ static bool check_bare(const struct subject *subject, struct stage *s, int n, en
 
             high = v > high ? v : high;
         }
-        should = (before[x] & ~(uint32_t)RF_BARE) | (high < most - depth_of(most) ? RF_BARE : 0);
+        should = (before[x] & ~(uint32_t)RF_IN_BACKGROUND) |
+                 (high < most - depth_of(most) ? RF_IN_BACKGROUND : 0);
         if (range[x] != should)
-            return fail(subject, "mark_bare", first, n, x, (long)range[x], (long)should);
+            return fail(subject, "mark_in_background", first, n, x, (long)range[x], (long)should);
     }
     return guarded_intact(&s->range) && guarded_intact(&s->scratch);
 }

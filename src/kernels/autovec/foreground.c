@@ -3,21 +3,21 @@
 #include "kernels/autovec/cell_runs.h"
 
 /* The blur of a pixel that is foreground. */
-static inline int16_t in_front(int16_t blur, int16_t behind)
+static inline int16_t in_front(int16_t blur, int16_t background_blur)
 {
-    return (int16_t)(blur == behind ? RF_NO_BLUR : blur);
+    return (int16_t)(blur == background_blur ? RF_NO_BLUR : blur);
 }
 
 static void foreground_run(int16_t *restrict most, const int16_t *restrict blur,
-                           const int16_t *restrict behind, ptrdiff_t stride, int n)
+                           const int16_t *restrict background_blur, ptrdiff_t stride, int n)
 {
     int16_t high[RF_CELL * RF_CELL_RUN + 4];
 
     for (int x = 0; x < RF_CELL * n; x++) {
-        const int16_t a = in_front(blur[x], behind[x]);
-        const int16_t b = in_front(blur[x + stride], behind[x + stride]);
-        const int16_t c = in_front(blur[x + 2 * stride], behind[x + 2 * stride]);
-        const int16_t d = in_front(blur[x + 3 * stride], behind[x + 3 * stride]);
+        const int16_t a = in_front(blur[x], background_blur[x]);
+        const int16_t b = in_front(blur[x + stride], background_blur[x + stride]);
+        const int16_t c = in_front(blur[x + 2 * stride], background_blur[x + 2 * stride]);
+        const int16_t d = in_front(blur[x + 3 * stride], background_blur[x + 3 * stride]);
 
         high[x] = rf_greater(rf_greater(a, b), rf_greater(c, d));
     }
@@ -28,10 +28,10 @@ static void foreground_run(int16_t *restrict most, const int16_t *restrict blur,
     }
 }
 
-void RF_VEC(rf_foreground)(int16_t *most, const int16_t *blur, const int16_t *behind,
+void RF_VEC(rf_foreground)(int16_t *most, const int16_t *blur, const int16_t *background_blur,
                            ptrdiff_t stride, int n)
 {
     for (int i = 0; i < n; i += RF_CELL_RUN)
-        foreground_run(most + i, blur + RF_CELL * i, behind + RF_CELL * i, stride,
+        foreground_run(most + i, blur + RF_CELL * i, background_blur + RF_CELL * i, stride,
                        n - i < RF_CELL_RUN ? n - i : RF_CELL_RUN);
 }

@@ -2,11 +2,12 @@
 #include "kernels/kernels.h"
 
 void RF_VEC(rf_restore_known2)(uint16_t *restrict out, const uint16_t *restrict own,
-                               const int16_t *restrict blur, const int16_t *restrict behind, int n)
+                               const int16_t *restrict blur,
+                               const int16_t *restrict background_blur, int n)
 {
     for (int x = 0; x < n; x++) {
-        const uint16_t known =
-            (uint16_t) - ((blur[2 * x] == behind[2 * x]) | (blur[2 * x + 1] == behind[2 * x + 1]));
+        const uint16_t known = (uint16_t) - ((blur[2 * x] == background_blur[2 * x]) |
+                                             (blur[2 * x + 1] == background_blur[2 * x + 1]));
 
         out[2 * x] = (uint16_t)((own[2 * x] & known) | (out[2 * x] & ~known));
         out[2 * x + 1] = (uint16_t)((own[2 * x + 1] & known) | (out[2 * x + 1] & ~known));

@@ -7,11 +7,11 @@ enum { BITS = RF_JOIN_BLOCK, BLOCKS = RF_BINS / BITS };
 struct state {
     uint16_t first[BLOCKS][RF_RAY_CHUNK];  /* bit k % BITS of block k / BITS: it tests slab k */
     uint16_t joined[BLOCKS][RF_RAY_CHUNK]; /* this bit: it tests it with slab k - 1 */
-    uint16_t open[RF_RAY_CHUNK];           /* all bits: no slab so far takes all */
+    uint16_t open[RF_RAY_CHUNK];           /* all bits: so far some pixel may pass */
     uint16_t tests[RF_RAY_CHUNK];
-    uint16_t last[RF_RAY_CHUNK];    /* slab, or their number: the background, */
-    uint16_t beneath[RF_RAY_CHUNK]; /* all bits: which is seen at the offset of `last`; 1 in the
-                                     * end, where the background is seen */
+    uint16_t last[RF_RAY_CHUNK]; /* the slab that the ray ends in; their number: none of them */
+    uint16_t from_background[RF_RAY_CHUNK]; /* all bits: there it sees the background layer; in the
+                                             * end it is 1 for all rays that see this layer */
     uint16_t from[RF_BINS], until[RF_BINS]; /* the limits of the slabs, for rf_in_range() */
 };
 
@@ -20,40 +20,42 @@ static inline uint16_t mask(int is_true)
     return (uint16_t)-is_true;
 }
 
-/* Where rays see a slab: there blurs lie from `least` to `most`, what is deepest is bare (all
- * bits), and the slab before is seen in the same place (all bits). */
-struct sight {
+/* The blurs where rays look for a slab: from `least` to `most`. All bits of `in_background` are set
+ * where the deepest surface is in the background layer too, and all bits of `same` where rays look
+ * for the slab before in the same place. */
+struct slab_ranges {
     int16_t least[RF_RAY_CHUNK], most[RF_RAY_CHUNK];
-    uint16_t bare[RF_RAY_CHUNK], same[RF_RAY_CHUNK];
+    uint16_t in_background[RF_RAY_CHUNK], same[RF_RAY_CHUNK];
 };
 
-/* Whether the background shows all of a slab where it shows what is deepest. */
+/* Whether a slab is so narrow that the background layer has all of it where it has its deepest
+ * surface. */
 static bool is_thin(const struct rf_slab *slab)
 {
     const int low = slab->low, high = low + slab->width;
 
-    return slab->width <= rf_bare_depth(low > 0 ? low : high < 0 ? high : 0);
+    return slab->width <= rf_background_depth(low > 0 ? low : high < 0 ? high : 0);
 }
 
-/* Slab k. Returns whether any ray is still open. */
-static bool meet_slab(struct state *restrict s, const struct rf_sort_job *job, int k,
-                      const struct sight *restrict sight)
+/* Culls the tests of slab k. Returns whether any ray is still open. */
+static bool cull_slab(struct state *restrict s, const struct rf_sort_job *job, int k,
+                      const struct slab_ranges *restrict seen)
 {
-    const int16_t *restrict least = sight->least, *restrict most = sight->most;
-    const uint16_t *restrict bare = sight->bare, *restrict same = sight->same;
+    const int16_t *restrict least = seen->least, *restrict most = seen->most;
+    const uint16_t *restrict in_background = seen->in_background, *restrict same = seen->same;
     const int16_t low = job->slab[k].low, high = (int16_t)(low + job->slab[k].width);
     const uint16_t bit = (uint16_t)(1 << k % BITS), before = k % BITS ? bit / 2 : 0;
     const uint16_t may_join = job->joined[k] ? 0xffff : 0, slab = (uint16_t)k;
-    const uint16_t may_pass = mask(job->beneath && is_thin(&job->slab[k]));
+    const uint16_t may_pass = mask(job->skip_deepest && is_thin(&job->slab[k]));
     uint16_t *restrict first = s->first[k / BITS], *restrict joined = s->joined[k / BITS];
     uint16_t *restrict open = s->open, *restrict tests = s->tests, *restrict last = s->last;
-    uint16_t *restrict beneath = s->beneath;
+    uint16_t *restrict from_background = s->from_background;
     uint16_t any = 0;
 
     for (int n = 0; n < job->rays; n++) {
         const uint16_t outside = mask(most[n] < low) | mask(least[n] > high);
         const uint16_t partly = mask(least[n] < low) | mask(most[n] > high);
-        const uint16_t deepest = may_pass & bare[n] & mask(most[n] <= high);
+        const uint16_t deepest = may_pass & in_background[n] & mask(most[n] <= high);
         const uint16_t some = open[n] & partly & (uint16_t)~outside;
         const uint16_t pass = some & deepest, test = some & (uint16_t)~deepest;
         const uint16_t all = open[n] & (uint16_t)~partly;
@@ -64,7 +66,7 @@ static bool meet_slab(struct state *restrict s, const struct rf_sort_job *job, i
         first[n] |= start & bit;
         tests[n] += (all & beside) - start; /* -1 is true */
         last[n] = ((all | pass) & slab) | ((uint16_t) ~(all | pass) & last[n]);
-        beneath[n] |= pass;
+        from_background[n] |= pass;
         open[n] &= partly & (uint16_t)~pass;
         any |= open[n];
     }
@@ -77,7 +79,7 @@ static inline int joined_to(uint32_t joined, int bit)
     return __builtin_ctz(~(joined >> (bit + 1)));
 }
 
-/* Without a branch, which would not be foreseen. */
+/* Chooses without a branch, as no processor could predict it. */
 static inline const void *choose(bool first, const void *a, const void *b)
 {
     const uintptr_t all = (uintptr_t)0 - first;
@@ -90,7 +92,7 @@ struct way {
     bool weighted, shared, blocks; /* weights, chroma, more than one block of slabs */
 };
 
-/* The tests of ray n, which becomes the m-th. */
+/* Places the tests of ray n, which becomes the m-th. */
 static RF_ALWAYS_INLINE void place_tests(struct rf_sorted_rays *restrict sorted,
                                          const struct rf_sort_job *restrict job,
                                          const struct state *restrict s, int n, int m,
@@ -125,27 +127,29 @@ static RF_ALWAYS_INLINE void place_last(struct rf_sorted_rays *restrict sorted,
                                         const struct state *restrict s, int n, int m,
                                         const struct way way)
 {
-    const uint16_t *const light[2] = {job->front, job->behind};
-    const size_t last = s->last[n], behind = s->beneath[n];
+    const uint16_t *const light[2] = {job->front, job->background};
+    const size_t last = s->last[n], background = s->from_background[n];
 
-    sorted->last[m] = light[behind] + job->offset[last][n];
+    sorted->last[m] = light[background] + job->offset[last][n];
     if (way.weighted) {
-        sorted->last_behind[m] = behind;
+        sorted->last_is_background[m] = background;
         sorted->last_weight[m] =
-            (const uint16_t *)choose(behind, job->background_weight, job->weight) +
-            *(const int32_t *)choose(behind, &job->offset[last][n], &job->weight_offset[last][n]);
+            (const uint16_t *)choose(background, job->background_weight, job->weight) +
+            *(const int32_t *)choose(background, &job->offset[last][n],
+                                     &job->weight_offset[last][n]);
     }
     if (way.shared && n < job->shared)
         sorted->chroma_last[m] =
-            (const uint16_t *)choose(behind, job->chroma_background, job->chroma_front) +
+            (const uint16_t *)choose(background, job->chroma_background, job->chroma_front) +
             job->chroma_offset[last][n];
     if (way.shared && way.weighted && n < job->shared)
         sorted->chroma_last_weight[m] =
-            (const uint16_t *)choose(behind, job->background_weight, job->weight) +
+            (const uint16_t *)choose(background, job->background_weight, job->weight) +
             job->chroma_weight_offset[last][n];
 }
 
-/* Rays order[first] to order[end - 1], whose tests are as many, or as the state says. */
+/* Places rays order[first] to order[end - 1], which have `tests` tests each or, if that is
+ * negative, as many as the state says. */
 static RF_ALWAYS_INLINE void place_some(struct rf_sorted_rays *restrict sorted,
                                         const struct rf_sort_job *restrict job,
                                         const struct state *restrict s,
@@ -209,11 +213,12 @@ static RF_ALWAYS_INLINE void place_all(struct rf_sorted_rays *restrict sorted,
     place_some(sorted, job, s, order, begin[3], job->rays, -1, way);
 }
 
-/* Where slab k is seen: the blurs there, and whether slab k - 1 is seen there too. */
-static inline void look(struct sight *restrict sight, const struct rf_sort_job *job, int k)
+/* Finds the blurs where rays look for slab k, and whether they look for slab k - 1 there too. */
+static inline void find_ranges(struct slab_ranges *restrict seen, const struct rf_sort_job *job,
+                               int k)
 {
-    int16_t *restrict least = sight->least, *restrict most = sight->most;
-    uint16_t *restrict bare = sight->bare, *restrict same = sight->same;
+    int16_t *restrict least = seen->least, *restrict most = seen->most;
+    uint16_t *restrict in_background = seen->in_background, *restrict same = seen->same;
     const int32_t *restrict cell = job->cell[k], *restrict at = job->offset[k];
     const int32_t *restrict before = job->offset[k > 0 ? k - 1 : 0];
 
@@ -222,14 +227,14 @@ static inline void look(struct sight *restrict sight, const struct rf_sort_job *
 
         least[n] = rf_range_least(range);
         most[n] = rf_range_most(range);
-        bare[n] = mask((range & RF_BARE) != 0);
+        in_background[n] = mask((range & RF_IN_BACKGROUND) != 0);
     }
     for (int n = 0; job->below && n < job->rays; n++) {
         const uint32_t range = job->below[cell[n]];
 
         least[n] = rf_lesser(least[n], rf_range_least(range));
         most[n] = rf_greater(most[n], rf_range_most(range));
-        bare[n] &= mask((range & RF_BARE) != 0);
+        in_background[n] &= mask((range & RF_IN_BACKGROUND) != 0);
     }
     for (int n = 0; n < job->rays; n++)
         same[n] = mask(at[n] == before[n]);
@@ -242,7 +247,7 @@ void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_sort_jo
 
     for (int n = 0; n < rays; n++) {
         s.open[n] = 0xffff;
-        s.tests[n] = s.beneath[n] = 0;
+        s.tests[n] = s.from_background[n] = 0;
         s.last[n] = (uint16_t)job->slabs;
     }
     for (int k = 0; k < job->slabs; k++) {
@@ -250,16 +255,17 @@ void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_sort_jo
         s.until[k] = rf_range_until(&job->slab[k]);
     }
     for (int k = 0; k < job->slabs; k++) {
-        struct sight sight;
+        struct slab_ranges seen;
 
         for (int n = 0; k % BITS == 0 && n < rays; n++)
             s.first[k / BITS][n] = s.joined[k / BITS][n] = 0;
-        look(&sight, job, k);
-        if (!meet_slab(&s, job, k, &sight))
+        find_ranges(&seen, job, k);
+        if (!cull_slab(&s, job, k, &seen))
             break;
     }
     for (int n = 0; n < rays; n++)
-        s.beneath[n] = (uint16_t)((s.beneath[n] | mask(s.last[n] == job->slabs)) & 1);
+        s.from_background[n] =
+            (uint16_t)((s.from_background[n] | mask(s.last[n] == job->slabs)) & 1);
     sorted->rays = rays;
     if (job->slabs > BITS)
         place_all(sorted, job, &s, (struct way){job->weight, job->shared, true});
