@@ -72,8 +72,8 @@ enum { REFOCUS_FIGURE_COUNT = 3 };
  * N0 / N of a lens of f/N0 at f/N; the result is enlarged to reach K again.
  *
  * Over the outline light is spread by v = (rho^2 - hole^2) / (1 - hole^2), rho = 0 in
- * the middle and 1 at the rim: evenly, or with edge e > 0 by 1 - e + 5 e v^4, a disc
- * with a bright rim as of an over-corrected lens, or with e < 0 by 1 + e - 2 e (1 - v),
+ * the middle and 1 at the edge: evenly, or with edge e > 0 by 1 - e + 5 e v^4, a disc
+ * with a bright edge as of an over-corrected lens, or with e < 0 by 1 + e - 2 e (1 - v),
  * a disc that fades out. Lenses do the one before and the other behind the focus.
  */
 struct refocus_aperture_params {

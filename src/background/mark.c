@@ -1,4 +1,4 @@
-/* mark.c: marks the foreground behind which the background is to be inpainted. */
+/* mark.c: marks the foreground pixels, where the hidden background is to be inpainted. */
 #include "background/mark.h"
 
 #include <string.h>

@@ -4,7 +4,8 @@
  * second layer, the hidden background, is made up: pixels that could be seen through are marked
  * here and inpainted (inpaint.h) from what is beside them and farther away.
  *
- * p is foreground where some q lies farther behind than it is away,
+ * p is foreground where some pixel q is farther than p by more blur than its distance in the
+ * picture,
  *
  *     max over q of (s(q) - |p - q| / 2) > s(p) + 1/2 pixel,
  *

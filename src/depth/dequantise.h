@@ -2,9 +2,9 @@
  *
  * A map of 8 bits shows a slope as a staircase: at K = 105 pixels each step is 0.41 pixels of
  * blur, more than two neighbouring slabs of the sweep overlap (src/tiles), and rays slip between
- * them to what lies behind. So a map whose codes are that far apart is smoothed over steps of one
- * code and nowhere else, and no pixel leaves the interval that was rounded to its code: half a
- * step up and down. Edges between surfaces are more than a step and stay as they are.
+ * them and hit the surface that they occlude. So a map whose codes are that far apart is smoothed
+ * over steps of one code and nowhere else, and no pixel leaves the interval that was rounded to its
+ * code: half a step up and down. Edges between surfaces are more than a step and stay as they are.
  *
  * The smoothing is a binomial 3x3 mean, three times, with neighbours 4, 2 and 1 pixels apart (the
  * a trous algorithm, Holschneider et al. 1989), so a pixel depends on those up to

@@ -212,7 +212,7 @@ static void filter(struct refocus_temporal *f, size_t i, size_t q)
     if (f->guided && changed > ALIKE)
         return;
     if (apart >= f->noise) {
-        /* The photo does not explain the jump: it is not taken before it is seen twice. */
+        /* The photo does not explain the jump: it is not believed before it is seen twice. */
         if (f->guided && f->strength > 0 && changed <= STILL && abs(d - f->before[q]) >= f->noise) {
             f->filtered[i] = (uint16_t)p;
             f->counted[i] = (uint8_t)n;

@@ -289,9 +289,9 @@ static int row_of(const struct rf_upsampler *up, int first)
     return low;
 }
 
-/* The rows of pixels of a band, SPAN rows of samples. What is not sure is settled
- * beside the result, as its neighbours need what it was, and then taken over: here as
- * far as that needs no other band, while it is in the cache. */
+/* The rows of pixels of a band, SPAN rows of samples. Pixels that are not sure are settled in a
+ * plane of their own, as their neighbours need the values from before, and then copied to the
+ * result: here as far as that needs no other band, while they are in the cache. */
 static void fill_band(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;

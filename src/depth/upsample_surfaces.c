@@ -9,7 +9,7 @@ enum {
     BLOCK = RF_UPSAMPLE_BLOCK,
     STEP = 65535 / 24, /* largest one within a surface */
     RUN = 8,           /* most columns and rows of pixels that are looked at together */
-    SLICE = 128,       /* pixels whose colours are taken together */
+    SLICE = 128,       /* pixels whose colours are copied at once */
     KINDS = 8,         /* spans that are remembered */
 };
 
@@ -168,7 +168,7 @@ static const uint16_t *take16(uint16_t spare[RF_TURNED], const uint16_t *row, in
     return spare;
 }
 
-/* Rows of bytes from column x on; `inside`: all of what is taken is there. */
+/* Rows of bytes from column x on; `inside`: all of them are there. */
 static void turn(const struct patch *patch, uint8_t *out, const uint8_t *samples,
                  const ptrdiff_t off[RF_AROUND], int x, bool inside)
 {

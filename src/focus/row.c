@@ -21,9 +21,9 @@ static int32_t shorten(const struct rf_band *band, int32_t distance)
 
 /*
  * The least that any band leaves of e. For the first band e is counted from the focus at this
- * place; for the further bands it is `flat`, counted from the focus disparity. Before the
- * nearest band a pixel is a foreground, behind it a background: so a surface that is blurred
- * between two bands stays behind the near one instead of spreading over it.
+ * place; for the further bands it is `flat`, counted from the focus disparity. Before the nearest
+ * band a pixel is foreground, beyond it background, so that a surface between two bands, which is
+ * blurred, does not spread over the near one.
  */
 static int32_t shorten_by_bands(const struct rf_focus_plan *plan, int32_t e, int32_t flat)
 {

@@ -13,7 +13,8 @@
  * the blur 1 pixel to the right is 1.7, the ray hits in the first slab: eq. 4 asks for 0.8 x 1.7
  * = 1.36 pixels, 0.36 from the pixel found, and so within half a pixel. Where it is 2.4,
  * the second slab is tested: a blur of 2.4 found 2 pixels away is a hit there, as eq. 4 asks for
- * 1.92. Where that blur is 1.2, the ray passes behind it and sees the hidden background.
+ * 1.92. Where that blur is 1.2, the surface is too near to be hit there, and the ray sees the
+ * hidden background.
  *
  * This is plain C that states the arithmetic; sums are whole numbers, so their order does
  * not matter.

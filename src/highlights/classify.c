@@ -48,14 +48,14 @@ static int64_t most_of(const int64_t colour[3])
     return colour[2] > most ? colour[2] : most;
 }
 
-void rf_boost_of(const int64_t rim[3], int boost[3])
+void rf_boost_of(const int64_t edge_light[3], int boost[3])
 {
-    const int64_t most = most_of(rim);
+    const int64_t most = most_of(edge_light);
 
     for (int c = 0; c < 3; c++)
         boost[c] = GAIN * (int)(most < RF_LIGHT_MAX / 4 ? RF_LIGHT_MAX
-                                : rim[c] < 0            ? 0
-                                                        : rim[c] * RF_LIGHT_MAX / most);
+                                : edge_light[c] < 0     ? 0
+                                                        : edge_light[c] * RF_LIGHT_MAX / most);
 }
 
 /*
@@ -210,13 +210,13 @@ static struct rf_lost_light classify(const struct rf_cell_photo *p, const struct
     light.strength = rf_isolation(&m, SMALL);
     if (!light.strength)
         return light;
-    rf_measure_rim(p, body, component, &m);
+    rf_measure_edge(p, body, component, &m);
     light.strength = light.strength * steepness(p, &m) / 256;
     if (!light.strength)
         return light;
     if (p->core)
         rf_measure_glow(p, body, &m);
-    rf_boost_of(m.rim, light.boost);
+    rf_boost_of(m.edge_light, light.boost);
     light.pixels = m.pixels;
     light.size = 3 * m.pixels / m.edge; /* 5/6 of a disc's diameter, 3/2 of a stroke's width */
     return light;

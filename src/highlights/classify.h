@@ -9,8 +9,8 @@ struct rf_measured {
     int64_t own[3], around[3]; /* mean colours of the component and of its surroundings */
     int64_t beyond[3];         /* mean colour 2 or 3 cells away, which the light falls to */
     int64_t base;              /* the brightest channel of `beyond` */
-    int64_t rim[3]; /* excess of the pixels beside the component over `beyond`, or over the
-                       surroundings, added up */
+    int64_t edge_light[3];     /* light of the pixels beside the component, less `beyond` or the
+                                  surroundings: a sum */
     int pixels;
     int edge, half_lit; /* the component's pixels that lie beside others, and the half lit pixels
                            beside it */
@@ -59,8 +59,8 @@ bool rf_measure_colours(const struct rf_cell_photo *p, const struct rf_component
 /* Measures what lies beyond a body's edge, and then the edge: where the body meets a
  * limb, there is nothing to be told. The body of a photo with `core` set is a core, whose glow is
  * no limb. */
-void rf_measure_rim(const struct rf_cell_photo *p, const struct rf_component *body,
-                    const struct rf_component *component, struct rf_measured *m);
+void rf_measure_edge(const struct rf_cell_photo *p, const struct rf_component *body,
+                     const struct rf_component *component, struct rf_measured *m);
 
 /* Gives the edge of a core in its own glow the colour of the glow. */
 void rf_measure_glow(const struct rf_cell_photo *p, const struct rf_component *core,
@@ -71,7 +71,7 @@ void rf_measure_glow(const struct rf_cell_photo *p, const struct rf_component *c
 int rf_isolation(const struct rf_measured *m, int halves);
 
 /* Q12 light of full strength: the colour of the edge, white if it has none. */
-void rf_boost_of(const int64_t rim[3], int boost[3]);
+void rf_boost_of(const int64_t edge_light[3], int boost[3]);
 
 /* Lists a clipped pixel as part of a highlight. */
 void rf_list_pixel(struct rf_detection *d, int x, int y, const struct rf_lost_light *light);

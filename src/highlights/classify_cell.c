@@ -37,7 +37,7 @@ static void take_square(const struct rf_cell_photo *p, int x, int y, struct squa
 }
 
 /* Whether a cell beside it is clipped, and it is not. */
-static bool is_rim(const struct square *square, int i, int j)
+static bool is_edge(const struct square *square, int i, int j)
 {
     int count = 0;
 
@@ -59,7 +59,7 @@ static int look_near(const struct rf_cell_photo *p, int x, int y, struct rf_meas
 
             clipped += most > RF_CLIPPED;
             m->half_lit += most <= RF_CLIPPED && most >= HALF_LIT;
-            if (most > RF_CLIPPED || is_rim(&square, i, j))
+            if (most > RF_CLIPPED || is_edge(&square, i, j))
                 continue;
             for (int c = 0; c < 3; c++)
                 m->beyond[c] += colour[c];
@@ -71,8 +71,8 @@ static int look_near(const struct rf_cell_photo *p, int x, int y, struct rf_meas
         for (int i = 0; i <= 2 * NEAR; i++) {
             const int *colour = square.colour[j][i], most = rf_level_of(p, colour);
 
-            for (int c = 0; c < 3 && is_rim(&square, i, j); c++)
-                m->rim[c] += (colour[c] - m->beyond[c]) * most / RF_LIGHT_MAX;
+            for (int c = 0; c < 3 && is_edge(&square, i, j); c++)
+                m->edge_light[c] += (colour[c] - m->beyond[c]) * most / RF_LIGHT_MAX;
         }
     return clipped;
 }
@@ -135,6 +135,6 @@ void rf_classify_cell(struct rf_detection *d, int x, int y)
     light.strength = light.strength * rf_ramp(clipped, 2 * m.half_lit, 4 * m.half_lit) / 256;
     if (!light.strength)
         return;
-    rf_boost_of(m.rim, light.boost);
+    rf_boost_of(m.edge_light, light.boost);
     list_pixels(d, rf_pixels_of(p, x, y), &light);
 }

@@ -281,9 +281,9 @@ static struct rf_cell_photo cells_of(const struct rf_photo_source *photo)
     return p;
 }
 
-/* Lists the highlights of some rows. A component is cleared, and so taken from the rest, whichever
- * rows are asked for: so it starts where components begin that one of these rows, or one that
- * is_full() asks about, may be part of. */
+/* Lists the highlights of some rows. A component is cleared, and so removed from the rest,
+ * whichever rows are asked for: so it starts where components begin that one of these rows, or one
+ * that is_full() asks about, may be part of. */
 static void detect_rows(struct search *s)
 {
     const int cell = s->found.photo.cell, before = MOST + BEFORE - 1;

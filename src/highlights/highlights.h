@@ -55,7 +55,7 @@ struct rf_highlight {
                                of them fade */
     int16_t blur;           /* mean of the others, Q7.8, or of most; RF_NO_BLUR where they differ */
     uint16_t weight;        /* how many of the pixels are no edges, 256 for each */
-    uint16_t subtracted[3]; /* Q12 light that was taken from what rays hit, mean by weight */
+    uint16_t subtracted[3]; /* Q12 light that was subtracted from what rays hit, mean by weight */
     uint8_t rows;  /* rows from this one on that are splatted as one; 0: splatted with one above */
     uint8_t below; /* how much further on in the list the next of these rows is */
 };
@@ -126,9 +126,9 @@ struct rf_blur_patch {
 };
 
 /*
- * Silhouettes. The pixels at the edge of an object are mixtures of it and of what is behind it.
+ * Silhouettes. The pixels at the edge of an object are mixtures of it and of the background.
  * Where the object is bright enough to be clipped, they are nearly as bright as it is, but half of
- * them have the depth of what is behind: blurred, they would draw a halo around the sharp object.
+ * them have the depth of the background: blurred, they would draw a halo around the sharp object.
  * For a pixel p beside a clipped one N that is nearer, with F the mean light of the pixels of p's
  * depth two away,
  *

@@ -6,8 +6,8 @@
 enum {
     AROUND = 12, /* cells on each side that are the surroundings */
     GRID = 3,    /* every third cell of them is measured */
-    OUTER = 3,   /* cells that a component is grown by at most */
-    BESIDE = 2,  /* cells that the limbs of a component are grown by */
+    OUTER = 3,   /* cells that a component is out by at most */
+    BESIDE = 2,  /* cells that the limbs of a component are out by */
 };
 
 int rf_add_clipped(const struct rf_cell_photo *p, int x, int y, int64_t own[3])
@@ -113,18 +113,18 @@ static void measure_pixel(const struct rf_cell_photo *p, int x, int y, struct rf
     if (is_beside(p, x, y)) {
         m->half_lit += most - m->base >= 2 * (RF_LIGHT_MAX - m->base) / 5;
         for (int c = 0; c < 3 && most > m->base; c++)
-            m->rim[c] += (colour[c] - m->beyond[c]) * (most - m->base) / RF_LIGHT_MAX;
+            m->edge_light[c] += (colour[c] - m->beyond[c]) * (most - m->base) / RF_LIGHT_MAX;
     }
 }
 
 /* The cells of a component and so many around it, from OUTER rows before it on. */
-struct grown {
+struct dilated {
     uint64_t row[RF_COMPONENT_SIDE + 2 * OUTER];
 };
 
-static struct grown grown_by(const struct rf_component *component, int by)
+static struct dilated dilated_by(const struct rf_component *component, int by)
 {
-    struct grown grown = {{0}};
+    struct dilated out = {{0}};
 
     for (int j = 0; j < component->rows; j++) {
         uint64_t row = component->row[j];
@@ -132,32 +132,32 @@ static struct grown grown_by(const struct rf_component *component, int by)
         for (int i = 0; i < by; i++)
             row |= row << 1 | row >> 1;
         for (int i = -by; i <= by; i++)
-            grown.row[OUTER + j + i] |= row;
+            out.row[OUTER + j + i] |= row;
     }
-    return grown;
+    return out;
 }
 
 /* Cells near what was trimmed from a body. */
-static struct grown near_limbs(const struct rf_component *body,
-                               const struct rf_component *component)
+static struct dilated near_limbs(const struct rf_component *body,
+                                 const struct rf_component *component)
 {
     struct rf_component limbs = *component;
 
     for (int j = 0; j < limbs.rows; j++)
         limbs.row[j] &= ~body->row[j];
-    return grown_by(&limbs, BESIDE);
+    return dilated_by(&limbs, BESIDE);
 }
 
 /* Measures what is 2 or 3 cells away. A highlight may light what is beside it: that is not its
  * edge. */
 static void measure_beyond(const struct rf_cell_photo *p, const struct rf_component *body,
-                           const struct grown *limbs, struct rf_measured *m)
+                           const struct dilated *limbs, struct rf_measured *m)
 {
-    const struct grown rim = grown_by(body, 1), beyond = grown_by(body, OUTER);
+    const struct dilated beside = dilated_by(body, 1), beyond = dilated_by(body, OUTER);
     int count = 0;
 
     for (int j = 0; j < body->rows + 2 * OUTER; j++)
-        for (uint64_t row = beyond.row[j] & ~rim.row[j] & ~limbs->row[j]; row; row &= row - 1) {
+        for (uint64_t row = beyond.row[j] & ~beside.row[j] & ~limbs->row[j]; row; row &= row - 1) {
             const int x = body->x + __builtin_ctzll(row), y = body->y + j - OUTER;
             int colour[3];
 
@@ -178,13 +178,13 @@ static void measure_beyond(const struct rf_cell_photo *p, const struct rf_compon
 
 /* Measures the body's cells and those beside it. Clipped pixels that are near each other are of one
  * component: no other is in the cells around it. */
-static void measure_edge(const struct rf_cell_photo *p, const struct rf_component *body,
-                         const struct grown *limbs, struct rf_measured *m)
+static void count_edge(const struct rf_cell_photo *p, const struct rf_component *body,
+                       const struct dilated *limbs, struct rf_measured *m)
 {
-    const struct grown rim = grown_by(body, 1);
+    const struct dilated beside = dilated_by(body, 1);
 
     for (int j = 0; j < body->rows + 2 * OUTER; j++)
-        for (uint64_t row = rim.row[j] & ~limbs->row[j]; row; row &= row - 1) {
+        for (uint64_t row = beside.row[j] & ~limbs->row[j]; row; row &= row - 1) {
             const int x = body->x + __builtin_ctzll(row), y = body->y + j - OUTER;
             struct rf_rect in;
 
@@ -197,13 +197,13 @@ static void measure_edge(const struct rf_cell_photo *p, const struct rf_componen
         }
 }
 
-void rf_measure_rim(const struct rf_cell_photo *p, const struct rf_component *body,
-                    const struct rf_component *component, struct rf_measured *m)
+void rf_measure_edge(const struct rf_cell_photo *p, const struct rf_component *body,
+                     const struct rf_component *component, struct rf_measured *m)
 {
-    const struct grown limbs = near_limbs(body, p->core ? body : component);
+    const struct dilated limbs = near_limbs(body, p->core ? body : component);
 
     measure_beyond(p, body, &limbs, m);
-    measure_edge(p, body, &limbs, m);
+    count_edge(p, body, &limbs, m);
 }
 
 /* The edge of a core in its own glow tells little, as the highlight's channel is clipped
@@ -211,12 +211,12 @@ void rf_measure_rim(const struct rf_cell_photo *p, const struct rf_component *bo
 void rf_measure_glow(const struct rf_cell_photo *p, const struct rf_component *core,
                      struct rf_measured *m)
 {
-    const struct grown rim = grown_by(core, 1), glow = grown_by(core, 2);
+    const struct dilated beside = dilated_by(core, 1), glow = dilated_by(core, 2);
     int64_t sum[3] = {0, 0, 0};
     int count = 0, clipped = 0;
 
     for (int j = 0; j < core->rows + 2 * OUTER; j++)
-        for (uint64_t row = glow.row[j] & ~rim.row[j]; row; row &= row - 1) {
+        for (uint64_t row = glow.row[j] & ~beside.row[j]; row; row &= row - 1) {
             int colour[3];
 
             rf_sample_cell(p, core->x + __builtin_ctzll(row), core->y + j - OUTER, colour);
@@ -226,5 +226,5 @@ void rf_measure_glow(const struct rf_cell_photo *p, const struct rf_component *c
             count++;
         }
     if (4 * clipped >= 3 * count)
-        memcpy(m->rim, sum, sizeof m->rim);
+        memcpy(m->edge_light, sum, sizeof m->edge_light);
 }

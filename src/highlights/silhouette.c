@@ -66,8 +66,8 @@ static void add(const struct rf_silhouette_window *w, struct rf_silhouettes *lis
     rf_add_place(list->pixel, &list->count, list->capacity, &pixel, sizeof pixel);
 }
 
-/* Whether a bright pixel farther than `own` has none of that depth beside it: it is nobody's
- * silhouette. */
+/* Whether a bright pixel farther than `own` has none of that depth beside it: then it is not the
+ * silhouette of such a pixel. */
 static bool is_apart(const struct rf_silhouette_window *w, int x, int y, int own)
 {
     for (int j = -1; j <= 1; j++)
@@ -92,9 +92,10 @@ static bool has_far(const struct rf_silhouette_window *w, struct rf_rect in, int
     return false;
 }
 
-/* Whether half as many pixels there as are bright at that depth are dark at it, and there are
- * bright ones that are farther. */
-static bool may_be_behind(const struct rf_silhouette_window *w, struct rf_rect in, int own)
+/* Whether of the pixels at that depth at least half as many are dark as are bright, and some bright
+ * ones are farther. */
+static bool may_belong_to_background(const struct rf_silhouette_window *w, struct rf_rect in,
+                                     int own)
 {
     int dark = 0, bright = 0, far = 0;
 
@@ -110,14 +111,15 @@ static bool may_be_behind(const struct rf_silhouette_window *w, struct rf_rect i
     return far >= FAR && 2 * dark >= bright;
 }
 
-/* Whether the bright pixel (x, y) is of something farther, whose disparity it gets. */
-static bool is_behind(const struct rf_silhouette_window *w, int x, int y, uint16_t *disparity)
+/* Whether the bright pixel (x, y) belongs to a farther surface, whose disparity it gets. */
+static bool belongs_to_background(const struct rf_silhouette_window *w, int x, int y,
+                                  uint16_t *disparity)
 {
     const int own = w->disparity.at[y * w->light.stride + x];
     const struct rf_rect in = rf_around(w->view, x, y, AROUND);
-    int far = 0, behind = 0;
+    int far = 0, nearest = 0;
 
-    if (!has_far(w, rf_around(w->view, x, y, 1), own) || !may_be_behind(w, in, own))
+    if (!has_far(w, rf_around(w->view, x, y, 1), own) || !may_belong_to_background(w, in, own))
         return false;
     for (int py = in.y0; py < in.y1; py++)
         for (int px = in.x0; px < in.x1; px++) {
@@ -127,9 +129,9 @@ static bool is_behind(const struct rf_silhouette_window *w, int x, int y, uint16
             if (d >= own - JUMP || !is_bright(w, q) || !is_apart(w, px, py, own))
                 continue;
             far++;
-            behind = d > behind ? d : behind;
+            nearest = d > nearest ? d : nearest;
         }
-    *disparity = (uint16_t)behind;
+    *disparity = (uint16_t)nearest;
     return far >= FAR;
 }
 
@@ -164,11 +166,11 @@ static void find_around(const struct rf_silhouette_window *w, int x, int y,
 {
     const ptrdiff_t n = y * w->light.stride + x;
     const struct rf_rect in = rf_around(w->view, x, y, 1);
-    uint16_t behind;
+    uint16_t background;
 
-    if (is_behind(w, x, y, &behind)) {
+    if (belongs_to_background(w, x, y, &background)) {
         if (!has_other(w, x, y, n)) /* else it is a silhouette itself */
-            add(w, list, x, y, behind);
+            add(w, list, x, y, background);
         return;
     }
     for (int py = in.y0; py < in.y1; py++)

@@ -1,8 +1,9 @@
 /* trim.c: takes from a clipped component what the highlight in it merely lights.
  *
- * A candle's flame is connected with its rim, a street light with its post, where these are
- * so bright that they are clipped. They are limbs, thinner than the light. A coloured light, a tail
- * light, has a glow around it in which its own channel is clipped, and the others are not.
+ * A candle's flame is connected with the wax that it lights, a street light with its post, where
+ * these are so bright that they are clipped. They are limbs, thinner than the light. A coloured
+ * light, a tail light, has a glow around it in which its own channel is clipped, and the others are
+ * not.
  */
 #include "highlights/detect.h"
 

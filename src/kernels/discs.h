@@ -1,5 +1,4 @@
-/* discs.h: the contracts of draw_disc, half_chords, meets and hide, which splat highlights as
- * discs. */
+/* discs.h: contracts of the kernels that splat highlights as discs, and occlude these. */
 #ifndef RF_KERNELS_DISCS_H
 #define RF_KERNELS_DISCS_H
 

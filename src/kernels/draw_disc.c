@@ -9,14 +9,14 @@ void rf_draw_disc_c(uint16_t *const mean[3], const struct rf_disc_job *job)
             const int from = first > job->from ? first : job->from;
             const int to = last < job->to ? last : job->to;
             const int i = y * RF_TILE + x;
-            int sight = to > from ? to - from : 0;
+            int seen = to > from ? to - from : 0;
 
             if (job->visible)
-                sight = (sight / 2 & job->visible[i]) +
-                        (sight / 2 & job->visible[RF_TILE * RF_TILE + i]);
+                seen =
+                    (seen / 2 & job->visible[i]) + (seen / 2 & job->visible[RF_TILE * RF_TILE + i]);
             for (int c = 0; c < job->planes; c++) {
-                const int seen = sight << job->shift;
-                const int light = mean[c][i] + ((seen * job->each[c] + (1 << 14)) >> 15);
+                const int scaled = seen << job->shift;
+                const int light = mean[c][i] + ((scaled * job->each[c] + (1 << 14)) >> 15);
 
                 mean[c][i] = (uint16_t)(light < 65535 ? light : 65535);
             }

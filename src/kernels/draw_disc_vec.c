@@ -12,8 +12,8 @@ static inline void add(uint16_t *mean, vec_u16 seen, vec_u16 each)
     vec_u16_store(mean, vec_u16_add(vec_u16_min(vec_u16_load(mean), room), v));
 }
 
-/* Half of it of each mask that lets it through. */
-static inline vec_u16 sight(vec_u16 seen, const uint16_t *visible)
+/* How much of a seen length is visible: half of it by each of the two masks. */
+static inline vec_u16 unoccluded(vec_u16 seen, const uint16_t *visible)
 {
     const vec_u16 half = vec_u16_half(seen);
 
@@ -38,7 +38,7 @@ void RF_VEC(rf_draw_disc)(uint16_t *const mean[3], const struct rf_disc_job *job
             vec_u16 seen = vec_s16_max(v, zero);
 
             if (job->visible)
-                seen = sight(seen, job->visible + y * RF_TILE + x);
+                seen = unoccluded(seen, job->visible + y * RF_TILE + x);
             seen = vec_u16_mul(seen, times);
             for (int c = 0; c < job->planes; c++)
                 add(mean[c] + y * RF_TILE + x, seen, each[c]);

@@ -203,12 +203,12 @@ static double best_ns(measured_fn *run, const struct rf_kernels *kernels, struct
 
     do {
         const double start = seconds();
-        double taken;
+        double elapsed;
 
         for (int i = 0; i < AT_ONCE; i++)
             run(kernels, rows);
-        taken = (seconds() - start) / AT_ONCE;
-        best = taken < best ? taken : best;
+        elapsed = (seconds() - start) / AT_ONCE;
+        best = elapsed < best ? elapsed : best;
     } while (seconds() < end);
     return best * 1e9;
 }

@@ -1,8 +1,8 @@
 /* occlude_disc_vec.c: which part of a highlight's disc nearer surfaces occlude, a vector of pixels
  * at a time.
  *
- * Places are found for all rows before what is there is looked up, and that before it is judged, so
- * that no vector waits for its elements.
+ * Places are found for all rows first, then the blurs there are looked up, then masks are made of
+ * them, so that no vector waits for its elements.
  */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
@@ -10,10 +10,10 @@
 
 static const uint16_t column[RF_TILE] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-/* Where in a row, way->most from its first one readable on, pixels look for the masks, a
- * tile of them after the other. */
-static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
-                        const struct rf_disc_way *way)
+/* Finds the places in a row of blurs, counted from way->most pixels before the tile on, where
+ * pixels look for each of the two masks. */
+static inline void find_places(uint16_t *at, const struct rf_disc_job *job, int y,
+                               const struct rf_disc_way *way)
 {
     const struct rf_disc_row row = rf_disc_row_of(job, y);
     const vec_u16 both = vec_u16_set((uint16_t)(job->left[y] + job->right[y]));
@@ -48,19 +48,19 @@ static inline void look(uint16_t *at, const struct rf_disc_job *job, int y,
     }
 }
 
-/* Looks the blurs up that are there. */
-static inline void meet(uint16_t *at, const int16_t *row)
+/* Replaces places in a row by the blurs there. */
+static inline void look_up(uint16_t *at, const int16_t *row)
 {
     for (int x = 0; x < RF_TILE; x++)
         at[x] = (uint16_t)row[at[x]];
 }
 
-/* The masks of rows y to end - 1, by the blurs that the pixels of one row hit. */
-static inline void judge(uint16_t *visible, const uint16_t *met, vec_u16 from, vec_u16 to, int y,
-                         int end)
+/* Sets the masks of rows y to end - 1 by the blurs that the pixels of one row find. */
+static inline void set_masks(uint16_t *visible, const uint16_t *blur, vec_u16 from, vec_u16 to,
+                             int y, int end)
 {
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
-        const vec_u16 hidden = vec_s16_less(vec_u16_sub(vec_u16_load(met + x), from), to);
+        const vec_u16 hidden = vec_s16_less(vec_u16_sub(vec_u16_load(blur + x), from), to);
         const vec_u16 seen = vec_u16_without(vec_u16_set(0xffff), hidden);
 
         for (int i = y * RF_TILE + x; i < end * RF_TILE; i += RF_TILE)
@@ -78,19 +78,19 @@ void RF_VEC(rf_occlude_disc)(uint16_t *visible, const int16_t *blur, ptrdiff_t s
     uint16_t at[2 * RF_TILE * RF_TILE], *const second = at + RF_TILE * RF_TILE;
 
     for (int y = job->first; y < job->end; y += way->rows)
-        look(at + y * RF_TILE, job, y, way);
+        find_places(at + y * RF_TILE, job, y, way);
     for (int y = job->first; y < job->end; y += way->rows) {
         const int down = 64 * way->middle - 128 * y;
         const int above = y + (((down - 32) * step + half) >> 23);
         const int below = y + (((down + 32) * step + half) >> 23);
 
-        meet(at + y * RF_TILE, blur + above * stride - way->most);
-        meet(second + y * RF_TILE, blur + below * stride - way->most);
+        look_up(at + y * RF_TILE, blur + above * stride - way->most);
+        look_up(second + y * RF_TILE, blur + below * stride - way->most);
     }
     for (int y = job->first; y < job->end; y += way->rows) {
         const int end = y + way->rows < job->end ? y + way->rows : job->end;
 
-        judge(visible, at + y * RF_TILE, from, to, y, end);
-        judge(visible + RF_TILE * RF_TILE, second + y * RF_TILE, from, to, y, end);
+        set_masks(visible, at + y * RF_TILE, from, to, y, end);
+        set_masks(visible + RF_TILE * RF_TILE, second + y * RF_TILE, from, to, y, end);
     }
 }

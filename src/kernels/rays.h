@@ -14,7 +14,7 @@
 enum { RF_RAY_CHUNK = 64 };
 
 /* Whether a blur lies in a slab is found modulo 2^16 (kernels/slab.h): two blurs differ by twice
- * 127 pixels at the most, so what lies outside of a slab of 480 is never taken for inside. */
+ * 127 pixels at the most, so what lies outside of a slab of 480 is never mistaken for inside. */
 static_assert(UINT16_MAX + 1 - 2 * 127 * 256 > 480, "slabs are told apart modulo 2^16");
 
 /* aim: where n rays see the blur s: x = round(u s), y = round(v s), half up, as an offset

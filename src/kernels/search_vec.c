@@ -3,8 +3,8 @@
  * First guesses lie side by side. Mostly they lead all pixels the same way, or, at an edge and on a
  * slope, one of two ways: that of the first pixel and that of the next that goes another. Both are
  * looked up without a branch, and what they are is found out for all rays beforehand, so that
- * nothing waits for it. Pixels that go other ways yet come last. A pixel whose own light is taken
- * is only counted.
+ * nothing waits for it. Pixels that go other ways yet come last. Where a ray falls back on the
+ * pixel's own light, it is only counted.
  */
 #include "colour/transfer.h"
 #include "kernels/kernels.h"

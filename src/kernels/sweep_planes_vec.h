@@ -1,12 +1,12 @@
 /* sweep_planes_vec.h: the template of the sweeps without products, some vectors at a time.
  *
- * Rays of as many tests are taken together, so that the tests are unrolled. Sums have 16 bits, and
- * go to those of 32 bits after `steps` rays.
+ * Rays with the same number of tests are summed together, so that the tests are unrolled. Sums have
+ * 16 bits, and go to those of 32 bits after `steps` rays.
  *
  * A ray of three planes is followed from the front to the back: a mask tells which lanes are free
  * yet, which is one more operation a test. A ray of one plane is followed from the back to the
- * front: each slab overwrites what lies behind it where it is hit, which needs no such mask, but an
- * operation more a plane.
+ * front: each slab that is hit overwrites the light of the ones it occludes, which needs no such
+ * mask, but an operation more a plane.
  */
 #ifndef RF_KERNELS_SWEEP_PLANES_VEC_H
 #define RF_KERNELS_SWEEP_PLANES_VEC_H

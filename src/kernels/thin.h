@@ -1,4 +1,4 @@
-/* thin.h: the contract of find_thin. */
+/* thin.h: the contract of find_thin, which finds the pixels of wires and hair. */
 #ifndef RF_KERNELS_THIN_H
 #define RF_KERNELS_THIN_H
 
@@ -7,7 +7,7 @@
 
 enum { RF_THIN_REACH = 10 };
 
-/* A pixel taken apart. */
+/* A mixture: a pixel of which alpha is of a thin structure and the rest of its background. */
 struct rf_thin {
     uint8_t at;    /* 16 y + x in its tile */
     uint8_t alpha; /* 255 = 1 */
@@ -44,7 +44,7 @@ struct rf_thin_tile {
  *                 four axes; of others: pixels in a row that are near, begin at the first or
  *                 the second step and end before a far one, the least of eight directions.
  *                 At most 7, else none
- *     met         the first clean pixel of each direction, one of them at 4 steps or nearer;
+ *     hit         the first clean pixel of each direction, one of them at 4 steps or nearer;
  *                 else, or if the width is 1, the first far one
  *     weight      1440 / squared distance, rounded down
  *     surface     the disparity d that was hit with the most weight within 2 J of it, the least of

@@ -7,7 +7,7 @@
  * stays sharp is a barrier that no colour passes. The layers are composited back to front.
  *
  * A step with weight W everywhere adds W / 2 to the variance along an axis; a disc of
- * radius r has r^2 / 4. So W is proportional to r^2, and r^2 / 2 W steps are taken.
+ * radius r has r^2 / 4. So W is proportional to r^2, and it takes r^2 / 2 W steps.
  */
 #include "papers/diffusion.h"
 
@@ -106,13 +106,13 @@ static void split_layers(struct work *work)
 
         for (int i = apart; i <= 256 - apart; i++) {
             uint64_t near_by = 0;
-            bool taken = false;
+            bool too_close = false;
 
             for (int j = i - apart + 1; j < i + apart; j++)
-                taken = taken || cut[j];
+                too_close = too_close || cut[j];
             for (int j = i - 2; j < i + 2; j++)
                 near_by += count[j < 0 ? 0 : j > 255 ? 255 : j];
-            if (!taken && near_by < least) {
+            if (!too_close && near_by < least) {
                 least = near_by;
                 best = i;
             }

@@ -37,7 +37,7 @@ struct rf_prefilter {
     struct rf_blur_q8 blur;        /* read */
     struct rf_light_q12 light;     /* read */
     struct rf_light_q12 spare;     /* read in step 0: the light of tiles that highlights are
-                                      subtracted in (bins.taken); then overwritten */
+                                      subtracted in (rf_bins.subtracted); then overwritten */
     struct rf_light_q12 smooth;    /* written, with its border */
     const struct rf_prefilter_chroma *chroma; /* NULL: a photo of R, G and B; else light is
                                                  luminance, in channel[0] alone */

@@ -25,7 +25,7 @@ ptrdiff_t rf_pitch_for(int width, int pad)
     return 32 * (pitch | 1);
 }
 
-static void take_level(struct rf_arena *arena, struct rf_level *level)
+static void lay_out_level(struct rf_arena *arena, struct rf_level *level)
 {
     const uint64_t pixels = (uint64_t)(level->width + 1) * (uint64_t)level->height;
 
@@ -42,7 +42,7 @@ static uint64_t group_size(const struct rf_photo *photo, int height)
 }
 
 /* Lays out the lists of a photo of at most this size: silhouettes, highlights, blends of bands. */
-static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width, int height)
+static void lay_out_lists(struct rf_arena *arena, struct rf_photo *photo, int width, int height)
 {
     rf_lay_out_silhouettes(&photo->silhouettes, arena, width, height);
     rf_lay_out_highlights(&photo->highlights, arena, width, height);
@@ -50,7 +50,7 @@ static void take_lists(struct rf_arena *arena, struct rf_photo *photo, int width
 }
 
 /* Lays out the thin structures of a photo of this size. */
-static void take_thin(struct rf_arena *arena, struct rf_thin_list *thin, int width, int height)
+static void lay_out_thin(struct rf_arena *arena, struct rf_thin_list *thin, int width, int height)
 {
     const uint64_t across = (uint64_t)(width + RF_TILE - 1) / RF_TILE;
     const uint64_t down = (uint64_t)(height + RF_TILE - 1) / RF_TILE;
@@ -61,8 +61,8 @@ static void take_thin(struct rf_arena *arena, struct rf_thin_list *thin, int wid
 
 /* Lays out the coverage that thin structures are drawn into. Its sources share memory with the
  * pyramid, which comes later. */
-static void take_coverage(struct rf_arena *arena, struct rf_coverage *coverage, int width,
-                          int height)
+static void lay_out_coverage(struct rf_arena *arena, struct rf_coverage *coverage, int width,
+                             int height)
 {
     const uint64_t across = (uint64_t)(width + RF_TILE - 1) / RF_TILE;
     const uint64_t down = (uint64_t)(height + RF_TILE - 1) / RF_TILE;
@@ -77,8 +77,8 @@ static void take_coverage(struct rf_arena *arena, struct rf_coverage *coverage, 
 }
 
 /* Lays out the photo, and the planes that depend on the lens setting. */
-static void take_whole(struct refocus_renderer *r, const struct refocus_renderer_params *params,
-                       struct rf_arena *arena)
+static void lay_out_whole(struct refocus_renderer *r, const struct refocus_renderer_params *params,
+                          struct rf_arena *arena)
 {
     struct rf_photo *photo = &r->photo;
     const int w = params->max_width, h = params->max_height;
@@ -97,7 +97,7 @@ static void take_whole(struct refocus_renderer *r, const struct refocus_renderer
             photo->light[c] = first + c * photo->pitch;
         photo->disparity = first + 3 * photo->pitch;
     }
-    take_lists(arena, photo, w, h);
+    lay_out_lists(arena, photo, w, h);
     r->smooth_group = rf_arena_take(arena, size, 2);
     r->background_group = rf_arena_take(arena, size, 2);
 }
@@ -126,8 +126,8 @@ static void shape_blocks(struct rf_in_place *in_place, int pad)
 
 /* Lays out the planes of the window of a block, and the marks and levels that are stored for the
  * whole photo. */
-static void take_blocks(struct refocus_renderer *r, const struct refocus_renderer_params *params,
-                        struct rf_arena *arena)
+static void lay_out_blocks(struct refocus_renderer *r, const struct refocus_renderer_params *params,
+                           struct rf_arena *arena)
 {
     const int w = params->max_width, h = params->max_height;
     struct rf_in_place *in_place = &r->in_place;
@@ -145,12 +145,12 @@ static void take_blocks(struct refocus_renderer *r, const struct refocus_rendere
     r->smooth_group = rf_arena_take(arena, size, 2);
     r->background_group = rf_arena_take(arena, size, 2);
     photo->alpha = rf_arena_take(arena, (uint64_t)side * (uint64_t)side, 1);
-    take_lists(arena, photo, w, h);
+    lay_out_lists(arena, photo, w, h);
     in_place->known_stride = (w + 7) / 8;
     in_place->known = rf_arena_take(arena, (uint64_t)in_place->known_stride * (uint64_t)h, 1);
     rf_pyramid_shape(&in_place->kept, w, h);
     for (int i = RF_KEPT; i <= in_place->kept.levels; i++)
-        take_level(arena, &in_place->kept.level[i]);
+        lay_out_level(arena, &in_place->kept.level[i]);
 }
 
 /* The most bytes that any of the methods of whole frames needs. */
@@ -205,13 +205,13 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     uint64_t before, after;
 
     if (params->in_place)
-        take_blocks(r, params, arena);
+        lay_out_blocks(r, params, arena);
     else
-        take_whole(r, params, arena);
+        lay_out_whole(r, params, arena);
     before = arena->used;
     rf_pyramid_shape(&r->pyramid, across, down);
     for (int i = 1; i <= r->pyramid.levels; i++)
-        take_level(arena, &r->pyramid.level[i]);
+        lay_out_level(arena, &r->pyramid.level[i]);
     after = arena->used;
     arena->used = before; /* the pyramid is no longer needed when weights begin */
     /* This holds the foreground cells, and then the weights. */
@@ -230,8 +230,8 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     }
     arena->used = after;
     if (r->has_thin) {
-        take_coverage(arena, &r->coverage, w, h);
-        take_thin(arena, &r->photo.thin, w, h);
+        lay_out_coverage(arena, &r->coverage, w, h);
+        lay_out_thin(arena, &r->photo.thin, w, h);
     }
     r->range.stride = rf_range_width(across, pad);
     r->range.at =

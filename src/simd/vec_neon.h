@@ -223,7 +223,8 @@ static inline void vec_dots4(uint16_t out[4], const uint16_t *const p[4],
     vst1_u16(out, veor_u16(vreinterpret_u16_s16(vqrshrn_n_s32(sums, 15)), sign));
 }
 
-/* Without signs: sums are below 2^31, and shares add up to what 2^15 is taken times. */
+/* Works on unsigned numbers: sums are below 2^31, and as shares sum to 2^15, so does what they
+ * multiply 2^15 by. */
 static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
                                    const int16_t share[4])
 {

@@ -42,7 +42,7 @@ static void find_band(void *context, int band, int worker)
             t->exec->kernels->find_thin(thin + count, &tile, (int)(room < 256 ? room : 256));
 
         for (int i = 0; i < found; i++)
-            rf_fit_strand(t, &thin[count + (uint32_t)i], tx, band);
+            rf_fit_coverage(t, &thin[count + (uint32_t)i], tx, band);
         list->run[(size_t)band * t->view->tiles_x + tx] = run_of(thin + count, count, found);
         count += (uint32_t)found;
     }

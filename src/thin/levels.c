@@ -65,8 +65,8 @@ static bool is_near(const struct rf_thin_pass *t, const struct rf_thin *thin, in
     return t->disparity.at[y * t->view->stride + x] == thin->near_disparity;
 }
 
-/* A pixel that the map has far can hardly be covered by more than half: with a greater alpha its
- * own texture was taken for what is near. */
+/* A pixel that the map has far can hardly be covered by more than half: with a greater alpha, its
+ * own texture was mistaken for N. */
 bool rf_is_matted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
 {
     const int level = level_of(thin->at);

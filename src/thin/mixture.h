@@ -29,15 +29,15 @@ bool rf_is_matted(const struct rf_thin_pass *t, const struct rf_thin *thin, int 
 void rf_choose_matted(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice);
 
 /*
- * Hair before letters: F, the mean of what is around, is neither the colour of a letter nor that of
- * the paper between, and the pattern would stay in alpha N, as dashes. Along a strand of one pixel
- * C goes with f, the mean of the far pixels beside each,
+ * Hair before print: F, the mean light around a pixel, is neither that of a letter nor that of the
+ * paper, so the pattern would stay in alpha N, as dashes. Along a line of one pixel C follows f,
+ * the mean of the far pixels beside each,
  *
  *     C = alpha N + (1 - alpha) f
  *
  * so least squares yield 1 - alpha, the slope in all three channels, and alpha N. Where f varies,
  * and explains half of how C varies, alpha becomes that, and F = (C - alpha N) / (1 - alpha).
  */
-void rf_fit_strand(const struct rf_thin_pass *t, struct rf_thin *thin, int tx, int ty);
+void rf_fit_coverage(const struct rf_thin_pass *t, struct rf_thin *thin, int tx, int ty);
 
 #endif

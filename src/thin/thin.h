@@ -2,8 +2,8 @@
  * they hide.
  *
  * A wire of two pixels that is blurred over forty is hit by few rays, here by more and there by
- * less, and shows as streaks. And the pixels at its edge that have the depth of what is behind stay
- * there as a sharp line. All of them are mixtures of the wire, N, and of what is behind it, F,
+ * less, and shows as streaks. And the pixels at its edge that have the depth of the background stay
+ * there as a sharp line. All of them are mixtures of the wire, N, and of the background, F,
  *
  *     C = alpha N + (1 - alpha) F                                        coverage alpha
  *
@@ -14,7 +14,7 @@
  * alpha become discs of a coverage layer (coverage.h).
  *
  * Matted: in focus before something far, hair for example, its part of the pixels at its edge would
- * be blurred with what is behind it, and the edge would show steps. It stays where it is,
+ * be blurred with the background, and the edge would show steps. It stays where it is,
  *
  *     out = alpha N + (1 - alpha) mean
  *

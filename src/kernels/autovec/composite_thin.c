@@ -42,10 +42,10 @@ void RF_VEC(rf_composite_thin)(uint16_t *const mean[3],
         across_cells(row[i], cell[i]);
     for (int y = 0; y < RF_TILE; y++) {
         const int at = 2 * y + 5, i = at >> 3, part = at & 7;
-        int32_t veil[4 * RF_TILE]; /* Q15 */
+        int32_t layer[4 * RF_TILE]; /* Q15 */
 
-        down_cells(veil, row[i][0], row[i + 1][0], part);
+        down_cells(layer, row[i][0], row[i + 1][0], part);
         for (int c = 0; c < 3; c++)
-            lay_row(mean[c] + y * RF_TILE, veil + c * RF_TILE, veil + 3 * RF_TILE);
+            lay_row(mean[c] + y * RF_TILE, layer + c * RF_TILE, layer + 3 * RF_TILE);
     }
 }

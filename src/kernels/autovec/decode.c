@@ -110,7 +110,7 @@ static RF_ALWAYS_INLINE void decode_luma(uint8_t *restrict y, const uint16_t *re
 }
 
 /* Where rows of a tile are not `within` of 4 times what they were: not 0. Modulo 2^16, as both are
- * 65520 at most: 16 short of what could be taken for near. */
+ * 65520 at most: 16 less than could be mistaken for near. */
 static RF_ALWAYS_INLINE void differences(uint16_t *restrict differs, const uint16_t *restrict mean,
                                          const uint16_t *own, ptrdiff_t stride, uint16_t within,
                                          int rows)

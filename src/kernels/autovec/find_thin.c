@@ -44,29 +44,29 @@ static void add_pixel(struct rf_thin_batch *b, const struct rf_thin_row *row,
     b->light[1][k] = *green;
     b->light[2][k] = *blue;
     for (int i = 0; i < WAYS; i++) {
-        const unsigned n = row->met[i][x];
+        const unsigned n = row->hit[i][x];
         const ptrdiff_t to = places->tile[i][n];
 
         b->weight[i][k] = weight_of[i >= 4][n];
         b->disparity[i][k] = map[places->window[i][n]];
-        b->met[0][i][k] = red[to];
-        b->met[1][i][k] = green[to];
-        b->met[2][i][k] = blue[to];
+        b->hit[0][i][k] = red[to];
+        b->hit[1][i][k] = green[to];
+        b->hit[2][i][k] = blue[to];
     }
 }
 
 static bool shines(const struct rf_thin_batch *b, const struct rf_thin_mixture *m, int k)
 {
     for (int c = 0; c < 3; c++)
-        if (b->light[c][k] > SHINES || m->before[c][k] > SHINES)
+        if (b->light[c][k] > SHINES || m->near_light[c][k] > SHINES)
             return true;
     return false;
 }
 
 /* Writes the mixtures among the batch: pixels of something thin, or beside it and mixed. The
  * batch is empty afterwards. */
-static int take_apart(struct rf_thin *out, int most, struct rf_thin_batch *b,
-                      const struct rf_thin_tile *t, const struct rf_thin_window *w)
+static int separate(struct rf_thin *out, int most, struct rf_thin_batch *b,
+                    const struct rf_thin_tile *t, const struct rf_thin_window *w)
 {
     struct rf_thin_mixture m;
     int count = 0;
@@ -85,8 +85,8 @@ static int take_apart(struct rf_thin *out, int most, struct rf_thin_batch *b,
             .alpha = (uint8_t)(mixed && m.alpha[k] ? m.alpha[k] : 255), /* it may be anything */
             .near_disparity = kept ? b->own[k] : m.near[k],
             .far_disparity = m.far[k],
-            .light = {(uint16_t)m.behind[0][k], (uint16_t)m.behind[1][k],
-                      (uint16_t)m.behind[2][k]}};
+            .light = {(uint16_t)m.far_light[0][k], (uint16_t)m.far_light[1][k],
+                      (uint16_t)m.far_light[2][k]}};
     }
     memset(b->weight, 0, sizeof b->weight);
     b->count = 0;
@@ -114,8 +114,8 @@ int RF_VEC(rf_find_thin)(struct rf_thin *out, const struct rf_thin_tile *tile, i
         for (; look; look &= look - 1) {
             add_pixel(&batch, &row, tile, &w, &places, __builtin_ctz(look), y);
             if (batch.count == BATCH)
-                count += take_apart(out + count, most - count, &batch, tile, &w);
+                count += separate(out + count, most - count, &batch, tile, &w);
         }
     }
-    return count + take_apart(out + count, most - count, &batch, tile, &w);
+    return count + separate(out + count, most - count, &batch, tile, &w);
 }

@@ -144,11 +144,11 @@ void RF_VEC(rf_thin_far)(struct rf_thin_mixture *m, struct rf_thin_batch *b)
         uint32_t sum[BATCH] = {0};
 
         for (int i = 0; i < WAYS; i++)
-            add_product(sum, b->weight[i], b->met[c][i]);
-        mean_by_weight(m->behind[c], sum, weights);
+            add_product(sum, b->weight[i], b->hit[c][i]);
+        mean_by_weight(m->far_light[c], sum, weights);
         for (int i = 0; i < WAYS; i++)
-            add_square(squares, b->weight[i], b->met[c][i], m->behind[c]);
-        add_square(m->contrast, one, b->light[c], m->behind[c]);
+            add_square(squares, b->weight[i], b->hit[c][i], m->far_light[c]);
+        add_square(m->contrast, one, b->light[c], m->far_light[c]);
     }
     compare(m->mixed, m->contrast, squares, count);
 }

@@ -43,9 +43,9 @@ static inline int32_t dot(const int16_t *restrict weight, const uint16_t *restri
 }
 
 static void add_taps(struct sums *restrict sums, int k, const struct taps *restrict taps,
-                     uint16_t level, const uint16_t behind[3])
+                     uint16_t level, const uint16_t far_light[3])
 {
-    const uint16_t red = behind[0], green = behind[1], blue = behind[2];
+    const uint16_t red = far_light[0], green = far_light[1], blue = far_light[2];
     int16_t high[TAPS], low[TAPS]; /* weights, 10 bits each */
     uint32_t weights = 0;
     uint16_t most = 0;
@@ -107,8 +107,8 @@ static void set_near(struct rf_thin_mixture *m, const struct rf_thin_batch *b,
 
         if (m->mixed[k] || may_shine(&taps[i]))
             add_taps(&sums, k, &taps[i], b->level[k],
-                     (const uint16_t[3]){(uint16_t)m->behind[0][k], (uint16_t)m->behind[1][k],
-                                         (uint16_t)m->behind[2][k]});
+                     (const uint16_t[3]){(uint16_t)m->far_light[0][k], (uint16_t)m->far_light[1][k],
+                                         (uint16_t)m->far_light[2][k]});
     }
     for (int c = 0; c < 3; c++) {
         for (int k = 0; k < BATCH; k++) {
@@ -117,20 +117,20 @@ static void set_near(struct rf_thin_mixture *m, const struct rf_thin_batch *b,
             const float real =
                 (float)(int32_t)high * 1024 + (float)(int32_t)low + (float)(int32_t)(by / 2);
 
-            m->before[c][k] = quotient(real, (high << 10) + low + by / 2, by);
+            m->near_light[c][k] = quotient(real, (high << 10) + low + by / 2, by);
         }
     }
     memcpy(m->near, sums.most, sizeof m->near);
 }
 
 static void add_share(int32_t *restrict along, int32_t *restrict square,
-                      const uint16_t *restrict light, const int32_t *restrict behind,
-                      const int32_t *restrict before)
+                      const uint16_t *restrict light, const int32_t *restrict far_light,
+                      const int32_t *restrict near_light)
 {
     for (int x = 0; x < BATCH; x++) {
-        const int32_t whole = before[x] - behind[x];
+        const int32_t whole = near_light[x] - far_light[x];
 
-        along[x] += whole * (light[x] - behind[x]);
+        along[x] += whole * (light[x] - far_light[x]);
         square[x] += whole * whole;
     }
 }
@@ -148,12 +148,12 @@ static void divide_share(int32_t *restrict alpha, const int32_t *restrict along,
 
 /* No less than makes N black or white. */
 static void keep_range(int32_t *restrict alpha, const uint16_t *restrict light,
-                       const int32_t *restrict behind)
+                       const int32_t *restrict far_light)
 {
     for (int x = 0; x < BATCH; x++) {
-        const int32_t off = light[x] - behind[x];
+        const int32_t off = light[x] - far_light[x];
         const int32_t part = 255 * (off < 0 ? -off : off);
-        const int32_t whole = off < 0 ? behind[x] : WHITE - behind[x];
+        const int32_t whole = off < 0 ? far_light[x] : WHITE - far_light[x];
         const int32_t room = whole > 0 ? whole : 1;
         const int32_t most = part + room - 1;
         const int32_t least = quotient((float)most, (uint32_t)most, (uint32_t)room);
@@ -182,10 +182,10 @@ static void set_alpha(struct rf_thin_mixture *m, const struct rf_thin_batch *b)
     uint32_t stray[BATCH];
 
     for (int c = 0; c < 3; c++)
-        add_share(along, square, b->light[c], m->behind[c], m->before[c]);
+        add_share(along, square, b->light[c], m->far_light[c], m->near_light[c]);
     divide_share(m->alpha, along, square);
     for (int c = 0; c < 3; c++)
-        keep_range(m->alpha, b->light[c], m->behind[c]);
+        keep_range(m->alpha, b->light[c], m->far_light[c]);
     find_strays(stray, along, square, m->contrast);
     for (int x = 0; x < BATCH; x++) {
         const int32_t alpha = m->alpha[x] < 255 ? m->alpha[x] : 255;

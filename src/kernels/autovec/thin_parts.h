@@ -16,7 +16,7 @@ enum {
     THIN = 2 * AROUND + 1,
     WIDE = 2 * THIN,     /* more pixels across than any thin structure has */
     FAR = RF_THIN_REACH, /* how far the hidden background is looked for */
-    CLEAN = 4,           /* how near it must be not to be taken from the edge itself */
+    CLEAN = 4,           /* how near it must be for its light not to be that of the edge itself */
     BEFORE = 2,          /* how far N is looked for */
     ACROSS = 2 * BEFORE + 1,
     FAINT = 12 * 12, /* squared distance of light that is none */
@@ -69,7 +69,7 @@ struct rf_thin_row {
     uint16_t width[RF_TILE];
     /* Steps, less one, to the first far pixel, FAR: none; from the first step on to a far one, up
      * to THIN + 1; and to what F is the mean of. */
-    uint16_t near[WAYS][RF_TILE], beside[WAYS][RF_TILE], met[WAYS][RF_TILE];
+    uint16_t near[WAYS][RF_TILE], beside[WAYS][RF_TILE], hit[WAYS][RF_TILE];
 };
 
 /* Pixels, what is hit in all directions, and how much each counts: by the inverse
@@ -79,16 +79,16 @@ struct rf_thin_batch {
     uint8_t at[BATCH];                              /* 16 y + x */
     uint16_t kept[BATCH], level[BATCH], own[BATCH]; /* disparity */
     uint16_t light[3][BATCH];                       /* C */
-    uint16_t weight[WAYS][BATCH], disparity[WAYS][BATCH], met[3][WAYS][BATCH];
+    uint16_t weight[WAYS][BATCH], disparity[WAYS][BATCH], hit[3][WAYS][BATCH];
 };
 
 /* Results of the kernel for the pixels of a batch. */
 struct rf_thin_mixture {
-    uint16_t far[BATCH];                        /* disparity of F */
-    uint16_t near[BATCH];                       /* nearest of N, 0: there is none */
-    int32_t mixed[BATCH];                       /* C is not F's own */
-    int32_t contrast[BATCH];                    /* (C - F)^2 */
-    int32_t behind[3][BATCH], before[3][BATCH]; /* F, N */
+    uint16_t far[BATCH];                               /* disparity of F */
+    uint16_t near[BATCH];                              /* nearest of N, 0: there is none */
+    int32_t mixed[BATCH];                              /* C is not F's own */
+    int32_t contrast[BATCH];                           /* (C - F)^2 */
+    int32_t far_light[3][BATCH], near_light[3][BATCH]; /* F, N */
     int32_t alpha[BATCH];
 };
 

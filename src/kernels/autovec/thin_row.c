@@ -114,10 +114,10 @@ static void choose_steps(struct rf_thin_row *row)
         uint16_t nearest = FAR, plain;
 
         for (int i = 0; i < WAYS; i++)
-            nearest = rf_least16(nearest, row->met[i][x]);
+            nearest = rf_least16(nearest, row->hit[i][x]);
         plain = row->width[x] == 1 || nearest >= CLEAN ? 0xffff : 0;
         for (int i = 0; i < WAYS; i++)
-            row->met[i][x] = (uint16_t)((row->near[i][x] & plain) | (row->met[i][x] & ~plain));
+            row->hit[i][x] = (uint16_t)((row->near[i][x] & plain) | (row->hit[i][x] & ~plain));
     }
 }
 
@@ -135,7 +135,7 @@ unsigned RF_VEC(rf_thin_row)(struct rf_thin_row *row, const struct rf_thin_windo
     if (!look)
         return 0;
     for (int i = 0; i < WAYS; i++)
-        count_unclean(row->met[i], &w->clean[y + MARGIN][MARGIN], step_of(i), row->level);
+        count_unclean(row->hit[i], &w->clean[y + MARGIN][MARGIN], step_of(i), row->level);
     choose_steps(row);
     return look;
 }

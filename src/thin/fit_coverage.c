@@ -1,21 +1,22 @@
-/* strand.c: fits the coverage of a strand of hair before a pattern by least squares (mixture.h). */
+/* fit_coverage.c: fits the coverage of a line of one pixel, as hair is, before a pattern, by least
+ * squares (mixture.h). */
 #include <stdlib.h>
 
 #include "thin/mixture.h"
 
 enum {
     REACH = 4,           /* pixels that are looked at on each side */
-    LEAST = 4,           /* so many of them belong to the strand at least */
+    LEAST = 4,           /* so many of them belong to the line at least */
     MOST = 13,           /* so many belong to it at most */
     CLOSE = 4,           /* so many of the 3 x 3 around the pixel belong to it at most */
-    JUMP = 65535 / 32,   /* disparities this far apart are two things */
+    JUMP = 65535 / 32,   /* disparities this far apart are two surfaces */
     PATTERN = 400 * 400, /* least variance of F, Q12 squared */
     SOLID = 32,          /* 1 - alpha, 255 = 1: below this a pixel shows no pattern */
-    CLEAR = 225,         /* 1 - alpha above this is taken for as much as this */
+    CLEAR = 225,         /* 1 - alpha above this counts as this */
     STEEPEST = 380,      /* a slope above this is none */
 };
 
-/* Where C goes with F, sums over a strand's pixels, of the products over the three channels. */
+/* Sums over a line's pixels for a regression of C on F: products are of the three channels. */
 struct fit {
     int64_t count, f[3], c[3], ff, fc, cc;
 };
@@ -67,8 +68,9 @@ static int near_in(const struct rf_thin_pass *t, struct rf_rect in, int own)
     return count;
 }
 
-/* One pixel wide, and no other near: a wire is told at once. */
-static bool is_strand(const struct rf_thin_pass *t, int x, int y, int own)
+/* Whether a pixel is on a line of one pixel with no other near. The 3 x 3 pixels around it are
+ * enough to tell a wire, which is wider. */
+static bool is_line(const struct rf_thin_pass *t, int x, int y, int own)
 {
     int count;
 
@@ -78,7 +80,7 @@ static bool is_strand(const struct rf_thin_pass *t, int x, int y, int own)
     return count >= LEAST && count <= MOST;
 }
 
-static void add_strand(struct fit *fit, const struct rf_thin_pass *t, int x, int y, int own)
+static void add_line(struct fit *fit, const struct rf_thin_pass *t, int x, int y, int own)
 {
     const struct rf_rect in = rf_around(t->view, x, y, REACH);
 
@@ -92,7 +94,7 @@ static void add_strand(struct fit *fit, const struct rf_thin_pass *t, int x, int
         }
 }
 
-/* The slope of C over F, 255 = 1; 0: there is no pattern, or C does not go with it. Variances are
+/* The slope of C over F, 255 = 1; 0: there is no pattern, or C does not follow it. Variances are
  * below 3 (13 * 4095)^2 < 2^34. */
 static int slope_of(const struct fit *fit)
 {
@@ -112,16 +114,16 @@ static int slope_of(const struct fit *fit)
     return (int)(slope < CLEAR ? slope : CLEAR);
 }
 
-void rf_fit_strand(const struct rf_thin_pass *t, struct rf_thin *thin, int tx, int ty)
+void rf_fit_coverage(const struct rf_thin_pass *t, struct rf_thin *thin, int tx, int ty)
 {
     const int x = tx * RF_TILE + thin->at % RF_TILE, y = ty * RF_TILE + thin->at / RF_TILE;
     const ptrdiff_t at = y * t->view->stride + x;
     struct fit fit = {.count = 0};
     int slope;
 
-    if (t->disparity.at[at] != thin->near_disparity || !is_strand(t, x, y, thin->near_disparity))
+    if (t->disparity.at[at] != thin->near_disparity || !is_line(t, x, y, thin->near_disparity))
         return;
-    add_strand(&fit, t, x, y, thin->near_disparity);
+    add_line(&fit, t, x, y, thin->near_disparity);
     slope = fit.count >= LEAST ? slope_of(&fit) : 0;
     if (!slope)
         return;
