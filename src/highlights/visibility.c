@@ -1,5 +1,18 @@
-/* visibility.c: which part of a highlight the pixels of a tile see past nearer surfaces, by the
- * same test as a ray does (the comment on struct rf_splat). */
+/* visibility.c: finds which part of a splatted highlight each pixel of a tile sees, and which part
+ * nearer surfaces occlude.
+ *
+ * A ray from pixel p to a pixel q of a highlight passes a surface of blur s, if there is one, at
+ * the part s / s(q) of its way, by eq. 4. So for each slab that is nearer than the highlight the
+ * blur at that place is looked up, and if it lies in the slab, it occludes q: the test that rays
+ * make.
+ *
+ * An example: a highlight of blur s(q) = 20 is 10 pixels to the right of p, and one slab holds the
+ * blurs 7 to 9, with the centre 8. The ray passes the slab at 8 / 20 of its way, 4 pixels to the
+ * right. If the blur there is 8.5, a surface of the slab occludes the highlight. If it is 20, only
+ * the highlight's own surface is there, and p sees it. A surface of blur -3, before the focus, is
+ * looked for by another slab where the ray passes it: at -3 / 20 of the way, 1.5 pixels to the
+ * left.
+ */
 #include "highlights/visibility.h"
 
 #include <math.h>
@@ -11,32 +24,32 @@
 #include "tiles/ranges.h"
 
 enum {
-    NEARER = 256, /* Q7.8: what hides a highlight is so much nearer */
-    LARGE = 32,   /* pixels: no larger region is looked through */
+    NEARER = 256, /* Q7.8: a surface has to be nearer by so much to occlude a highlight */
+    LARGE = 32,   /* pixels: larger regions are not searched for an occluder */
     MOST_ROWS = 4,
     LEAST_RADIUS = 2048, /* Q7.8: rows that look at one place are an eighth of a pixel apart, those
                             of larger discs more */
     TOGETHER = 448,      /* Q7.8: slabs that are no wider are looked at as one */
 };
 
-/* The part of a slab that may hide the run, and where on the way to the run it is. */
-struct screen {
+/* The part of a slab that may occlude the run, and where on the way to the run it is. */
+struct occluder {
     struct rf_slab slab;
     double part; /* how far along the way, 0 to 1 */
 };
 
-/* A slab may hold the run itself, and what is about as near. */
-static struct screen screen_of(const struct rf_slab *slab, const struct rf_splat_run *run)
+/* Leaves out of a slab the run itself and surfaces that are about as near. */
+static struct occluder occluder_of(const struct rf_slab *slab, const struct rf_splat_run *run)
 {
     const int most = run->blur - NEARER - slab->low;
-    struct screen screen = {*slab, 0};
+    struct occluder occluder = {*slab, 0};
 
     if (most < slab->width) {
-        screen.slab.width = (uint16_t)most;
-        screen.slab.centre = (int16_t)(slab->low + (most + 1) / 2);
+        occluder.slab.width = (uint16_t)most;
+        occluder.slab.centre = (int16_t)(slab->low + (most + 1) / 2);
     }
-    screen.part = (double)screen.slab.centre / run->blur;
-    return screen;
+    occluder.part = (double)occluder.slab.centre / run->blur;
+    return occluder;
 }
 
 static double clamp(double v, double most)
@@ -51,16 +64,15 @@ static int round_down(double v)
     return i - (i > v);
 }
 
-/* Pixels, from the tile's first one on, among which all lie that rays from pixels
- * `first` to `last` to the run from `from` to `to` see of a screen, in one direction.
- */
-static void extent(const struct screen *screen, const struct rf_splat_run *run, double first,
+/* Finds where rays from pixels `first` to `last` to the run, which goes from `from` to `to`, pass
+ * an occluder: from pixel *least to *most, along one axis. */
+static void extent(const struct occluder *occluder, const struct rf_splat_run *run, double first,
                    double last, double from, double to, int *least, int *most)
 {
-    const double far = run->radius / 256.0 + run->rows * 0.5, part = screen->part;
+    const double far = run->radius / 256.0 + run->rows * 0.5, part = occluder->part;
     double a, b;
 
-    if (part > 1) { /* the farther a pixel, the more it looks to the other side */
+    if (part > 1) { /* rays come from the other side of the run */
         a = first - part * far;
         b = last + part * far;
     } else {
@@ -71,15 +83,15 @@ static void extent(const struct screen *screen, const struct rf_splat_run *run, 
     *most = round_down(b) + 2;
 }
 
-/* How far the tile looks at most, pixels: by the frame alone, so that it does not depend on the
- * tile. */
+/* How far beyond the tile blurs are looked up at most, in pixels. The frame alone decides, so that
+ * this does not depend on the tile. */
 static int farthest_look(const struct rf_splat *splat)
 {
     return ((splat->largest_radius + 254) >> 8) + 2;
 }
 
-/* Where in the window the tile sees the screen on its way to the run; x1 and y1 are part of it. */
-static struct rf_rect region_of(const struct screen *screen, const struct rf_visibility *tile,
+/* Where in the window rays from the tile to the run pass the occluder; x1 and y1 are part of it. */
+static struct rf_rect region_of(const struct occluder *occluder, const struct rf_visibility *tile,
                                 const struct rf_splat_run *run, const struct rf_disc_job *job)
 {
     const double middle = run->middle * 0.5, apart = run->rows * 0.5 - 0.25;
@@ -87,9 +99,9 @@ static struct rf_rect region_of(const struct screen *screen, const struct rf_vis
               most = RF_TILE - 1 + far;
     struct rf_rect at;
 
-    extent(screen, run, 0, RF_TILE - 1, run->from / (double)RF_SPLAT_UNIT,
+    extent(occluder, run, 0, RF_TILE - 1, run->from / (double)RF_SPLAT_UNIT,
            run->to / (double)RF_SPLAT_UNIT, &at.x0, &at.x1);
-    extent(screen, run, job->first, job->end - 1, middle - apart, middle + apart, &at.y0, &at.y1);
+    extent(occluder, run, job->first, job->end - 1, middle - apart, middle + apart, &at.y0, &at.y1);
     return (struct rf_rect){x + rf_larger(at.x0, -far), y + rf_larger(at.y0, -far),
                             x + rf_smaller(at.x1, most), y + rf_smaller(at.y1, most)};
 }
@@ -118,10 +130,10 @@ static enum rf_hidden hidden_in_ranges(const struct rf_splat *splat, const struc
     return all ? RF_HIDDEN_WHOLLY : none ? RF_HIDDEN_NOWHERE : RF_HIDDEN_PARTLY;
 }
 
-/* Whether any pixel of a region, or beside a narrow one, is in a slab. A large region is not looked
- * through: some pixel of it may be. */
-static bool may_meet(const struct rf_splat *splat, const struct rf_slab *slab, struct rf_rect at,
-                     int far)
+/* Whether any pixel of a region, or beside a narrow one, is in a slab. A large region is not
+ * searched, as some pixel of it may be. */
+static bool may_occlude(const struct rf_splat *splat, const struct rf_slab *slab, struct rf_rect at,
+                        int far)
 {
     const struct rf_blur_q8 *blur = &splat->window.blur;
     const int wide = rf_larger(at.x1 - at.x0 + 1, RF_TILE), high = at.y1 - at.y0 + 1;
@@ -132,20 +144,20 @@ static bool may_meet(const struct rf_splat *splat, const struct rf_slab *slab, s
                                              wide, high, slab);
 }
 
-static enum rf_hidden hidden_by(const struct screen *screen, const struct rf_visibility *tile,
+static enum rf_hidden hidden_by(const struct occluder *occluder, const struct rf_visibility *tile,
                                 const struct rf_splat_run *run, const struct rf_disc_job *job)
 {
-    const struct rf_rect at = region_of(screen, tile, run, job);
-    const enum rf_hidden hidden = hidden_in_ranges(tile->splat, &screen->slab, at);
+    const struct rf_rect at = region_of(occluder, tile, run, job);
+    const enum rf_hidden hidden = hidden_in_ranges(tile->splat, &occluder->slab, at);
 
     return hidden == RF_HIDDEN_PARTLY &&
-                   !may_meet(tile->splat, &screen->slab, at, farthest_look(tile->splat))
+                   !may_occlude(tile->splat, &occluder->slab, at, farthest_look(tile->splat))
                ? RF_HIDDEN_NOWHERE
                : hidden;
 }
 
-/* How many rows of pixels look at about one place: the nearer it is to the run, and the larger the
- * disc, the more. */
+/* How many rows of pixels share one row of places where they look for an occluder: the nearer this
+ * is to the run, and the larger the disc, the more. */
 static int rows_alike(double part, int radius)
 {
     const double away = rf_larger(radius, LEAST_RADIUS) / (64 * 256.0);
@@ -156,14 +168,14 @@ static int rows_alike(double part, int radius)
     return rows;
 }
 
-/* The look part of the way to the run. No pixel looks farther away than its disc reaches and half
- * its rows, nor then farther than `far`. */
-static struct rf_disc_way way_to(const struct rf_splat_run *run, const struct screen *screen,
+/* Where pixels look for an occluder on the way to the run. None looks farther away than its disc
+ * reaches and half its rows, nor farther than `far`. */
+static struct rf_disc_way way_to(const struct rf_splat_run *run, const struct occluder *occluder,
                                  int far)
 {
     const int farthest = run->radius / 2 + RF_SPLAT_UNIT * run->rows;
     static const int aside[4] = {14, 6, 2, 10}; /* so that the ways lead to all of a highlight */
-    struct rf_disc_way way = {.rows = rows_alike(screen->part, run->radius),
+    struct rf_disc_way way = {.rows = rows_alike(occluder->part, run->radius),
                               .most = far,
                               .middle = run->middle,
                               .aside = aside[run->turn & 3],
@@ -172,15 +184,14 @@ static struct rf_disc_way way_to(const struct rf_splat_run *run, const struct sc
 
     while (farthest << way.shift <= INT16_MAX / 4)
         way.shift++;
-    times = floor(screen->part * (65536 >> way.shift) + 0.5);
+    times = floor(occluder->part * (65536 >> way.shift) + 0.5);
     limit = floor(far * 8388608.0 / (farthest << way.shift));
     way.times = (int16_t)clamp(times, limit < INT16_MAX ? limit : INT16_MAX);
     return way;
 }
 
-/* Whether the slab is near enough to the last one to be tested with it; it then is one
- * with that. */
-static bool joins(struct rf_visibility *tile, const struct rf_slab *next)
+/* Merges a slab with the last one, if both are narrow enough together; returns whether. */
+static bool merges(struct rf_visibility *tile, const struct rf_slab *next)
 {
     struct rf_slab *last = tile->slab + tile->slabs - 1;
     int width;
@@ -204,11 +215,11 @@ void rf_visibility_begin(struct rf_visibility *tile, const struct rf_splat *spla
     tile->count = 0;
     tile->slabs = 0;
     for (int k = 0; k < plan->slabs; k++)
-        if (!joins(tile, &plan->slab[k]))
+        if (!merges(tile, &plan->slab[k]))
             tile->slab[tile->slabs++] = plan->slab[k];
 }
 
-/* How far from where it leads the other may lead at most, pixels. */
+/* How far apart, in pixels, rays to two runs pass a slab at most. */
 static float apart(const struct rf_splat_run *one, const struct rf_splat_run *other, int centre)
 {
     const int right = rf_larger(abs(one->from - other->from), abs(one->to - other->to));
@@ -219,7 +230,7 @@ static float apart(const struct rf_splat_run *one, const struct rf_splat_run *ot
     return (float)abs(centre * away) / (float)(RF_SPLAT_UNIT * one->radius);
 }
 
-static bool serves(const struct rf_look_at *look, const struct rf_look_at *wanted, int centre)
+static bool can_reuse(const struct rf_look_at *look, const struct rf_look_at *wanted, int centre)
 {
     return look->slab == wanted->slab && look->run.set == wanted->run.set &&
            look->first <= wanted->first && look->end >= wanted->end &&
@@ -227,7 +238,7 @@ static bool serves(const struct rf_look_at *look, const struct rf_look_at *wante
            apart(&look->run, &wanted->run, centre) <= 0.25f;
 }
 
-/* Whether some pixel of its rows sees it, and whether all do. */
+/* Tells from the masks of rows first to end - 1 how much is hidden from their pixels. */
 static enum rf_hidden hidden_in(const uint16_t *visible, int first, int end)
 {
     uint16_t any = 0, all = 0xffff;
@@ -239,51 +250,52 @@ static enum rf_hidden hidden_in(const uint16_t *visible, int first, int end)
     return all ? RF_HIDDEN_NOWHERE : any ? RF_HIDDEN_PARTLY : RF_HIDDEN_WHOLLY;
 }
 
-static void set_shade(struct rf_shade *shade, const struct rf_visibility *tile,
-                      const struct rf_disc_job *job)
+static void set_occlusion(struct rf_occlusion *occlusion, const struct rf_visibility *tile,
+                          const struct rf_disc_job *job)
 {
     const struct rf_blur_q8 *plane = &tile->splat->window.blur;
-    const struct rf_splat_run *run = &shade->look.run;
-    const struct rf_slab *slab = &tile->slab[shade->look.slab];
-    const struct screen screen = screen_of(slab, run);
+    const struct rf_splat_run *run = &occlusion->look.run;
+    const struct rf_slab *slab = &tile->slab[occlusion->look.slab];
+    const struct occluder occluder = occluder_of(slab, run);
     const int16_t *const blur = plane->at + tile->ty * RF_TILE * plane->stride + tile->tx * RF_TILE;
     struct rf_disc_way way;
 
-    shade->hidden = hidden_by(&screen, tile, run, job);
-    if (shade->hidden != RF_HIDDEN_PARTLY)
+    occlusion->hidden = hidden_by(&occluder, tile, run, job);
+    if (occlusion->hidden != RF_HIDDEN_PARTLY)
         return;
-    way = way_to(run, &screen, farthest_look(tile->splat));
-    tile->splat->exec->kernels->occlude_disc(shade->visible, blur, plane->stride, &screen.slab, job,
-                                             &way);
-    shade->hidden = hidden_in(shade->visible, job->first, job->end);
+    way = way_to(run, &occluder, farthest_look(tile->splat));
+    tile->splat->exec->kernels->occlude_disc(occlusion->visible, blur, plane->stride,
+                                             &occluder.slab, job, &way);
+    occlusion->hidden = hidden_in(occlusion->visible, job->first, job->end);
 }
 
-static const struct rf_shade *shade_of(struct rf_visibility *tile, const struct rf_disc_job *job,
-                                       const struct rf_splat_run *run, int slab)
+static const struct rf_occlusion *occlusion_of(struct rf_visibility *tile,
+                                               const struct rf_disc_job *job,
+                                               const struct rf_splat_run *run, int slab)
 {
     const struct rf_look_at wanted = {*run, job->first, job->end, slab};
     const int centre = tile->slab[slab].centre;
-    const bool kept = 4 * abs(centre) <= run->radius; /* else it serves for no other row */
-    struct rf_shade *shade = &tile->other;
+    const bool kept = 4 * abs(centre) <= run->radius; /* else it is of no use for other rows */
+    struct rf_occlusion *occlusion = &tile->other;
 
-    for (int i = 0; kept && i < RF_SHADES && i < tile->count; i++)
-        if (serves(&tile->shade[i].look, &wanted, centre))
-            return &tile->shade[i];
+    for (int i = 0; kept && i < RF_KEPT_OCCLUSIONS && i < tile->count; i++)
+        if (can_reuse(&tile->occlusion[i].look, &wanted, centre))
+            return &tile->occlusion[i];
     if (kept)
-        shade = &tile->shade[tile->count++ % RF_SHADES];
-    shade->look = wanted;
-    set_shade(shade, tile, job);
-    return shade;
+        occlusion = &tile->occlusion[tile->count++ % RF_KEPT_OCCLUSIONS];
+    occlusion->look = wanted;
+    set_occlusion(occlusion, tile, job);
+    return occlusion;
 }
 
-/* Takes from what is visible so far what a further slab hides. */
-static void see_past(struct rf_visibility *tile, struct rf_disc_job *job,
-                     const struct rf_shade *shade)
+/* Clears the visible pixels from which a further slab occludes the run. */
+static void subtract_occluded(struct rf_visibility *tile, struct rf_disc_job *job,
+                              const struct rf_occlusion *occlusion)
 {
     for (int side = 0; side < 2; side++) {
         const int first = RF_TILE * (RF_TILE * side + job->first);
         const int count = RF_TILE * (job->end - job->first);
-        const uint16_t *const further = shade->visible + first;
+        const uint16_t *const further = occlusion->visible + first;
         uint16_t *const visible = tile->visible + first;
 
         if (!job->visible)
@@ -307,8 +319,8 @@ enum rf_hidden rf_run_hidden(const struct rf_visibility *tile, const struct rf_d
 
     *clear = 0;
     for (int k = 0; k < tile->slabs && is_nearer(&tile->slab[k], run); k++) {
-        const struct screen screen = screen_of(&tile->slab[k], run);
-        const enum rf_hidden by = hidden_by(&screen, tile, run, job);
+        const struct occluder occluder = occluder_of(&tile->slab[k], run);
+        const enum rf_hidden by = hidden_by(&occluder, tile, run, job);
 
         if (by == RF_HIDDEN_WHOLLY)
             return by;
@@ -325,15 +337,15 @@ bool rf_run_visible(struct rf_visibility *tile, struct rf_disc_job *job,
 {
     job->visible = NULL;
     for (int k = 0; k < tile->slabs && is_nearer(&tile->slab[k], run); k++) {
-        const struct rf_shade *shade;
+        const struct rf_occlusion *occlusion;
 
         if (k < 64 && clear >> k & 1)
             continue;
-        shade = shade_of(tile, job, run, k);
-        if (shade->hidden == RF_HIDDEN_WHOLLY)
+        occlusion = occlusion_of(tile, job, run, k);
+        if (occlusion->hidden == RF_HIDDEN_WHOLLY)
             return false;
-        if (shade->hidden == RF_HIDDEN_PARTLY)
-            see_past(tile, job, shade);
+        if (occlusion->hidden == RF_HIDDEN_PARTLY)
+            subtract_occluded(tile, job, occlusion);
     }
     return true;
 }

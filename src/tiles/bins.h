@@ -10,10 +10,9 @@
 /* Occupied bins of signed blur, a bit each, nearest first, and the extremes in them. */
 struct rf_bins {
     uint64_t word[RF_BINS / 64];
-    int16_t least, most; /* Q7.8 */
-    int16_t highlight;   /* largest |s| of a highlight, Q7.8; 0: it has none */
-    int16_t
-        undersampled; /* largest |s| of a highlight that is narrow beside the gaps of the rays */
+    int16_t least, most;  /* Q7.8 */
+    int16_t highlight;    /* largest |s| of a highlight, Q7.8; 0: it has none */
+    int16_t undersampled; /* largest |s| of a highlight narrower than the gaps between rays need */
     int16_t
         background_blur; /* the blur of the hidden background in the middle, once it is inpainted */
     uint16_t brightest;  /* an upper bound of the light of either layer, as it is summed */

@@ -1,4 +1,5 @@
-/* ranges.c: finds the least and the greatest blur of cells, and of what a shifted strip covers. */
+/* ranges.c: finds the least and the greatest blur of cells, and of the window that a shifted strip
+ * lies in. */
 #include "tiles/ranges.h"
 
 enum {

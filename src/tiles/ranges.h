@@ -1,9 +1,19 @@
-/* ranges.h: the least and the greatest circle of confusion around each place of the window.
+/* ranges.h: the least and the greatest blur in the window around each place, which save rays tests.
  *
- * A strip of a tile that is shifted by a ray's offset lies within some cells of RF_CELL x RF_CELL
- * pixels. A range holds, for the cell that the strip begins in, the least and the greatest blur of
- * all cells that it can lie in: kernels.h, windows. A slab that no blur of the range is in need not
- * be tested, and one that holds them all ends the ray without a test.
+ * A strip of a tile that is shifted by a ray's offset lies within a window of some cells of RF_CELL
+ * x RF_CELL pixels. The range of a window is the least and the greatest blur in it, kept at its
+ * first cell (kernels/ranges.h, windows). A slab with no blur of the range need not be tested, and
+ * a slab that holds all of them ends the ray without a test.
+ *
+ * An example: the strip from pixel (32, 16) on, shifted by (5, 2), covers columns 37 to 52 and rows
+ * 18 to 25, so cells 9 to 13 across and 4 to 6 down: the window at cell (9, 4). If its blurs go
+ * from 2.1 to 2.8, a ray passes the slab 1 to 2 there without a test, and ends in the slab 2 to 3
+ * without one: every pixel of the strip hits. If they go from 2.1 to 9, the slab 2 to 3 has to be
+ * tested.
+ *
+ * A wall of blur 9 is the deepest surface there, and where nothing near its depth is marked as
+ * foreground it is in the background layer too: RF_IN_BACKGROUND. Rays that have passed the nearer
+ * slabs see the layer there, without a test of the slab 8.5 to 9.5.
  *
  * All functions work on a row of tiles, and may run for several rows at once.
  */
@@ -22,8 +32,8 @@ struct rf_cells {
     ptrdiff_t stride;
 };
 
-/* The greatest blur among those pixels of a cell that the background does not show as they are,
- * Q7.8, or RF_NO_BLUR: what hides something. */
+/* The greatest blur, Q7.8, of the pixels of a cell that occlude something, which are other pixels
+ * in the background layer; RF_NO_BLUR: there are none. */
 struct rf_foreground_cells {
     int16_t *most;
     ptrdiff_t stride;
@@ -35,7 +45,7 @@ static inline int rf_range_border(int pad)
     return (pad + RF_CELL - 1) / RF_CELL;
 }
 
-/* Cells across, or down, with those. */
+/* Cells across, or down, with the border on both sides. */
 static inline int rf_range_width(int width, int pad)
 {
     return (width + RF_TILE - 1) / RF_TILE * (RF_TILE / RF_CELL) + 2 * rf_range_border(pad);
@@ -67,7 +77,8 @@ void rf_foreground_rows(const struct rf_executor *exec, const struct rf_viewport
                         struct rf_blur_q8 blur, struct rf_blur_q8 background_blur,
                         const struct rf_foreground_cells *foreground, int ty);
 
-/* Makes cells foreground whatever their blur: those of the pixels, the last ones too. */
+/* Makes the cells of a rectangle of pixels foreground whatever their blur; x1 and y1 are part of
+ * it. */
 void rf_force_foreground(const struct rf_viewport *view,
                          const struct rf_foreground_cells *foreground, struct rf_rect pixels);
 

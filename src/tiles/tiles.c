@@ -1,4 +1,5 @@
-/* tiles.c: classifies tiles: which blurs they hold, which can reach them, the slabs of these. */
+/* tiles.c: notes the blurs of each tile, collects those that can reach it, and covers them by
+ * slabs. */
 #include "tiles/tiles.h"
 
 #include <stdlib.h>
@@ -41,7 +42,7 @@ static void add_bin(struct rf_bins *bins, int bin)
     bins->word[bin / 64] |= UINT64_C(1) << bin % 64;
 }
 
-/* The blurs of a cell whose extremes are not in one bin. */
+/* Adds the blurs of a cell whose extremes are not in one bin. */
 static void add_cell(struct rf_bins *bins, struct rf_bin_scale scale, const int16_t *s,
                      ptrdiff_t stride, int first, int last)
 {
@@ -60,7 +61,7 @@ static void add_cell(struct rf_bins *bins, struct rf_bin_scale scale, const int1
         bins->word[first / 64 + 1] |= found >> (64 - first % 64);
 }
 
-/* The bins of a tile's cells, one by one where a cell has more than two. */
+/* Adds the blurs of a tile's cells, pixel by pixel where a cell may have more than two bins. */
 static void add_cells(struct rf_bins *bins, struct rf_bin_scale scale, struct rf_blur_q8 blur,
                       const struct rf_cells *cells, int tx, int ty)
 {
@@ -198,7 +199,7 @@ void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float larg
             reach->kept[j][i] = kept_at(scale, gap_of(i), gap_of(j), square);
 }
 
-/* Add what reaches from a tile. */
+/* Adds the blurs of a tile that reach so far. */
 static inline void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
                             const struct rf_kept *kept)
 {
@@ -219,7 +220,7 @@ static inline void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
     sum->most = (int16_t)rf_larger(sum->most, far ? most : rf_smaller(most, kept->low - 1));
 }
 
-/* Bins that reach tile (tx, ty). */
+/* Collects the bins that reach tile (tx, ty). */
 static struct rf_bins collect(const struct rf_viewport *view, const struct rf_bins *bins,
                               const struct rf_reach *reach, int tx, int ty)
 {
@@ -252,17 +253,18 @@ static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struc
         k > 0 && scale.shift < 8 && slab.low <= plan->slab[k - 1].low + plan->slab[k - 1].width + 1;
 }
 
-/* Cover the occupied bins from the near side. Slabs are a pixel wide, half of that where
- * the blur is small and a pixel would show, and |s| / 8 less one pixel from 16 pixels on,
- * where rays lie farther apart than what is off by half of that.
+/* Covers the occupied bins by slabs, nearest first. Slabs are a pixel wide, half of that where the
+ * blur is small and a pixel would show, and |s| / 8 less one pixel from 16 pixels on: there rays
+ * lie farther apart than half of that.
  *
  * The blurs below half a pixel are a slab of their own with offset 0, so that these pixels stay as
- * they are. No slab before it may take them, as its rays would bring what is beside them. Yet no
- * ray may pass between two slabs where a surface crosses half a pixel of blur. So the sharp one
- * takes what is nearer by up to CLOSED, which the slabs before it have left; and the one after it
- * takes what is sharp, by as much, for rays of pixels that are blurred. With 1/4 pixel that closes
- * surfaces of slope up to 1/4: a ray of a pixel of blur 0.60 looks at its neighbour, of blur 0.45,
- * and hits it, where it missed it before, and at offset 0 itself. */
+ * they are. No slab before it may hold them, as its rays would bring light from beside them. Yet no
+ * ray may pass between two slabs where a surface crosses half a pixel of blur. So the sharp slab
+ * reaches into the nearer blurs by CLOSED, which the slabs before it leave out; and the slab after
+ * it reaches as far into the sharp blurs, for rays of pixels that are blurred. With 1/4 pixel
+ * surfaces of slope up to 1/4 have no gaps: a ray of a pixel of blur 0.60 that looks at its
+ * neighbour of blur 0.45 hits it. Without the overlap it would miss that, and itself at offset 0.
+ */
 static void cover(const struct rf_bins *bins, struct rf_bin_scale scale, struct rf_tile_plan *plan)
 {
     const int pixel = 256 >> scale.shift;

@@ -1,4 +1,15 @@
-/* tiles.h: classifies tiles: which signed blurs can reach them, and the slabs that cover these. */
+/* tiles.h: finds the blurs that can reach a tile, and the slabs that rays test for them.
+ *
+ * A ray hits a pixel only if the circle of confusion there is as large as the pixel is far away. So
+ * the blurs that occur in each tile are noted in bins, and a tile collects the bins around it as
+ * far as they reach. These are covered, nearest first, by slabs: ranges of blur so narrow that a
+ * ray can look for all of a slab at one offset, that of its centre.
+ *
+ * An example: a tile holds the blurs 5.0 to 7.4. The second tile to its right begins 17 pixels away
+ * and holds the blurs 9 and 20. Blurs below 16 do not reach so far, so 20 alone is collected. The
+ * slabs are 5 to 6, 6 to 7, 7 to 7.5 and 20, with the centres 5.5, 6.5, 7.25 and 20. For these the
+ * ray (u, v) = (0.8, 0) looks 4.4, 5.2, 5.8 and 16 pixels to the right, rounded: 4, 5, 6 and 16.
+ */
 #ifndef RF_TILES_H
 #define RF_TILES_H
 
