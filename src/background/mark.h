@@ -1,4 +1,4 @@
-/* mark.h: finds the pixels that a blurred foreground would let see through.
+/* mark.h: marks the foreground, the pixels that a blur lets be seen through.
  *
  * A blurred foreground uncovers some of what its edge hides. One picture does not show that, so a
  * second layer, the hidden background, is made up: pixels that could be seen through are marked

@@ -1,4 +1,4 @@
-/* upsample.h: a disparity map of any size brought to the photo's. */
+/* upsample.h: brings a disparity map of any size to the photo's. */
 #ifndef RF_UPSAMPLE_H
 #define RF_UPSAMPLE_H
 

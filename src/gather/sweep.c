@@ -1,4 +1,4 @@
-/* sweep.c: two layers, front-most hit, by a sweep over the disparities in reach.
+/* sweep.c: the sweep: averages what the rays of a tile hit first, found slab by slab.
  *
  * Yang et al. 2016 ask for the front-most q on the ray of p with q = p + u s(q) (eq. 4),
  * relaxed to half a pixel. Over a tile, few signed blurs s can be hit at all. They are
@@ -268,7 +268,7 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
         uint16_t *out = rows.step > 1 ? computed : mean[c];
 
         if (f->premultiplied)
-            f->exec->kernels->weighed_means(out, run.sum[c], run.sum[3], lanes);
+            f->exec->kernels->premultiplied_means(out, run.sum[c], run.sum[3], lanes);
         else if (f->weighted)
             f->exec->kernels->weighted_means(out, run.weighted[c], run.weighted[3], lanes);
         else

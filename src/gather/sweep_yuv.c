@@ -214,7 +214,7 @@ static void compute_means(const struct tile *tile, bool chroma, struct sums *sum
     if (!tile->weight && !chroma && rf_exceeds_means(&tile->plan))
         rf_clamp_sums(sums->run[0], (uint32_t)rays, lanes);
     if (tile->f->premultiplied)
-        kernels->weighed_means(computed, sums->run[chroma], sums->run_weight[chroma], lanes);
+        kernels->premultiplied_means(computed, sums->run[chroma], sums->run_weight[chroma], lanes);
     else if (tile->weight)
         kernels->weighted_means(computed, sums->weighted_run[chroma], sums->weight_run[chroma],
                                 lanes);

@@ -1,4 +1,4 @@
-/* detect.h: what finding clipped components, and classifying them as highlights, have in common. */
+/* detect.h: types and functions that detecting clipped components and classifying them share. */
 #ifndef RF_DETECT_H
 #define RF_DETECT_H
 

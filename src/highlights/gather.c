@@ -1,5 +1,5 @@
-/* gather.c: leaves highlights to the rays, where they are not splatted: makes sure that rays hit
- * them, and gives the light that rays hit what clipping cost. */
+/* gather.c: prepares highlights that are not splatted for the rays: widens narrow ones, and gives
+ * back the light that clipping took. */
 #include "highlights/highlights.h"
 
 #include <stdbool.h>

@@ -1,5 +1,5 @@
-/* mark.c: tells, for a lens setting, which pixels of highlights are but silhouettes of others, how
- * far they are out of focus, and which rows of them are splatted as one. */
+/* mark.c: marks, for a lens setting, which pixels of highlights are silhouettes of others, how far
+ * they are out of focus, and which rows are splatted as one. */
 #include "highlights/highlights.h"
 
 #include <stdbool.h>

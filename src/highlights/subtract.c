@@ -1,4 +1,5 @@
-/* subtract.c: keeps from the rays what splatted highlights have beyond what is around them. */
+/* subtract.c: subtracts from the light of the rays what splatted highlights have beyond their
+ * surroundings. */
 #include "highlights/highlights.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* trim.c: takes from a clipped component what the highlight in it merely lights.
+/* trim.c: trims a clipped component to the highlight in it, without what that merely lights.
  *
  * A candle's flame is connected with the wax that it lights, a street light with its post, where
  * these are so bright that they are clipped. They are limbs, thinner than the light. A coloured

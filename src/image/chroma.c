@@ -1,4 +1,4 @@
-/* chroma.c: takes over how a photo of Y, U and V is coded. */
+/* chroma.c: notes how a photo of Y, U and V is coded: matrix, range and subsampling. */
 #include "image/chroma.h"
 
 #include "image/format.h"

@@ -1,4 +1,4 @@
-/* any_in_slab.c: whether any pixel of a block lies in a slab. */
+/* any_in_slab.c: tells whether the blur of any pixel of a block lies in a slab. */
 #include "kernels/kernels.h"
 
 bool rf_any_in_slab_c(const int16_t *blur, ptrdiff_t stride, int width, int height,

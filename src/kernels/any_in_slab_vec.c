@@ -1,4 +1,5 @@
-/* any_in_slab_vec.c: whether any pixel of a block lies in a slab, a vector of pixels at a time. */
+/* any_in_slab_vec.c: tells whether the blur of any pixel of a block lies in a slab, a vector at a
+ * time. */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 

@@ -1,4 +1,4 @@
-/* blend4.c: four rows of samples by shares. */
+/* blend4.c: the depth upsampler: computes the weighted mean of four rows of samples. */
 #include "kernels/kernels.h"
 
 void rf_blend4_c(uint16_t *restrict out, const uint16_t *const row[RF_TAPS],

@@ -1,4 +1,5 @@
-/* blend4_vec.c: four rows of samples by shares, a vector at a time. */
+/* blend4_vec.c: the depth upsampler: computes the weighted mean of four rows of samples, a vector
+ * at a time. */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 

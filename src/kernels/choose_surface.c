@@ -1,4 +1,5 @@
-/* choose_surface.c: which surface each pixel of a cell belongs to, and its disparity there. */
+/* choose_surface.c: the depth upsampler: chooses the surface that each pixel of a cell belongs to,
+ * and its disparity there. */
 #include "kernels/kernels.h"
 #include "kernels/lanes.h"
 

@@ -1,5 +1,5 @@
-/* choose_surface_vec.c: which surface each pixel of a cell belongs to, a vector of pixels at a
- * time. */
+/* choose_surface_vec.c: the depth upsampler: chooses the surface that each pixel of a cell belongs
+ * to, a vector of pixels at a time. */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 

@@ -1,4 +1,4 @@
-/* disc_vec.h: how much the pixels of a row see of a run of a highlight (discs.h), in vectors. */
+/* disc_vec.h: how much of a run of highlight pixels each pixel sees (discs.h), in vectors. */
 #ifndef RF_DISC_VEC_H
 #define RF_DISC_VEC_H
 

@@ -1,4 +1,4 @@
-/* draw_disc.c: adds the light of a run of highlights, drawn as discs, to a tile. */
+/* draw_disc.c: adds the light of a run of highlight pixels, drawn as discs, to a tile. */
 #include "kernels/kernels.h"
 
 void rf_draw_disc_c(uint16_t *const mean[3], const struct rf_disc_job *job)

@@ -1,5 +1,5 @@
-/* draw_disc_vec.c: adds the light of a run of highlights to a tile, a vector of pixels at a time.
- */
+/* draw_disc_vec.c: adds the light of a run of highlight pixels, drawn as discs, to a tile, a vector
+ * at a time. */
 #include "kernels/disc_vec.h"
 #include "kernels/kernels.h"
 #include "simd/vec.h"

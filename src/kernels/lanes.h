@@ -1,4 +1,4 @@
-/* lanes.h: arithmetic of single 16-bit lanes, in forms that the compiler makes vectors of. */
+/* lanes.h: arithmetic of 16-bit lanes in forms that the compiler's vectoriser understands. */
 #ifndef RF_KERNELS_LANES_H
 #define RF_KERNELS_LANES_H
 

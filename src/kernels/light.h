@@ -62,11 +62,11 @@ struct rf_weigh1_job {
 typedef void rf_weigh1_fn(const struct rf_weigh1_job *job, int n);
 typedef void rf_weigh_chroma_fn(uint16_t *chroma, const uint16_t *weight, int n);
 
-/* weighed_means: Q14 means of n sums below 2^31 of Q13 light times Q12 weight, and of the
+/* premultiplied_means: Q14 means of n sums below 2^31 of Q13 light times Q12 weight, and of the
  * weights: 2^13 sum / weight half up, at most 65520. In single precision, one operation after
  * the other: within 1/2 + 2^-6. */
-typedef void rf_weighed_means_fn(uint16_t *mean, const uint32_t *sum, const uint32_t *weight,
-                                 int n);
+typedef void rf_premultiplied_means_fn(uint16_t *mean, const uint32_t *sum, const uint32_t *weight,
+                                       int n);
 
 /* between_rows: a tile of means from some of its rows, 2, 3 or 5 apart (gather/tile_rows.h), by
  * the cubics through four of them, half up, never beyond the one before and the one after. */

@@ -1,4 +1,4 @@
-/* measure.c: times of the kernels on rows that look like a photo with two depths. */
+/* measure.c: measures the times of the kernels, on rows that look like a photo with two depths. */
 #include <refocus/measure.h>
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* median3.c: a median of 3 x 3 disparities, weighted and leaning to the near. */
+/* median3.c: the depth upsampler: a weighted median of 3 x 3 disparities that leans to the near. */
 #include "kernels/kernels.h"
 #include "kernels/lanes.h"
 #include "kernels/sort_network.h"

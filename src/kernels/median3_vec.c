@@ -1,6 +1,5 @@
-/* median3_vec.c: a median of 3 x 3 disparities, weighted and leaning to the near, a vector at a
- * time.
- */
+/* median3_vec.c: the depth upsampler: a weighted median of 3 x 3 disparities that leans to the
+ * near, a vector at a time. */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 #include "kernels/sort_network.h"

@@ -1,4 +1,4 @@
-/* occlude_disc.c: which part of a highlight's disc nearer surfaces occlude. */
+/* occlude_disc.c: finds which part of a highlight's disc nearer surfaces occlude. */
 #include "kernels/kernels.h"
 #include "support/compare.h"
 

@@ -1,4 +1,5 @@
-/* part_taps.c: sorts the samples around each cell, and parts them into surfaces. */
+/* part_taps.c: the depth upsampler: sorts the samples around each cell, and splits them into
+ * surfaces. */
 #include "kernels/kernels.h"
 #include "kernels/lanes.h"
 #include "kernels/sort_network.h"

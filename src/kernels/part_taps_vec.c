@@ -1,5 +1,5 @@
-/* part_taps_vec.c: sorts the samples around each cell, and parts them into surfaces, a vector of
- * cells at a time. */
+/* part_taps_vec.c: the depth upsampler: sorts the samples around each cell, and splits them into
+ * surfaces, a vector of cells at a time. */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 #include "kernels/sort_network.h"

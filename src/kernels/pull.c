@@ -1,4 +1,4 @@
-/* pull.c: enlarges a level of the inpainting pyramid where pixels are unknown. */
+/* pull.c: inpaints the unknown pixels of a pyramid level from the coarser one. */
 #include "kernels/kernels.h"
 
 static uint16_t quarters(unsigned three, unsigned one)

@@ -1,4 +1,4 @@
-/* pull_blur.c: unknown pixels of the inpainting pyramid take the blur of their parents. */
+/* pull_blur.c: gives the unknown pixels of a pyramid level the blur of their parents. */
 #include "kernels/kernels.h"
 
 void rf_pull_blur_c(int16_t *out, const int16_t *near_row, int pairs)

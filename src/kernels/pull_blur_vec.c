@@ -1,4 +1,5 @@
-/* pull_blur_vec.c: unknown pixels take the blur of their parents, a vector of parents at a time. */
+/* pull_blur_vec.c: gives the unknown pixels of a pyramid level the blur of their parents, a vector
+ * of parents at a time. */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 #include "kernels/pyramid_vec.h"

@@ -1,4 +1,5 @@
-/* pull_vec.c: enlarges a level of the inpainting pyramid, a vector of parents at a time. */
+/* pull_vec.c: inpaints the unknown pixels of a pyramid level from the coarser one, a vector of
+ * parents at a time. */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 #include "kernels/pyramid_vec.h"

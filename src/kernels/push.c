@@ -1,4 +1,4 @@
-/* push.c: a level of the inpainting pyramid from the finer one, of three planes. */
+/* push.c: reduces a level of the inpainting pyramid to the next coarser one, three planes of it. */
 #include "kernels/push_planes.h"
 
 void rf_push_c(uint16_t *const out[3], int16_t *out_blur, const uint16_t *const upper[3],

@@ -1,5 +1,4 @@
-/* push_planes.h: the template of push: a plane of a level of the inpainting pyramid from the finer
- * one. */
+/* push_planes.h: the template of push, which reduces a level of the inpainting pyramid. */
 #ifndef RF_KERNELS_PUSH_PLANES_H
 #define RF_KERNELS_PUSH_PLANES_H
 

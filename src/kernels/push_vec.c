@@ -1,4 +1,5 @@
-/* push_vec.c: a level of the inpainting pyramid, of three planes, a vector of parents at a time. */
+/* push_vec.c: reduces a level of the inpainting pyramid to the next coarser one, a vector of
+ * parents at a time. */
 #include "kernels/kernels.h"
 #include "kernels/pyramid_vec.h"
 #include "simd/vec.h"

@@ -1,4 +1,4 @@
-/* pyramid_vec.h: unknown pixels of the inpainting pyramid, in vectors. */
+/* pyramid_vec.h: finds and overwrites the unknown pixels of the inpainting pyramid, in vectors. */
 #ifndef RF_KERNELS_PYRAMID_VEC_H
 #define RF_KERNELS_PYRAMID_VEC_H
 

@@ -1,4 +1,10 @@
-/* slab.h: a range of signed blur that a tile's rays meet at one offset. */
+/* slab.h: a slab, the range of signed blur that a ray looks for at one offset, and the test for it.
+ *
+ * An example: the slab of low 1024 and width 256 holds the blurs 1024 to 1280. Its limits are from
+ * = 1024 ^ 0x8000 = 33792 and to = 1281 - 33792 = -32511. Blur 1100 lies in it, as 1100 - 33792 is
+ * -32692 < -32511. Blur 1281 does not, as it yields -32511, and blur 1023 does not, as -32769 is
+ * 32767 modulo 2^16.
+ */
 #ifndef RF_SLAB_H
 #define RF_SLAB_H
 

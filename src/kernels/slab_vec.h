@@ -1,4 +1,4 @@
-/* slab_vec.h: whether blurs lie in a range, for vectors. */
+/* slab_vec.h: the test whether blurs lie in a slab, in vectors. */
 #ifndef RF_SLAB_VEC_H
 #define RF_SLAB_VEC_H
 

@@ -1,4 +1,4 @@
-/* smooth1.c: a step of the pre-filter, of one plane. */
+/* smooth1.c: computes a step of the pre-filter on one plane. */
 #include "kernels/kernels.h"
 
 #include <stdlib.h>

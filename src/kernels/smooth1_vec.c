@@ -1,4 +1,4 @@
-/* smooth1_vec.c: a step of the pre-filter, of one plane. */
+/* smooth1_vec.c: computes a step of the pre-filter on one plane, a vector of pixels at a time. */
 #include "kernels/smooth_planes_vec.h"
 
 void RF_VEC(rf_smooth1)(uint16_t *out, const uint16_t *light, const int16_t *blur, ptrdiff_t apart,

@@ -1,4 +1,4 @@
-/* smooth3.c: a step of the pre-filter, of three planes. */
+/* smooth3.c: computes a step of the pre-filter on three planes. */
 #include "kernels/kernels.h"
 
 void rf_smooth3_c(uint16_t *const out[3], const uint16_t *const light[3], const int16_t *blur,

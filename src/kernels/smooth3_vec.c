@@ -1,4 +1,4 @@
-/* smooth3_vec.c: a step of the pre-filter, of three planes at once. */
+/* smooth3_vec.c: computes a step of the pre-filter on three planes, a vector at a time. */
 #include "kernels/smooth_planes_vec.h"
 
 void RF_VEC(rf_smooth3)(uint16_t *const out[3], const uint16_t *const light[3], const int16_t *blur,

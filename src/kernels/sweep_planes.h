@@ -1,4 +1,4 @@
-/* sweep_planes.h: the template of the plain sweeps: what a ray of one lane hits. */
+/* sweep_planes.h: the template of the sweeps in plain C: what the ray of one pixel hits. */
 #ifndef RF_KERNELS_SWEEP_PLANES_H
 #define RF_KERNELS_SWEEP_PLANES_H
 

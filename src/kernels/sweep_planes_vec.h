@@ -1,4 +1,5 @@
-/* sweep_planes_vec.h: the template of the sweeps without products, some vectors at a time.
+/* sweep_planes_vec.h: the template of the sweeps that sum plain light, some vectors of pixels at a
+ * time.
  *
  * Rays with the same number of tests are summed together, so that the tests are unrolled. Sums have
  * 16 bits, and go to those of 32 bits after `steps` rays.

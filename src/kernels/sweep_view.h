@@ -1,4 +1,5 @@
-/* sweep_view.h: the jobs of the sweeps of one and of three planes, seen alike.
+/* sweep_view.h: one view of the jobs of all sweeps, of one and of three planes, for their
+ * templates.
  *
  * sweep and sweep_weighted work on three planes of a strip, sweep1 and sweep1_weighted on one plane
  * of some rows of a tile. The templates sweep_planes.h and sweep_planes_vec.h read this view, and

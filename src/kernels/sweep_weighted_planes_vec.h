@@ -1,4 +1,5 @@
-/* sweep_weighted_planes_vec.h: the template of the sweeps with weights, some vectors at a time.
+/* sweep_weighted_planes_vec.h: the template of the sweeps that sum light times weight, some vectors
+ * of pixels at a time.
  *
  * Two rays are followed at once, as one instruction adds two products of light and weight, each
  * as in sweep_planes_vec.h: those of three planes to the back, those of one plane to the front.

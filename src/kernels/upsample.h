@@ -1,4 +1,4 @@
-/* upsample.h: contracts of the depth upsampler's loops; kernels.h says how they are kept. */
+/* upsample.h: contracts of the kernels of the depth upsampler. */
 #ifndef RF_KERNELS_UPSAMPLE_H
 #define RF_KERNELS_UPSAMPLE_H
 

@@ -1,4 +1,4 @@
-/* weigh_planes.h: the template of weigh: pixels of a layer become light times weight. */
+/* weigh_planes.h: the template of weigh, which multiplies light by the weights of eq. 5. */
 #ifndef RF_KERNELS_WEIGH_PLANES_H
 #define RF_KERNELS_WEIGH_PLANES_H
 

@@ -1,4 +1,5 @@
-/* weigh_planes_vec.h: the template of weigh, the rows of some tiles at a time. */
+/* weigh_planes_vec.h: the template of weigh, which multiplies light by the weights of eq. 5, some
+ * tiles' rows at a time. */
 #ifndef RF_KERNELS_WEIGH_PLANES_VEC_H
 #define RF_KERNELS_WEIGH_PLANES_VEC_H
 

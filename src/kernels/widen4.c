@@ -1,4 +1,4 @@
-/* widen4.c: pixels of a row out of four samples each. */
+/* widen4.c: the depth upsampler: computes pixels of a row as weighted means of four samples. */
 #include "kernels/kernels.h"
 
 static inline uint16_t widen(const uint16_t *d, const int16_t *share)

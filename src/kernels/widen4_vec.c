@@ -1,4 +1,5 @@
-/* widen4_vec.c: pixels of a row out of four samples each, four pixels at a time. */
+/* widen4_vec.c: the depth upsampler: computes each pixel of a row as a weighted mean of four
+ * samples, four pixels at a time. */
 #include "kernels/kernels.h"
 #include "simd/vec.h"
 

@@ -1,4 +1,4 @@
-/* coc.h: the circle of confusion of each pixel, from its disparity.
+/* coc.h: computes the circle of confusion of each pixel from its disparity.
  *
  *     s = K (df - d)                      Yang et al. 2016, eq. 4, with a sign
  *

@@ -1,4 +1,4 @@
-/* disparity.c: takes over a disparity map that is as large as the picture. */
+/* disparity.c: copies a disparity map as large as the photo to its plane, and smooths its steps. */
 #include "passes/disparity.h"
 
 #include <string.h>
@@ -10,7 +10,7 @@ enum { ROWS = 16 }; /* rows of a work item */
 
 static void take_band(void *context, int band, int worker)
 {
-    const struct rf_take_disparity *pass = context;
+    const struct rf_copy_disparity *pass = context;
     const struct refocus_disparity *map = pass->map;
     const int end = rf_smaller((band + 1) * ROWS, map->height);
 
@@ -27,7 +27,7 @@ static void take_band(void *context, int band, int worker)
     }
 }
 
-void rf_take_disparity(const struct rf_executor *exec, const struct rf_take_disparity *pass)
+void rf_copy_disparity(const struct rf_executor *exec, const struct rf_copy_disparity *pass)
 {
     const struct rf_dequantiser d = {
         .kernels = exec->kernels,

@@ -1,4 +1,4 @@
-/* disparity.h: takes over a disparity map that is as large as the picture. */
+/* disparity.h: copies a disparity map as large as the photo to its plane, and smooths its steps. */
 #ifndef RF_PASSES_DISPARITY_H
 #define RF_PASSES_DISPARITY_H
 
@@ -7,7 +7,7 @@
 #include "image/planes.h"
 #include "support/executor.h"
 
-struct rf_take_disparity {
+struct rf_copy_disparity {
     const struct refocus_disparity *map;
     int step; /* rf_code_step() of the map; 0: codes are left as they are */
     struct rf_disparity_q16 disparity; /* written, from the map's first sample on */
@@ -15,6 +15,6 @@ struct rf_take_disparity {
 };
 
 /* Writes disparities as Q16, and slopes in place of the steps of a map that has few codes. */
-void rf_take_disparity(const struct rf_executor *exec, const struct rf_take_disparity *pass);
+void rf_copy_disparity(const struct rf_executor *exec, const struct rf_copy_disparity *pass);
 
 #endif

@@ -1,4 +1,4 @@
-/* weights.c: highlight weights of eq. 5, and light times weight. */
+/* weights.c: computes the highlight weights of eq. 5, and light times weight. */
 #include "passes/weights.h"
 
 #include <string.h>

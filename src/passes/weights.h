@@ -1,4 +1,4 @@
-/* weights.h: highlight weights of Yang et al. 2016, eq. 5, of the pixels that rays meet. */
+/* weights.h: the highlight weights of Yang et al. 2016, eq. 5, for the pixels that rays hit. */
 #ifndef RF_WEIGHTS_H
 #define RF_WEIGHTS_H
 

@@ -45,7 +45,7 @@ void rf_load_disparity(struct refocus_renderer *r, const struct refocus_disparit
     const ptrdiff_t stride = r->disparity.stride, first = -above * stride - left;
 
     rf_plane_begin(&r->lifetimes, RF_PLANE_PREPARE_SPARE);
-    rf_take_disparity(&r->exec, &(struct rf_take_disparity){
+    rf_copy_disparity(&r->exec, &(struct rf_copy_disparity){
                                     .map = map,
                                     .step = step,
                                     .disparity = {r->disparity.at + first, stride},

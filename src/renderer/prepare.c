@@ -1,4 +1,4 @@
-/* prepare.c: takes in a photo and its disparity map for the renders that follow. */
+/* prepare.c: loads a photo and its disparity map for the renders that follow. */
 #include <refocus/render.h>
 
 #include <string.h>

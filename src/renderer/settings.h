@@ -1,4 +1,4 @@
-/* settings.h: from the public parameters of a render to struct rf_settings. */
+/* settings.h: reads the public parameters of a render into struct rf_settings. */
 #ifndef RF_RENDERER_SETTINGS_H
 #define RF_RENDERER_SETTINGS_H
 

@@ -1,4 +1,4 @@
-/* coverage.h: one disc of the coverage layer; private to this folder.
+/* coverage.h: the coverage layer, which thin structures are splatted into; private to this folder.
  *
  * Thin structures far before the focus are splatted: alpha N and alpha of cells of 4 x 4 pixels are
  * added up and spread evenly over a disc, in cells, and between the middles of cells the layer is

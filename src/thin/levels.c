@@ -1,5 +1,5 @@
-/* levels.c: which mixtures are far enough before the focus to be splatted, or in focus and matted.
- */
+/* levels.c: tells which mixtures are far enough before the focus to be splatted, or in focus and
+ * matted. */
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-/* bins.h: which circles of confusion occur in a tile. */
+/* bins.h: the bins of a tile: which circles of confusion occur in it. */
 #ifndef RF_BINS_H
 #define RF_BINS_H
 
@@ -13,10 +13,9 @@ struct rf_bins {
     int16_t least, most;  /* Q7.8 */
     int16_t highlight;    /* largest |s| of a highlight, Q7.8; 0: it has none */
     int16_t undersampled; /* largest |s| of a highlight narrower than the gaps between rays need */
-    int16_t
-        background_blur; /* the blur of the hidden background in the middle, once it is inpainted */
-    uint16_t brightest;  /* an upper bound of the light of either layer, as it is summed */
-    bool subtracted;     /* highlights are subtracted from its light, highlights/subtract.c */
+    int16_t background_blur; /* Q7.8: blur of the hidden background in the middle of the tile */
+    uint16_t brightest;      /* an upper bound of the light of either layer, as it is summed */
+    bool subtracted;         /* highlights are subtracted from its light, highlights/subtract.c */
 };
 
 /* The least and the greatest circle of confusion around each cell of a window; tiles/ranges.h. */

@@ -249,18 +249,18 @@ static int check_weighed_means(const struct subject *subject)
             sum[i] = sum[i] < INT32_MAX ? sum[i] : INT32_MAX;
         }
         mean[n] = 12345;
-        subject->kernels.weighed_means(mean, sum, weight, n);
+        subject->kernels.premultiplied_means(mean, sum, weight, n);
         if (mean[n] != 12345)
-            return wrong(subject, "weighed_means", "one past the end", mean[n], 12345);
+            return wrong(subject, "premultiplied_means", "one past the end", mean[n], 12345);
         for (int i = 0; i < n; i++) {
             volatile float s = (float)sum[i], w = (float)weight[i];
             volatile float product = s * 8192, quotient = product / w, v = quotient + 0.5f;
             const uint16_t should = (uint16_t)(v < 65520 ? v : 65520);
 
             if (mean[i] != should)
-                return wrong(subject, "weighed_means", "of a sum", mean[i], should);
+                return wrong(subject, "premultiplied_means", "of a sum", mean[i], should);
             if (fabs(mean[i] - 8192.0 * sum[i] / weight[i]) > 0.5 + 1.0 / 64 && should < 65520)
-                return wrong(subject, "weighed_means", "far from it", mean[i],
+                return wrong(subject, "premultiplied_means", "far from it", mean[i],
                              8192.0 * sum[i] / weight[i]);
         }
     }

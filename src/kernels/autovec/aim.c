@@ -1,4 +1,4 @@
-/* aim.c: where rays see a blur. */
+/* aim.c: computes where rays see a blur: offsets of rays times blur, in whole pixels. */
 #include "kernels/kernels.h"
 #include "kernels/autovec/ray_offset.h"
 

@@ -1,4 +1,4 @@
-/* aim_chroma.c: where rays through samples of chroma see a blur. */
+/* aim_chroma.c: computes where rays see a blur among samples of chroma. */
 #include "kernels/kernels.h"
 #include "kernels/autovec/ray_offset.h"
 

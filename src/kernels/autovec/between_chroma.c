@@ -1,4 +1,4 @@
-/* between_chroma.c: the rows of chroma between those that were computed, by cubic interpolation. */
+/* between_chroma.c: interpolates the rows of chroma between those that were computed, by cubics. */
 #include "kernels/kernels.h"
 #include "kernels/autovec/cubic.h"
 

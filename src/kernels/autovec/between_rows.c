@@ -1,4 +1,4 @@
-/* between_rows.c: the rows of a tile between those that were computed, by cubic interpolation. */
+/* between_rows.c: interpolates the rows of a tile between those that were computed, by cubics. */
 #include "kernels/kernels.h"
 #include "kernels/autovec/cubic.h"
 

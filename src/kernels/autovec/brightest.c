@@ -1,4 +1,4 @@
-/* brightest.c: the largest value of three rows of light. */
+/* brightest.c: finds the largest value of three rows of light. */
 #include "kernels/kernels.h"
 #include "kernels/lanes.h"
 

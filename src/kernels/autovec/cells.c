@@ -1,4 +1,4 @@
-/* cells.c: the least and the greatest blur of cells of 4 x 4 pixels. */
+/* cells.c: finds the least and the greatest blur of cells of 4 x 4 pixels. */
 #include "kernels/kernels.h"
 #include "kernels/autovec/cell_runs.h"
 

@@ -1,4 +1,5 @@
-/* clamp_codes.c: keeps smoothed codes within reach of their own. */
+/* clamp_codes.c: clamps the smoothed codes of a disparity map to an interval about the original
+ * ones. */
 #include "kernels/kernels.h"
 
 void RF_VEC(rf_clamp_codes)(uint16_t *restrict code, const uint16_t *restrict smooth, uint16_t most,

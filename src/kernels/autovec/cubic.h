@@ -1,4 +1,4 @@
-/* cubic.h: rows between those that are computed. */
+/* cubic.h: cubic interpolation of a row of a tile between four rows that were computed. */
 #ifndef RF_CUBIC_H
 #define RF_CUBIC_H
 

@@ -1,4 +1,4 @@
-/* decode.c: means of a tile of luma and chroma to codes of Y, U and V. */
+/* decode.c: converts the means of a tile of luma and chroma to codes of Y, U and V. */
 #include "kernels/kernels.h"
 #include "kernels/autovec/yuv_pairs.h"
 

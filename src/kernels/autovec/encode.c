@@ -1,4 +1,4 @@
-/* encode.c: codes of Y, U and V to luma and chroma. */
+/* encode.c: converts codes of Y, U and V to luma and chroma that can be averaged. */
 #include "kernels/kernels.h"
 #include "kernels/autovec/yuv_pairs.h"
 

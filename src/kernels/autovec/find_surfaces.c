@@ -1,4 +1,5 @@
-/* find_surfaces.c: the surfaces of a cell: their samples, scales and planes. */
+/* find_surfaces.c: the depth upsampler: finds the surfaces among the samples around a cell, and a
+ * plane through each. */
 #include "kernels/kernels.h"
 #include "kernels/autovec/groups.h"
 

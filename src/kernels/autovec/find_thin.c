@@ -1,4 +1,5 @@
-/* find_thin.c: which pixels of a tile are mixtures at thin structures, and of what. */
+/* find_thin.c: finds the pixels of a tile that mix a thin structure with its background, and in
+ * what parts. */
 #include "kernels/autovec/thin_parts.h"
 
 #include <string.h>

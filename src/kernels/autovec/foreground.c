@@ -1,4 +1,4 @@
-/* foreground.c: the greatest blur of the foreground in cells of 4 x 4 pixels. */
+/* foreground.c: finds the greatest blur of the foreground in cells of 4 x 4 pixels. */
 #include "kernels/kernels.h"
 #include "kernels/autovec/cell_runs.h"
 

@@ -1,4 +1,4 @@
-/* half_chords.c: how wide a disc is in each row of a tile. */
+/* half_chords.c: computes half the width of a disc in each row of a tile. */
 #include "kernels/kernels.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* join2.c: a row of firsts and one of seconds to a row of pairs. */
+/* join2.c: interleaves two rows to a row of pairs: the two values of samples of chroma. */
 #include "kernels/kernels.h"
 
 void RF_VEC(rf_join2)(uint16_t *restrict out, const uint16_t *restrict first,

@@ -1,4 +1,4 @@
-/* means.c: means of sums of as many rays each. */
+/* means.c: divides the sums of light over N rays by N. */
 #include "kernels/kernels.h"
 
 /* (4 sum + N / 2) / N by a multiplication; see rf_mean_scale(). */

@@ -1,4 +1,4 @@
-/* push1.c: a level of the inpainting pyramid from the finer one, of one plane. */
+/* push1.c: reduces a level of the inpainting pyramid to the next coarser one, one plane of it. */
 #include "kernels/push_planes.h"
 
 void RF_VEC(rf_push1)(uint16_t *out, int16_t *out_blur, const uint16_t *upper,

@@ -1,4 +1,5 @@
-/* quarter.c: colours of pixels in steps of four codes, a plane each. */
+/* quarter.c: the depth upsampler: reduces the colours of pixels to steps of four codes, a plane
+ * each. */
 #include "kernels/kernels.h"
 
 void RF_VEC(rf_quarter)(uint8_t *const out[3], const uint8_t *restrict pixels, int bytes, int n)

@@ -1,4 +1,4 @@
-/* ray_offset.h: by how many samples a ray is displaced at a blur, by 16-bit products. */
+/* ray_offset.h: the offset in samples at which a ray sees a blur, by 16-bit products. */
 #ifndef RF_KERNELS_RAY_OFFSET_H
 #define RF_KERNELS_RAY_OFFSET_H
 

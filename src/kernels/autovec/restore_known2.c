@@ -1,4 +1,5 @@
-/* restore_known2.c: gives pairs back that were known before the background was inpainted. */
+/* restore_known2.c: restores the samples of chroma that were known before the background was
+ * inpainted. */
 #include "kernels/kernels.h"
 
 void RF_VEC(rf_restore_known2)(uint16_t *restrict out, const uint16_t *restrict own,

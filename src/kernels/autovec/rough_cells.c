@@ -1,4 +1,5 @@
-/* rough_cells.c: which cells of a coarse map have a depth edge among their samples. */
+/* rough_cells.c: the depth upsampler: finds the cells of a coarse map with a depth edge among their
+ * samples. */
 #include "kernels/kernels.h"
 #include "kernels/lanes.h"
 

@@ -1,4 +1,4 @@
-/* series_row.c: a row of a step of the Chebyshev series of heat flow. */
+/* series_row.c: computes a row of one step of the Chebyshev series of heat flow. */
 #include "kernels/kernels.h"
 
 void RF_VEC(rf_series_row)(float *restrict row, const struct rf_series_job *job, int n)

@@ -1,4 +1,4 @@
-/* settle.c: which rays of a search are settled by their first test, for a whole strip. */
+/* settle.c: finds the rays of a search that their first test settles for all pixels of a strip. */
 #include "kernels/kernels.h"
 #include "kernels/autovec/ray_offset.h"
 

@@ -1,4 +1,4 @@
-/* sharpest4.c: the sharpest of the blurs of the pixels that share a sample of chroma. */
+/* sharpest4.c: finds the sharpest of the blurs of the pixels that share a sample of chroma. */
 #include "kernels/kernels.h"
 
 static inline uint16_t size(int16_t s)

@@ -1,4 +1,4 @@
-/* signed_blur.c: the signed blur radius of each pixel of a row, from its disparity. */
+/* signed_blur.c: computes the signed blur radius of each pixel of a row from its disparity. */
 #include "kernels/kernels.h"
 
 void RF_VEC(rf_signed_blur)(int16_t *restrict blur, const uint16_t *restrict disparity,

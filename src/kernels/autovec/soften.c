@@ -1,4 +1,4 @@
-/* soften.c: moves the means of a tile towards those beside them. */
+/* soften.c: softens the means of a tile: moves each towards its neighbours. */
 #include "kernels/kernels.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
-/* sort_rays.c: culls the slabs that each ray of a strip need not test, and sorts rays by tests. */
+/* sort_rays.c: culls the slabs that each ray of a strip need not test, and sorts rays by number of
+ * tests. */
 #include "kernels/kernels.h"
 
 enum { BITS = RF_JOIN_BLOCK, BLOCKS = RF_BINS / BITS };

@@ -1,4 +1,5 @@
-/* split2.c: rows of pairs to a row of their firsts and one of their seconds, two rows averaged. */
+/* split2.c: splits rows of pairs, samples of chroma, into a row of each value, and averages two
+ * rows. */
 #include "kernels/kernels.h"
 
 void RF_VEC(rf_split2)(uint16_t *restrict first, uint16_t *restrict second, const uint16_t *upper,

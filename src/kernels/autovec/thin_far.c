@@ -1,4 +1,4 @@
-/* thin_far.c: computes F, the hidden background's light, for a batch of mixtures. */
+/* thin_far.c: find_thin: computes F, the light of the background, for a batch of mixtures. */
 #include "kernels/autovec/thin_parts.h"
 
 #include <string.h>

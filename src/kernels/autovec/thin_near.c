@@ -1,4 +1,5 @@
-/* thin_near.c: N and alpha, the light and the share in front, of a batch of pixels. */
+/* thin_near.c: find_thin: computes N and alpha, light and coverage of the thin structure, for a
+ * batch of mixtures. */
 #include "kernels/autovec/thin_parts.h"
 
 #include <string.h>

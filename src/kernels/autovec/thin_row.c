@@ -1,4 +1,5 @@
-/* thin_row.c: which pixels of a row may be thin, or lie beside one that is, and what they hit. */
+/* thin_row.c: find_thin: finds the pixels of a row on or beside thin structures, and the nearest
+ * background pixels in eight directions. */
 #include "kernels/autovec/thin_parts.h"
 
 static ptrdiff_t step_of(int i)

@@ -1,4 +1,4 @@
-/* thin_window.c: copies the disparities around a tile for find_thin. */
+/* thin_window.c: find_thin: copies the disparities of a tile and of the pixels around it. */
 #include "kernels/autovec/thin_parts.h"
 
 #include <string.h>

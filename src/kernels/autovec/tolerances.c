@@ -1,4 +1,5 @@
-/* tolerances.c: how far a blur may be off so that its ray is off by half a pixel. */
+/* tolerances.c: computes how far a blur may be off for the ray through it to be off by half a
+ * pixel. */
 #include "kernels/kernels.h"
 
 #include <math.h>

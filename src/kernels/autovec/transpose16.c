@@ -1,4 +1,5 @@
-/* transpose16.c: rows of 16-bit values to columns laid end to end. */
+/* transpose16.c: the depth upsampler: transposes rows of 16-bit values to columns that lie end to
+ * end. */
 #include "kernels/kernels.h"
 
 void RF_VEC(rf_transpose16)(uint16_t out[RF_AROUND * RF_TURNED],

@@ -1,4 +1,4 @@
-/* transpose8.c: rows of bytes to columns laid end to end. */
+/* transpose8.c: the depth upsampler: transposes rows of bytes to columns that lie end to end. */
 #include "kernels/kernels.h"
 
 void RF_VEC(rf_transpose8)(uint8_t out[RF_AROUND * RF_TURNED], const uint8_t *const row[RF_AROUND])

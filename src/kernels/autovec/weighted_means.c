@@ -1,4 +1,5 @@
-/* weighted_means.c: means of 64-bit sums of weighted light, in double precision. */
+/* weighted_means.c: divides 64-bit sums of light times weight by the sums of the weights, in double
+ * precision. */
 #include "kernels/kernels.h"
 
 enum { LANES = RF_TILE * RF_TILE };

@@ -1,4 +1,4 @@
-/* windows.c: the least and the greatest blur of windows of cells. */
+/* windows.c: finds the least and the greatest blur of windows of cells from those of the cells. */
 #include "kernels/kernels.h"
 #include "kernels/autovec/cell_runs.h"
 
