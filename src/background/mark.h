@@ -1,17 +1,17 @@
-/* mark.h: marks the foreground, the pixels that a blur lets be seen through.
+/* mark.h: marks the foreground: pixels that rays pass because they are blurred.
  *
- * A blurred foreground uncovers some of what its edge hides. One picture does not show that, so a
- * second layer, the hidden background, is made up: pixels that could be seen through are marked
- * here and inpainted (inpaint.h) from what is beside them and farther away.
+ * A blurred foreground uncovers some of the background at its edge. The photo does not show that,
+ * so a second layer, the hidden background, is made up: the pixels of the foreground that rays
+ * could pass are marked here and inpainted (inpaint.h) from farther ones beside them.
  *
- * p is foreground where some pixel q is farther than p by more blur than its distance in the
- * picture,
+ * p is foreground where some farther pixel q is near enough in the picture,
  *
  *     max over q of (s(q) - |p - q| / 2) > s(p) + 1/2 pixel,
  *
- * a grey dilation of s by a cone; |p - q| is the octagonal distance with steps of 1 and sqrt 2.
- * Slope 1 would mark what can be seen through; slope 1/2 marks twice as deep, so that the sources
- * nearest to what is seen lie on the far side.
+ * a grey dilation of s by a cone; |p - q| is the octagonal distance with steps of 1 and sqrt 2. If
+ * p has the blur -6, a q of blur 0 that is 10 pixels away makes it foreground, as 0 - 5 > -5.5; one
+ * that is 12 pixels away does not. Slope 1 would mark the pixels that rays could pass. Slope 1/2
+ * marks twice as deep, so that what rays can see there is inpainted from the far side alone.
  */
 #ifndef RF_MARK_H
 #define RF_MARK_H

@@ -1,13 +1,17 @@
 /* search.c: randomized intersection search, Yang et al. 2016, section "Randomized
  * Intersection Searching".
  *
- * A ray (u, v) of pixel p starts with the disparity found where it would meet the
- * nearest plane, d = 1: at p + (u, v) K (df - 1), the same offset for every pixel. A
- * guess d leads to the pixel q = p + (u, v) K (df - d) (eq. 4). If the disparity at q
- * confirms the guess to half a pixel, |u| K |d_q - d| <= 1/2, q is an intersection. If
- * not, d_q is the next guess. After T tests the last pixel looked at is used, unless
- * it is no intersection and farther than p: then p itself is used (or, by option, the
- * mirrored pixel, or the hidden background).
+ * A ray (u, v) of pixel p starts with the disparity found where it would hit the nearest plane, d =
+ * 1: at p + (u, v) K (df - 1), the same offset for every pixel. A guess d leads to the pixel q = p
+ * + (u, v) K (df - d) (eq. 4). If the disparity at q confirms the guess to half a pixel, |u| K |d_q
+ * - d| <= 1/2, q is an intersection. If not, d_q is the next guess. After T tests the last pixel
+ * looked at is used, unless it is no intersection and farther than p: then p itself is used (or, by
+ * option, the mirrored pixel, or the hidden background).
+ *
+ * An example: K = 20, df = 0.5, and the ray is (1, 0). The first guess, d = 1, leads 10 pixels to
+ * the left, where the disparity is 0.4: 20 x 0.6 is 12 pixels, so it is not confirmed. The next
+ * guess, 0.4, leads 2 pixels to the right, where the disparity is 0.41: 20 x 0.01 is 0.2 pixels,
+ * and the ray hits this pixel.
  */
 #include "gather/frame.h"
 #include "image/viewport.h"

@@ -63,7 +63,7 @@ void rf_boost_of(const int64_t edge_light[3], int boost[3])
  * still clips down to a share of 0.94 / L, and is half lit only from there to 0.4 / L: the
  * brighter, the fewer of the pixels beside the edge are half lit. At L = 1 it is 0.54 of those that
  * are lit in part, of which there are somewhat more than the edge has: never less than 0.6 of the
- * edge. White paint and the shine of rounded things fade out over many.
+ * edge. White paint and glossy reflections fade out over many.
  *
  * Large photos are softer, pixel by pixel. An edge blurred by a Gaussian of s pixels goes from 0.94
  * to 0.4 over 1.8 s at L = 1, over 0.77 s at 2 and over 0.56 s at 4, and from 0.4 to 0.1 over

@@ -8,19 +8,20 @@
  *     detect      finds connected clipped pixels, classifies each component as a highlight or as
  *                 something merely white (classify.c), and lists the highlights by rows
  *     silhouettes gives pixels at the edge of something bright the depth that they belong to
- *     mark        tells, for a lens setting, which pixels of a highlight are but the silhouette of
+ *     mark        tells, for a lens setting, which pixels of a highlight are only the silhouette of
  *                 a sharper one, and how far the others are out of focus
  *
  * then, where the aperture and the method allow it (rf_can_splat()),
  *
- *     subtract    takes from the light that rays hit what a highlight has beyond its surroundings
- *     splat       draws that, and what clipping cost, as sprites of the aperture
+ *     subtract    subtracts from the light that rays hit what a highlight has beyond its
+ *                 surroundings
+ *     splat       draws that, and the light that clipping took, as sprites of the aperture
  *
  * and elsewhere, where the rays have to gather the light,
  *
  *     widen       makes highlights large enough for rays not to miss them
  *     raise       counts them as foreground
- *     boost       adds what clipping cost to the light that rays meet
+ *     boost       adds the light that clipping took to the light that rays hit
  *
  * This header is all that other folders include; the other headers here are private.
  */
@@ -164,21 +165,23 @@ void rf_mark_highlights(const struct rf_executor *exec, const struct rf_highligh
                         bool splat);
 
 /*
- * Splat. What is out of focus by s spreads over the pixels p whose rays hit it, p + u s(q) = q
- * (Yang et al. 2016, eq. 4): a disc of radius |s| around q. Rays are too few to show a highlight of
- * a pixel or two as an even disc with a crisp edge, and every ray of a full mask, rounded to whole
- * pixels, shows it as a mesh. So what clipping cost is kept out of the planes that rays look into,
- * and what highlights have beyond what is beside them is subtracted there, where their discs are
- * larger than what so many rays show evenly (subtract.c); each tile adds both to its means:
+ * Splatting. The light of a pixel q with the blur s spreads over the pixels p whose rays hit it, p
+ * + u s(q) = q (Yang et al. 2016, eq. 4): a disc of radius |s| around q. Rays are too few to show a
+ * highlight of a pixel or two as an even disc with a crisp edge, and even those of a full mask show
+ * it as a mesh, as they are rounded to whole pixels. So the light that clipping took is not added
+ * to the planes that rays hit. What highlights have beyond their surroundings is subtracted there
+ * too, if their discs are larger than what the rays show evenly (subtract.c). Each tile adds both
+ * to its means:
  *
  *     mean(p) += (boost + subtracted) (p's part of the run's visible pixels) / (pi s^2)
  *
  * Of the pixels [a, b] of a run, a row of the disc shows those from max(a, x + left) to min(b, x +
- * right), its chord there. What is nearer hides half of it each where the ways from p to a place
- * left and right of its middle, one above and one below it, others in each row, meet one of the
- * tile's nearer slabs, by the same test as a ray does: one way alone shows thin structures in
- * between as dots, and edges as steps. Other apertures have their own area in place of pi. Rows of
- * large discs are drawn as one, their chords' mean, where nothing hides them.
+ * right), its chord there. Two rays are tested for each p (visibility.c), to places left
+ * and right of the middle of its chord, one above and one below it, others in each row. Where a ray
+ * hits one of the tile's nearer slabs, half of the chord's light is occluded. With one ray alone,
+ * thin structures in between show as dots, and edges as steps. Other apertures have their own area
+ * in place of pi. Rows of large discs are drawn as one, the mean of their chords, where nothing
+ * occludes them.
  *
  * Apertures are evenly open, and their rows are one chord or two: discs, irises, hearts and stars.
  * The first chords of all rows are drawn as one aperture, and so are the second ones.
@@ -196,9 +199,9 @@ struct rf_splat {
  * Rays have to weigh all light alike, too: weights of eq. 5 differ from pixel to pixel. */
 bool rf_can_splat(const struct rf_settings *params, const struct refocus_aperture *aperture);
 
-/* Takes what marked highlights have beyond what is beside them out of the light that the pre-filter
- * starts from. Reads light and blur; writes light less that to `out`, in tiles whose bins it marks
- * as subtracted, and how much it was to the highlights. */
+/* Subtracts what marked highlights have beyond their surroundings from the light that the
+ * pre-filter starts from. Reads light and blur; writes the difference to `out`, in tiles whose bins
+ * it marks as subtracted, and notes in the highlights how much it was. */
 void rf_subtract_highlights(const struct rf_executor *exec,
                             const struct rf_highlight_window *window, struct rf_light_q12 out);
 
@@ -211,18 +214,19 @@ void rf_splat_highlights(const struct rf_splat *splat, const struct rf_tile_plan
 void rf_widen_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
                          const struct rf_blur_patch *patch, double gap);
 
-/* Counts highlights, and what was widened of them, as foreground (tiles/ranges.h): the background
- * that rays see past them is not to shine like them. Reads blur. */
+/* Counts highlights and the pixels that they were widened by as foreground (tiles/ranges.h), as the
+ * background layer that rays see past them is not as bright. Reads blur. */
 void rf_raise_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
                          const struct rf_foreground_cells *foreground, double gap);
 
 /* Up to RF_PLAIN_GAIN, sums of 16 bits hold the light of 16 rays over 4. */
 enum { RF_PLAIN_GAIN = 4, RF_MOST_GAIN = 16 };
 
-/* Adds what clipping cost to `smooth`, the pre-filtered light, up to `most` there, at a gain from 1
- * to 16; spread over half a gap of the rays, so that no ray is alone in meeting it. The pre-filter
- * would spread it farther, and discs would have soft edges; what is dark beside a highlight in the
- * hidden background stays dark. Reads blur; notes the brightest light in bins. */
+/* Adds the light that clipping took to `smooth`, the pre-filtered light, up to `most` there, at a
+ * gain from 1 to 16. It is spread over half a gap of the rays, so that more than one ray hits it.
+ * If it were added before the pre-filter it would spread farther, and discs would have soft edges,
+ * and the hidden background beside a highlight would become brighter. Reads blur; notes the
+ * brightest light in bins. */
 void rf_boost_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
                          struct rf_light_q12 smooth, float gain, double gap, int most);
 

@@ -8,7 +8,8 @@
 #include "kernels/rays.h"
 
 /*
- * search: rays of one strip by the randomized intersection search, plain sums.
+ * search: follows the rays of one strip by the randomized intersection search, and sums their
+ * light.
  *
  *     for each ray and pixel p of the tile:
  *         guess = blur[p + start]

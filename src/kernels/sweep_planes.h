@@ -21,7 +21,7 @@ static inline int rf_weight_column(const struct rf_sweep_view *v, int x)
     return v->chroma ? x & ~1 : x;
 }
 
-/* Finds what ray n meets from the lane that lies p elements from the first of light, and w from
+/* Finds what ray n hits from the lane that lies p elements from the first of light, and w from
  * that of weights. */
 static RF_ALWAYS_INLINE struct rf_sweep_hit rf_sweep_hit(const struct rf_sweep_view *v, int n,
                                                          ptrdiff_t p, ptrdiff_t w, const int planes,

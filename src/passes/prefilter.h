@@ -1,6 +1,6 @@
 /* prefilter.h: smooths light where rays lie so far apart that they would miss pixels.
  *
- * Rays of a set of N meet the picture |s| sqrt(pi / N) pixels apart. Step 0 closes gaps from 1.5
+ * Rays of a set of N hit the picture |s| sqrt(pi / N) pixels apart. Step 0 closes gaps from 1.5
  * pixels on; steps 1 and 2 close those twice and four times as wide. Each step goes, where |s| is
  * above above[step], over three rows and then three columns, 2^step pixels apart: a third of the
  * way to those pixels whose blur is within an eighth of its own (one pixel to two) of that of the

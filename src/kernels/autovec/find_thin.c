@@ -56,10 +56,10 @@ static void add_pixel(struct rf_thin_batch *b, const struct rf_thin_row *row,
     }
 }
 
-static bool shines(const struct rf_thin_batch *b, const struct rf_thin_mixture *m, int k)
+static bool is_bright(const struct rf_thin_batch *b, const struct rf_thin_mixture *m, int k)
 {
     for (int c = 0; c < 3; c++)
-        if (b->light[c][k] > SHINES || m->near_light[c][k] > SHINES)
+        if (b->light[c][k] > BRIGHT || m->near_light[c][k] > BRIGHT)
             return true;
     return false;
 }
@@ -79,7 +79,7 @@ static int separate(struct rf_thin *out, int most, struct rf_thin_batch *b,
     for (int k = 0; k < b->count && count < most; k++) {
         const bool kept = b->kept[k], mixed = m.mixed[k];
 
-        if (!m.near[k] || (!kept && (m.alpha[k] < LEAST || !mixed)) || shines(b, &m, k))
+        if (!m.near[k] || (!kept && (m.alpha[k] < LEAST || !mixed)) || is_bright(b, &m, k))
             continue;
         out[count++] = (struct rf_thin){
             .at = b->at[k],

@@ -74,19 +74,19 @@ static void add_taps(struct sums *restrict sums, int k, const struct taps *restr
     }
 }
 
-/* Whether N may shine. */
-static bool may_shine(const struct taps *taps)
+/* Whether N may be too bright for a mixture. */
+static bool may_be_bright(const struct taps *taps)
 {
     uint16_t most = 0;
 
     for (int i = 0; i < TAPS; i++)
         most = rf_most16(
             most, rf_most16(taps->light[0][i], rf_most16(taps->light[1][i], taps->light[2][i])));
-    return most > SHINES;
+    return most > BRIGHT;
 }
 
 /* N, and the nearest disparity of it. What is kept and not mixed needs only the latter,
- * and to know whether N shines. */
+ * and whether N is too bright. */
 static void set_near(struct rf_thin_mixture *m, const struct rf_thin_batch *b,
                      const struct rf_thin_tile *t, const struct rf_thin_window *w)
 {
@@ -106,7 +106,7 @@ static void set_near(struct rf_thin_mixture *m, const struct rf_thin_batch *b,
     for (int i = 0; i < count; i++) {
         const int k = wanted[i];
 
-        if (m->mixed[k] || may_shine(&taps[i]))
+        if (m->mixed[k] || may_be_bright(&taps[i]))
             add_taps(&sums, k, &taps[i], b->level[k],
                      (const uint16_t[3]){(uint16_t)m->far_light[0][k], (uint16_t)m->far_light[1][k],
                                          (uint16_t)m->far_light[2][k]});

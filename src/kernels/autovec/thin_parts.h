@@ -1,8 +1,8 @@
-/* thin_parts.h: what the files of find_thin share. Each is compiled once as plain C and
- * once for each instruction set, with RF_VEC_SET as its name.
+/* thin_parts.h: types and constants that the files of find_thin share. Each of these is compiled
+ * once as plain C and once for each instruction set, with RF_VEC_SET as its name.
  *
- * What all pixels are asked is asked a row of a tile at a time, in a copy of what is
- * around it; what is left of them is looked at in batches.
+ * Tests of all pixels are made a row of a tile at a time, in a copy of the pixels around it. The
+ * few pixels that pass them are collected and worked on in batches.
  */
 #ifndef RF_KERNELS_THIN_PARTS_H
 #define RF_KERNELS_THIN_PARTS_H
@@ -20,7 +20,7 @@ enum {
     BEFORE = 2,          /* how far N is looked for */
     ACROSS = 2 * BEFORE + 1,
     FAINT = 12 * 12, /* squared distance of light that is none */
-    SHINES = 4000,   /* lights, which highlights are for, and what is clipped */
+    BRIGHT = 4000,   /* light of highlights, and of pixels that are clipped: no mixture has it */
     LEAST = 12,      /* alpha that a far pixel must have */
     WHITE = 4095,
 
