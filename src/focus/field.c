@@ -1,20 +1,29 @@
 /* field.c: computes blur from its place in space, Kosloff & Barsky 2007, section 5. */
 #include "focus/focus.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
+/* Offsets from the centre are clamped to this, as a photo may be 65535 times as high as it is wide.
+ * Anything so far off is beyond a radius and a falloff of 4 picture widths each. */
+enum { FARTHEST = 1 << 20 };
+static_assert((4 + 4) * RF_ONE < FARTHEST, "what is clamped is wholly blurred");
+
 /* The length of a vector, rounded half up. sqrt is exact to the last bit wherever doubles are
  * IEEE's, and the sum has 53 bits at most. */
+static_assert(INT64_C(3) * FARTHEST * FARTHEST < INT64_C(1) << 53, "a double holds the sum");
 static int32_t length(int64_t a, int64_t b, int64_t c)
 {
     return (int32_t)floor(sqrt((double)(a * a + b * b + c * c)) + 0.5);
 }
 
 /* The offset of the middle of pixel `at` from `centre`, in picture widths. */
-static int32_t offset(int at, int width, int32_t centre)
+static int32_t offset(int at, int width, int64_t centre)
 {
-    return (int32_t)(((int64_t)(2 * at + 1) * RF_ONE + width) / (2 * width)) - centre;
+    const int64_t away = ((int64_t)(2 * at + 1) * RF_ONE + width) / (2 * width) - centre;
+
+    return (int32_t)(away < -FARTHEST ? -FARTHEST : away > FARTHEST ? FARTHEST : away);
 }
 
 /* The blur at a distance: 0 within the radius, RF_ONE from a falloff beyond it on. */

@@ -26,7 +26,9 @@ struct rf_band {
 /* A field of blur about a centre, all lengths RF_ONE = 1. */
 struct rf_field {
     uint32_t shape; /* enum refocus_field */
-    int32_t x, y, disparity, radius, falloff;
+    int32_t x;
+    uint32_t y; /* up to 65535 picture widths */
+    int32_t disparity, radius, falloff;
     int32_t normal_x, normal_d; /* Q30 */
 };
 

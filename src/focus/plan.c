@@ -63,7 +63,7 @@ static void plan_field(struct rf_focus_plan *plan, const struct rf_settings *p)
     plan->field = (struct rf_field){
         .shape = p->field,
         .x = to_fixed(p->field_x, RF_ONE),
-        .y = to_fixed((double)p->field_y * plan->height / plan->width, RF_ONE),
+        .y = (uint32_t)floor((double)p->field_y * plan->height / plan->width * RF_ONE + 0.5),
         .disparity = to_fixed(p->field_disparity, RF_ONE),
         .radius = to_fixed(p->field_radius, RF_ONE),
         .falloff = to_fixed(p->field_falloff, RF_ONE),

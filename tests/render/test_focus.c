@@ -1,5 +1,6 @@
 /* test_focus.c: focus beyond a plain lens: the signed blur against the formulas in double
  * precision, and what equals a plain lens against that lens, byte for byte. */
+#include "focus/focus.h"
 #include "pictures.h"
 
 enum { W = 93, H = 58 };
@@ -280,6 +281,32 @@ static void near_band_is_clean(void **state)
     picture_free(&p);
 }
 
+/* A field in the highest photo there can be: the lengths are not beyond what fixed point holds. */
+static void highest_photo(void **state)
+{
+    enum { TALL = 65535 };
+    struct rf_settings settings = {.field = REFOCUS_FIELD_SPHERE,
+                                   .field_y = 1,
+                                   .field_falloff = 4,
+                                   .blur_limit = 127,
+                                   .depth_share = 1,
+                                   .most_disparity = 1};
+    const uint16_t disparity = 0;
+    struct rf_focus_plan plan;
+    int16_t last, before, first;
+
+    (void)state;
+    rf_focus_plan_make(&plan, &settings, rf_focus_of(0, 100), 1, TALL);
+    rf_focus_row(&plan, &last, &disparity, 0, TALL - 1, 1);
+    rf_focus_row(&plan, &before, &disparity, 0, TALL - 3, 1);
+    rf_focus_row(&plan, &first, &disparity, 0, 0, 1);
+    /* 1/2 of a width from the centre both ways, of 4: 0.177 of 100 pixels; 2 1/2 down, 1/2 across
+     */
+    assert_true(abs(last - 4525) <= 3);
+    assert_true(abs(before - 16316) <= 3);
+    assert_int_equal(first, 100 * 256);
+}
+
 /* Methods that know plain lenses only say so. */
 static void refused(void **state)
 {
@@ -309,8 +336,9 @@ static void refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(formulas), cmocka_unit_test(plain_lens), cmocka_unit_test(masked),
-        cmocka_unit_test(near_band_is_clean), cmocka_unit_test(refused)};
+        cmocka_unit_test(formulas),      cmocka_unit_test(plain_lens),
+        cmocka_unit_test(masked),        cmocka_unit_test(near_band_is_clean),
+        cmocka_unit_test(highest_photo), cmocka_unit_test(refused)};
     uint32_t state = 3;
 
     for (size_t i = 0; i < sizeof grey; i++)
