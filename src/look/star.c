@@ -8,6 +8,7 @@
  */
 #include "look/look.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +16,19 @@
 #include "aperture/aperture.h"
 
 enum { LANES = RF_TILE * RF_TILE };
+enum { LEAST_WIDE = 192 }; /* least half width of a spike, Q8 pixels */
+
+/* The light of a star, Q12: that of 2^18 pixels at 16 times white. */
+#define MOST_LIGHT (UINT64_C(1) << 34)
+static_assert((uint64_t)3 * RF_LIGHT_MAX * (RF_MOST_GAIN * 256) <= UINT32_MAX,
+              "what a pixel adds fits 32 bits before it is divided");
+
+/* The density of a spike, Q16, is greatest at the end of one of 1/256 pixel and least width. All
+ * spikes of a star share its light, so that is what they add up to where all of them meet. */
+#define MOST_DENSITY ((3 * 256 * INT64_C(65536)) * (3 * 64 * INT64_C(65536) / LEAST_WIDE) >> 16)
+static_assert(MOST_DENSITY < INT64_C(1) << 26, "times MOST_LIGHT it is below 2^60");
+static_assert(MOST_DENSITY <= INT64_MAX / RF_MOST_STARS / (int64_t)(MOST_LIGHT >> 8),
+              "the sum of all stars fits 64 bits");
 
 /* The star that a pixel touches, of the last ones, as pixels come row by row; NULL: none. */
 static struct rf_star *touched(const struct rf_stars *stars, int x, int y)
@@ -56,8 +70,11 @@ static void add_pixel(const struct rf_look *look, const struct rf_highlight *run
     star->x0 = x < star->x0 ? x : star->x0;
     star->x1 = x > star->x1 ? x : star->x1;
     star->y1 = run->y;
-    for (int c = 0; c < 3; c++)
-        star->light[c] += run->boost[c] * times / (3 * 256);
+    for (int c = 0; c < 3; c++) {
+        const uint64_t sum = star->light[c] + run->boost[c] * times / (3 * 256);
+
+        star->light[c] = sum < MOST_LIGHT ? sum : MOST_LIGHT;
+    }
     star->blur = blur > star->blur ? blur : star->blur;
     star->x += x;
     star->y += run->y;
@@ -132,7 +149,7 @@ static int64_t density(int64_t along, int64_t across, int64_t length, int64_t wi
 static void add_star(const struct rf_star *star, const struct spikes *spikes, int x0, int y0,
                      int64_t sum[3][LANES])
 {
-    const int64_t wide = star->blur > 192 ? star->blur : 192;
+    const int64_t wide = star->blur > LEAST_WIDE ? star->blur : LEAST_WIDE;
 
     for (int i = 0; i < LANES; i++) {
         const int64_t dx = 256 * (x0 + i % RF_TILE) - 16 * star->x;
@@ -147,7 +164,7 @@ static void add_star(const struct rf_star *star, const struct spikes *spikes, in
                 share += density(along, across, spikes->length, wide);
         }
         if (share)
-            for (int c = 0; c < 3; c++) /* 2^34 light, 2^16 share, 2^19 density */
+            for (int c = 0; c < 3; c++)
                 sum[c][i] += ((int64_t)star->light[c] * spikes->share >> 16) * share >> 8;
     }
 }
