@@ -1,10 +1,14 @@
 /* cat_eye.c: moves rays of a circle into the lens shape that is left of it away from the axis. */
 #include "aperture/cat_eye.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
 enum { STEPS = 2048, ONE = 32767 };
+static_assert(STEPS % RF_CAT_KNOTS == 0, "knots are steps");
+static_assert(ONE >> 10 == RF_CAT_KNOTS - 1, "a ray lies before the last knot, with 10 bits left");
+static_assert(2 * ONE * (1 << 10) <= INT32_MAX, "a difference of Q15 times 10 bits");
 
 static double height_at(double x, double pushed)
 {

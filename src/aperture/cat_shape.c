@@ -2,12 +2,15 @@
  */
 #include "aperture/cat_shape.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "aperture/shape.h"
 
 enum { ONE = 32767, SIDE = 1 << RF_KNOT_BITS, TURN = 4 << 16, PART_BITS = 10 };
+
+static_assert((int64_t)2 * ONE * (1 << PART_BITS) <= INT32_MAX, "a difference of Q15 times bits");
 
 struct point {
     double u, v;

@@ -1,6 +1,7 @@
 /* upsample.c: brings a disparity map to the size of the photo: means, and the order of steps. */
 #include "depth/upsample.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,6 +27,9 @@ static int mean_weight(int t)
 
 /* 0.465 (1 - (t / 2)^2)^2 in Q16 for what is expected before the photo is looked at:
  * four of them add up to less than 1. t in Q8. */
+#define FALL(t)     (65536 - (t) * (t) / 4)
+#define NEARNESS(t) ((int64_t)FALL(t) * FALL(t) / 65536 * 30474 / 65536)
+static_assert(2 * (NEARNESS(128) + NEARNESS(384)) < 65536, "the sum is greatest half way between");
 static uint16_t nearness(int t)
 {
     const int64_t fall = 65536 - t * t / 4;

@@ -1,6 +1,7 @@
 /* plan.c: turns the parameters of the focus into fixed point. */
 #include "focus/focus.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -20,6 +21,8 @@ static int32_t to_fixed(double v, double one)
 }
 
 /* Plans the tilt, which at the middle of pixel (x, y) is tilt + x tilt_x + y tilt_y. */
+static_assert(INT64_C(2) * REFOCUS_MAX_TILT * RF_ONE * (1 << 24) < INT64_C(1) << 47,
+              "both tilts together fit 64 bits, in Q24, and 32 bits without these");
 static void plan_tilt(struct rf_focus_plan *plan, const struct rf_settings *p)
 {
     const double q24 = 16777216.0, one = RF_ONE;

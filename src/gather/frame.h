@@ -3,6 +3,8 @@
 #define RF_FRAME_H
 
 #include "aperture/aperture.h"
+
+#include <assert.h>
 #include "aperture/cat_eye.h"
 #include "aperture/cat_shape.h"
 #include "aperture/ray_set.h"
@@ -104,10 +106,12 @@ static inline bool rf_skips_deepest_test(const struct rf_frame *f)
 }
 
 /*
- * Sums over the rays for each pixel of a tile. They are exact: Q12 light, four times white at
- * the most, times a Q15 weight (or 1) times a ray weight, over 65,025 rays at the most, stays
- * below 2^14 2^15 2^8 2^16 = 2^53.
+ * Sums over the rays for each pixel of a tile. They are exact: Q12 light, 16 times white at the
+ * most, times a Q15 weight (or 1) times a ray weight, over 65,025 rays at the most, stays below
+ * 2^16 2^15 2^8 2^16 = 2^55.
  */
+static_assert(UINT64_C(16) * RF_LIGHT_MAX * RF_WEIGHT_MAX * 255 * RF_FULL_RAYS < UINT64_C(1) << 55,
+              "4 times the sum and half of its weight fit 64 bits");
 struct rf_sums {
     uint64_t light[3][RF_TILE * RF_TILE];
     uint64_t weight[RF_TILE * RF_TILE];
@@ -129,6 +133,7 @@ static inline uint32_t rf_weight_of(const struct rf_frame *f, uint16_t *const li
 
 /* The offset of a ray in whole pixels: u s, Q15 times Q7.8, rounded half up. For u = 16384 (0.5)
  * and s = 768 (3 pixels) it is 1.5 pixels, which rounds to 2. */
+static_assert(INT16_MAX * (127 * 256) + (1 << 22) <= INT32_MAX, "the product and its rounding");
 static inline int rf_offset(int u, int s)
 {
     return (u * s + (1 << 22)) >> 23;

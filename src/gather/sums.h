@@ -3,6 +3,8 @@
 #define RF_SUMS_H
 
 #include "highlights/highlights.h"
+
+#include <assert.h>
 #include "tiles/tiles.h"
 
 /* How many values of the light that reaches a tile a 16-bit sum holds: 16 of white (4095), 8 of
@@ -15,6 +17,9 @@ static inline int rf_steps_of(const struct rf_tile_plan *plan)
 /* The largest mean. Means, Q14 in 16 bits, are at most 4 times white: they are written as white in
  * any case. */
 enum { RF_MOST_MEAN = RF_PLAIN_GAIN * RF_LIGHT_MAX };
+
+static_assert(4 * RF_MOST_MEAN <= UINT16_MAX, "the largest mean in Q14");
+static_assert(RF_MOST_GAIN * RF_LIGHT_MAX <= UINT16_MAX, "the brightest light, of one ray");
 
 /* Whether means of a tile could exceed that. */
 static inline bool rf_exceeds_means(const struct rf_tile_plan *plan)

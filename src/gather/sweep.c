@@ -26,6 +26,7 @@
 #include "image/viewport.h"
 #include "thin/thin.h"
 
+#include <assert.h>
 #include <string.h>
 
 enum { LANES = RF_TILE * RF_TILE };
@@ -200,9 +201,13 @@ static void add_run(const struct rf_frame *f, const union tally *run, uint64_t r
     }
 }
 
-/* Rays come in runs of equal weight; a run is summed plainly and counts as often as it weighs.
- * Sums of a run, 65,025 rays of Q12 light at the most, stay below 2^30. That of a set of equal
- * rays is left in `run`; others are added up in `sums`. */
+/* Rays come in runs of equal weight; a run is summed plainly and counts as often as it weighs. The
+ * sum of a set of equal rays is left in `run`; others are added up in `sums`. */
+static_assert((uint64_t)RF_FULL_RAYS * RF_MOST_GAIN * RF_LIGHT_MAX <= UINT32_MAX,
+              "a run of all rays of the brightest light fits 32 bits");
+static_assert((uint64_t)RF_FULL_RAYS * RF_MOST_GAIN * RF_LIGHT_MAX * RF_WEIGHT_MAX < UINT64_C(1)
+                                                                                         << 51,
+              "and of weighted light what kernels->weighted_means takes");
 static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
                        const struct rf_tile_rays *tile_rays, int tx, int ty,
                        struct rf_tile_rows rows, union tally *run, struct rf_sums *sums)

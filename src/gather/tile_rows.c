@@ -1,6 +1,7 @@
 /* tile_rows.c: decides which rows of a tile are computed and how much its means are softened. */
 #include "gather/tile_rows.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -11,6 +12,8 @@ enum {
     LEAST_ROW_BLUR = 256,
     SOFT_BLUR = 640, /* 2.5 pixels, Q7.8 */
 };
+static_assert(ROW_BLUR * 8 <= INT32_MAX >> 15 && 8 * 8 == RF_LIVE_RAYS,
+              "the gap of the most rays, over a height in Q15");
 
 int rf_row_gap(const struct rf_frame *f)
 {

@@ -2,6 +2,7 @@
  * back the light that clipping took. */
 #include "highlights/highlights.h"
 
+#include <assert.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -157,6 +158,10 @@ static void gain_of(const struct rf_highlight *run, int i, int blur, int share, 
     /* from half a pixel of blur on, all of it from one pixel and a half on */
     const int blurred = rf_is_edge(run, i) ? 0 : rf_ramp(abs(blur), 128, 384);
 
+    static_assert((int64_t)3 * RF_LIGHT_MAX * ((RF_MOST_GAIN - 1) * 85 + 1) <= INT32_MAX,
+                  "the light of the largest gain in Q8");
+    static_assert(3 * RF_LIGHT_MAX * ((RF_MOST_GAIN - 1) * 85 + 1) / 256 * 256 <= INT32_MAX,
+                  "and that times a ramp in Q8");
     for (int c = 0; c < 3; c++)
         gained[c] = (((run->boost[c] * share) >> 8) * blurred) >> 8;
 }

@@ -1,6 +1,7 @@
 /* splat.c: draws highlights as sprites of the aperture into the means of a tile. */
 #include "highlights/highlights.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -16,6 +17,10 @@ enum {
     WHOLLY = 384,  /* Q7.8: it has all of its light from this blur on */
     PAIRS = 8192,  /* Q7.8: rows that are hidden in part are drawn by twos from this blur on */
 };
+
+/* Where a run is, from the middle of a tile's first pixel on: reach is 128 pixels at the most. */
+static_assert(RF_SPLAT_UNIT * (128 + RF_TILE + 2 * RF_HIGHLIGHT_RUN) <= INT16_MAX,
+              "the place of a run fits 16 bits");
 
 bool rf_can_splat(const struct rf_settings *params, const struct refocus_aperture *aperture)
 {
@@ -51,6 +56,8 @@ static bool set_light(struct rf_disc_job *job, const struct rf_splat *splat,
     double share;
     bool any = false;
 
+    static_assert(RF_SPLAT_UNIT << 8 <= 1 << 14, "the length of one pixel, shifted");
+    static_assert(RF_SPLAT_UNIT * RF_HIGHLIGHT_RUN << 4 <= 1 << 14, "that of the longest run");
     job->shift = 8;
     for (int length = RF_SPLAT_UNIT; length < run->to - run->from; length *= 2)
         job->shift--;
@@ -150,6 +157,7 @@ static void add_disc(struct canvas *canvas, const struct rf_disc_job *job)
 {
     const int seen = (job->to - job->from) << job->shift;
 
+    static_assert((1 << 14) * INT16_MAX + (1 << 14) <= INT32_MAX, "of light and what is seen");
     if (!is_even(job)) {
         canvas->splat->exec->kernels->draw_disc(canvas->mean, job);
         return;

@@ -2,6 +2,7 @@
  * surroundings. */
 #include "highlights/highlights.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -97,6 +98,9 @@ static void subtract_run(const struct subtract *s, struct rf_highlight *run,
     const ptrdiff_t row = chain->y * w->light.stride;
     int share[RF_HIGHLIGHT_RUN];
 
+    static_assert(RF_LIGHT_MAX * 256 * 256 <= INT32_MAX, "light times two shares in Q8");
+    static_assert(RF_HIGHLIGHT_RUN * RF_LIGHT_MAX * 256 <= INT32_MAX, "the sum of a run in Q8");
+    static_assert(RF_HIGHLIGHT_RUN * 256 <= UINT16_MAX, "the weight of a run");
     if (!run->weight)
         return;
     for (int i = 0; i < run->count; i++) {

@@ -15,6 +15,7 @@
  */
 #include "highlights/visibility.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,6 +32,7 @@ enum {
                             of larger discs more */
     TOGETHER = 448,      /* Q7.8: slabs that are no wider are looked at as one */
 };
+static_assert(TOGETHER <= 480, "slabs are told apart modulo 2^16 (kernels/rays.h)");
 
 /* The part of a slab that may occlude the run, and where on the way to the run it is. */
 struct occluder {
@@ -174,6 +176,9 @@ static struct rf_disc_way way_to(const struct rf_splat_run *run, const struct oc
                                  int far)
 {
     const int farthest = run->radius / 2 + RF_SPLAT_UNIT * run->rows;
+    static_assert(REFOCUS_MAX_BLUR_RADIUS * 256 / 2 + RF_SPLAT_UNIT * RF_HIGHLIGHT_STACK <=
+                      INT16_MAX,
+                  "the way of a pixel fits 16 bits");
     static const int aside[4] = {14, 6, 2, 10}; /* so that the ways lead to all of a highlight */
     struct rf_disc_way way = {.rows = rows_alike(occluder->part, run->radius),
                               .most = far,

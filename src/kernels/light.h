@@ -95,6 +95,8 @@ typedef void rf_soften_fn(uint16_t *mean, int rows, int each, bool down, uint16_
 enum { RF_COVERAGE_CELLS = 6, RF_COVERAGE_SHIFT = 14 };
 static_assert((uint64_t)8 * (2 * 4096) * (1 << RF_COVERAGE_SHIFT) <= INT32_MAX,
               "eighths of cells between -2 and 2 fit 32 bits");
+static_assert((uint64_t)UINT16_MAX * (1 << 15) + (1 << 14) <= UINT32_MAX,
+              "a mean times cover in Q15, and its rounding");
 typedef void rf_composite_thin_fn(uint16_t *const mean[3],
                                   int32_t cell[RF_COVERAGE_CELLS][RF_COVERAGE_CELLS][4]);
 

@@ -130,6 +130,8 @@ struct rf_lie {
 static const uint8_t rf_likeness[16] = {225, 155, 103, 65, 39, 21, 10, 4, 1};
 static_assert(RF_AROUND * RF_AROUND * 225 <= UINT16_MAX,
               "the likeness of all samples fits 16 bits");
+static_assert(127 * 225 <= UINT16_MAX, "and so it does when it is grown,");
+static_assert(4 * 64 * 225 + RF_UNLIKE <= UINT16_MAX, "and so does the evidence");
 typedef void rf_choose_surface_fn(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
                                   const struct rf_cell *cell, const struct rf_window *window,
                                   const struct rf_lie *lie,

@@ -12,6 +12,7 @@
  */
 #include "look/look.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,6 +23,11 @@
 #define SMOOTHEST 0.71
 
 enum { BLOCK = 8, LEVEL_WIDTH = 256 / RF_NOISE_LEVELS, FEW = 24, SHARP = 128 };
+static_assert(16 * BLOCK * (BLOCK - 2) * (2 * 251) * (2 * 251) <= INT32_MAX,
+              "squares of second differences of codes from 2 to 253, in 1/16");
+static_assert((REFOCUS_MAX_BLUR_RADIUS * 256) >> 5 <
+                  sizeof((struct rf_grain *)0)->lost / sizeof((struct rf_grain *)0)->lost[0],
+              "the largest blur has its place in the table");
 
 static int luma(int r, int g, int b)
 {

@@ -17,6 +17,7 @@
  */
 #include "papers/papers.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -133,6 +134,8 @@ static void list_borders(struct work *work, int most)
 }
 
 /* The sums of one pixel in the high resolution technique. */
+static_assert(UINT64_C(1) * ONE * RF_WEIGHT_MAX * RF_LIGHT_MAX < UINT64_C(1) << 53,
+              "a double holds them, as alpha adds up to one");
 struct sums {
     uint64_t light[3], weight;
     uint32_t alpha;

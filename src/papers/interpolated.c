@@ -8,6 +8,7 @@
 #include "papers/blurriness.h"
 #include "papers/target.h"
 
+#include <assert.h>
 #include <math.h>
 
 enum { SECOND = 1 << 15 };
@@ -68,6 +69,7 @@ void rf_blurriness_table(uint8_t table[RF_BLURRINESS_SIZE], double focus, double
 }
 
 /* Goes from a to b by a share in Q15. Both are Q14, which leaves room for a sign. */
+static_assert(2 * RF_MEAN_MAX <= INT16_MAX, "twice a difference fits 16 bits");
 static inline int16_t between(int16_t a, int16_t b, int16_t share)
 {
     return (int16_t)(a + (int16_t)((2 * (b - a) * share) >> 16));

@@ -14,6 +14,7 @@
 #include "papers/papers.h"
 #include "papers/scatter.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -138,6 +139,8 @@ static uint32_t weight_of(const struct work *work, int x, int y)
 }
 
 /* Adds a row of the circle of a sample to a row of sums. */
+static_assert((uint64_t)RF_SPREAD_ONE * 128 <= UINT32_MAX, "a share between two in Q7");
+static_assert((uint64_t)RF_WEIGHT_MAX * RF_LIGHT_MAX <= UINT32_MAX, "light times weight");
 static void add_row(struct work *work, const uint32_t *restrict a, const uint32_t *restrict b,
                     uint32_t t, int count, size_t at, const uint32_t value[4])
 {

@@ -2,6 +2,7 @@
  */
 #include "papers/target.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* Makes the taps of a filter with this variance: three boxes of 2 h + 1 values and the share a of
@@ -57,6 +58,7 @@ static void add_row(uint32_t *restrict sum, const uint16_t *restrict row, int n)
 }
 
 /* Computes means of blocks of side x side pixels of the picture, whose border is extended. */
+static_assert((1 << 2 * RF_TARGET_SHIFTS) * RF_LIGHT_MAX < 1 << 24, "a float holds the sum");
 static void reduce(const struct rf_target_work *work, int c, int y, uint32_t *sum, float *out)
 {
     const struct rf_target *t = work->target;

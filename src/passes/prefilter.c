@@ -1,6 +1,7 @@
 /* prefilter.c: smooths light where rays lie so far apart that they would miss pixels. */
 #include "passes/prefilter.h"
 
+#include <assert.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -11,6 +12,9 @@ enum {
     RUN = 256, /* columns at a time of three planes, three times that of one */
     MARGIN = 2 << (RF_PREFILTER_STEPS - 1),
 };
+static_assert(MARGIN >= 2 * (1 << (RF_PREFILTER_STEPS - 1)), "neighbours of chroma, two a sample");
+static_assert(65535 * RF_SMOOTH_THIRD <= INT32_MAX && 65535 * RF_SMOOTH_THIRD >> 16 == 10922,
+              "the whole share, Q15");
 
 /* A step for some planes that lie alike: three of light, luminance, or chroma. */
 struct step {

@@ -3,6 +3,8 @@
 #define RF_WEIGHTS_H
 
 #include "image/chroma.h"
+
+#include <assert.h>
 #include "image/planes.h"
 #include "image/viewport.h"
 #include "support/executor.h"
@@ -38,6 +40,7 @@ void rf_premultiply_rows(const struct rf_executor *exec, const struct rf_viewpor
  * weight, and 1/2. Of weights of RF_YUV_LEAST_WEIGHT / 4096 and more it is at most 15.
  */
 enum { RF_YUV_LEAST_WEIGHT = 586 };
+static_assert(1 + (4096 << 1) / RF_YUV_LEAST_WEIGHT <= 15, "what kernels->decode takes");
 static inline uint16_t rf_yuv_within(const uint16_t *light_weight, int chroma)
 {
     return (uint16_t)(1 + (4096 << chroma) / (light_weight[0] >> 3));

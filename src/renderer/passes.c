@@ -1,6 +1,7 @@
 /* passes.c: runs each pass over the window, on the planes that it reads and writes. */
 #include "renderer/passes.h"
 
+#include <assert.h>
 #include <limits.h>
 #include <math.h>
 #include <string.h>
@@ -19,11 +20,13 @@
 #include "tiles/ranges.h"
 
 /* Whether sums of premultiplied light stay below 2^31: 8 times white in Q13, with twice the rays
- * for highlights. 8 x 8190 x 2 x 8192 = 2^30. */
+ * for highlights. */
 static bool may_premultiply(const struct rf_frame *f)
 {
     const struct rf_settings *p = f->params;
 
+    static_assert((int64_t)(2 * RF_PLAIN_GAIN) * (2 * RF_LIGHT_MAX) * (2 * 8192) <= INT32_MAX,
+                  "the sum of all rays fits 31 bits");
     if (rf_renderer_of(f)->yuv.on && rf_renderer_of(f)->light_weight[0] >> 3 < RF_YUV_LEAST_WEIGHT)
         return false;
     return rf_is_sweep(f) && p->highlight_gain <= 2 * RF_PLAIN_GAIN &&
@@ -205,6 +208,8 @@ static int mark_reach(const struct rf_frame *f)
 {
     const int steps = (f->plan.plain ? 2 : 4) * rf_renderer_of(f)->view.pad;
 
+    static_assert(2 * RF_SPREAD_MARGIN - 1 >= 2 * 2 * REFOCUS_MAX_BLUR_RADIUS,
+                  "the cone has fallen by the largest difference of blurs");
     return steps < 2 * RF_SPREAD_MARGIN - 1 ? steps : 2 * RF_SPREAD_MARGIN - 1;
 }
 

@@ -1,13 +1,14 @@
 /* coverage.c: splats thin structures that are far before the focus into the coverage layer. */
 #include "thin/coverage.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "thin/mixture.h"
 
 enum { CELLS = RF_TILE / RF_COVERAGE_CELL };
-_Static_assert(CELLS *CELLS == RF_COVERAGE_SOURCES, "a source for each cell of a tile");
+static_assert(CELLS * CELLS == RF_COVERAGE_SOURCES, "a source for each cell of a tile");
 
 uint64_t rf_coverage_source_bytes(void)
 {
@@ -70,6 +71,8 @@ static void share(const int32_t light[4], int radius, int32_t each[4])
 
     for (int y = 1; y <= radius >> 8; y++)
         length += 2 * chord(y << 8, radius);
+    static_assert((INT64_C(16) * 4096 << (RF_COVERAGE_SHIFT + 8 - 4)) / (2 * 256) <= 1 << 25,
+                  "half of one a cell, of discs of a cell of radius");
     for (int c = 0; c < 4; c++) /* sums are of pixels, 16 a cell */
         each[c] =
             (int32_t)(((int64_t)light[c] * (1 << (RF_COVERAGE_SHIFT + 8 - 4))) / (2 * length));

@@ -1,5 +1,6 @@
 /* fit_coverage.c: fits the coverage of a line of one pixel, as hair is, before a pattern, by least
  * squares (mixture.h). */
+#include <assert.h>
 #include <stdlib.h>
 
 #include "thin/mixture.h"
@@ -94,8 +95,9 @@ static void add_line(struct fit *fit, const struct rf_thin_pass *t, int x, int y
         }
 }
 
-/* The slope of C over F, 255 = 1; 0: there is no pattern, or C does not follow it. Variances are
- * below 3 (13 * 4095)^2 < 2^34. */
+/* The slope of C over F, 255 = 1; 0: there is no pattern, or C does not follow it. */
+static_assert(INT64_C(3) * (MOST * RF_LIGHT_MAX) * (MOST * RF_LIGHT_MAX) < INT64_C(1) << 34,
+              "variances, of which 2 STEEPEST times fit 64 bits");
 static int slope_of(const struct fit *fit)
 {
     const int64_t n = fit->count;

@@ -1,4 +1,5 @@
 /* matte.c: thin structures in focus are composited over their blurred background. */
+#include <assert.h>
 #include <stdlib.h>
 
 #include "thin/mixture.h"
@@ -63,6 +64,7 @@ void rf_matte_over(const struct rf_thin_pass *t, int tx, int ty,
         if (!rf_has_bit(choice->matte, i))
             continue;
         for (int c = 0; c < 3; c++) {
+            static_assert(255 * UINT16_MAX + 127 <= INT32_MAX, "a mean times coverage");
             const int left = 255 - thin->alpha;
             const int light = 4 * t->light.channel[c][at] +
                               (left * (mean[c][thin->at] - 4 * thin->light[c]) + 127) / 255;

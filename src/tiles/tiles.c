@@ -2,6 +2,7 @@
  * slabs. */
 #include "tiles/tiles.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 #include "colour/transfer.h"
@@ -17,12 +18,22 @@ enum {
     MOST_SPREAD = 60416,  /* blurs within it hit no slab of up to 20 pixels modulo 2^16 */
 };
 
+/* The widest slab begins in the first bin of whole pixels. In bins of whole pixels; it is cut to
+ * them before it is widened by an eighth on each side. */
+enum { LARGEST = 127 * 256, WIDEST = (2 * (LARGEST + HALF) - WIDE) / WIDE };
+static_assert(WIDEST * 256 * 5 / 4 <= 20 * 256, "no slab is wider than 20 pixels");
+static_assert(MOST_SPREAD + 20 * 256 <= UINT16_MAX + 1, "told apart modulo 2^16");
+
 struct rf_bin_scale rf_bin_scale_of(float largest_blur)
 {
     const int shift = largest_blur <= 31.5f ? 6 : largest_blur <= 63.5f ? 7 : 8;
 
     /* So -31.5 .. 31.5 pixels are bins 3 .. 255 at shift 6, -63.5 .. 63.5 bins 1 .. 255 at
      * shift 7, -127 .. 127 bins 0 .. 254 at shift 8. */
+    static_assert(((63 * 128 + HALF) >> 6) + 127 < RF_BINS, "bins of 31.5 pixels at shift 6");
+    static_assert(((127 * 128 + HALF) >> 7) + 127 < RF_BINS, "bins of 63.5 pixels at shift 7");
+    static_assert(((LARGEST + HALF) >> 8) + 127 < RF_BINS, "bins of 127 pixels at shift 8");
+    static_assert((LARGEST - HALF) / 256 < 127, "the nearest blur has no bin below 0");
     return (struct rf_bin_scale){shift, 127, 256 >> shift};
 }
 
@@ -246,6 +257,7 @@ static struct rf_bins collect(const struct rf_viewport *view, const struct rf_bi
  * what lies outside modulo 2^16; up to 127 pixels one slab is as much as can be. */
 static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struct rf_slab slab)
 {
+    static_assert(2 * 127 * 128 < 1 << 15, "blurs of up to 63.5 pixels");
     const int k = plan->slabs++;
 
     plan->slab[k] = slab;
