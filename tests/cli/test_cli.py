@@ -205,7 +205,7 @@ class Limits(Case):
                       'with a photo; give one', 'bench', '--depth', 'depth.pgm')
 
     def test_light_is_given_back_with_care(self):
-        # two stops: paper and petals are found as often as lamps in photos of cameras
+        # two stops: paper and petals are found as often as highlights in photos of cameras
         self.assertEqual(self.reports(*self.render())['highlights'], 4)
         self.assertEqual(self.reports(*self.render('--sigma', '60'))['highlights'], 4)
         self.assertEqual(self.reports(*self.render('--highlights', 'off'))['highlights'], 1)

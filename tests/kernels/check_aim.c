@@ -59,7 +59,7 @@ static bool check_aim_at(const struct subject *subject, int n, uint32_t seed)
     return true;
 }
 
-struct sight {
+struct view {
     uint32_t range[SIDE * SIDE], below[SIDE * SIDE];
     uint16_t front[1000], background[1000];
     struct rf_slab slab[MOST_SLABS];
@@ -73,7 +73,7 @@ struct sight {
     struct rf_sorted_rays sorted, expected;
 };
 
-static void make_sight(struct sight *s, int n, uint32_t seed)
+static void make_view(struct view *s, int n, uint32_t seed)
 {
     const int slabs = noise(&seed) % 8 ? noise_between(&seed, 0, 8) : MOST_SLABS;
     const int spread = noise_between(&seed, 0, 900);
@@ -127,15 +127,16 @@ static void make_sight(struct sight *s, int n, uint32_t seed)
 }
 
 /* Expects ray n, the m-th, to see last what lies in slab k, or the hidden background there. */
-static void expect_last(struct sight *s, int n, int m, int k, bool background)
+static void expect_last(struct view *s, int n, int m, int k, bool is_background)
 {
-    const uint16_t *weight = background ? s->background_weight : s->weight;
+    const uint16_t *weight = is_background ? s->background_weight : s->weight;
 
-    s->expected.last[m] = (background ? s->background : s->front) + s->offset[k][n];
+    s->expected.last[m] = (is_background ? s->background : s->front) + s->offset[k][n];
     s->expected.chroma_last[m] =
-        (background ? s->chroma_background : s->chroma_front) + s->chroma_offset[k][n];
-    s->expected.last_weight[m] = weight + (background ? s->offset[k][n] : s->chroma_offset[k][n]);
-    s->expected.last_is_background[m] = background;
+        (is_background ? s->chroma_background : s->chroma_front) + s->chroma_offset[k][n];
+    s->expected.last_weight[m] =
+        weight + (is_background ? s->offset[k][n] : s->chroma_offset[k][n]);
+    s->expected.last_is_background[m] = is_background;
     s->expected.chroma_last_weight[m] = weight + s->chroma_weight_offset[k][n];
 }
 
@@ -145,7 +146,7 @@ struct seen {
     bool in_background;
 };
 
-static struct seen seen_by(const struct sight *s, int k, int n)
+static struct seen seen_by(const struct view *s, int k, int n)
 {
     const uint32_t *const in[2] = {s->range, s->job.below};
     struct seen seen = {INT16_MAX, INT16_MIN, true};
@@ -176,7 +177,7 @@ static int depth_in(int low, int high)
 
 /* Ray n of the job becomes the m-th if it has as many tests as `wanted`, or more where
  * that is the last class. Returns whether. */
-static bool expect_ray(struct sight *s, int n, int m, int wanted)
+static bool expect_ray(struct view *s, int n, int m, int wanted)
 {
     int tests = 0, before = -1, start = 0; /* the last slab that is tested */
 
@@ -216,7 +217,7 @@ static bool expect_ray(struct sight *s, int n, int m, int wanted)
 }
 
 /* Rays that chroma shares: of each class those of the job's first ones. */
-static bool check_shared(const struct subject *subject, const struct sight *s, int class, int n,
+static bool check_shared(const struct subject *subject, const struct view *s, int class, int n,
                          uint32_t seed)
 {
     const struct rf_sorted_rays *is = &s->sorted, *should = &s->expected;
@@ -242,8 +243,7 @@ static bool check_shared(const struct subject *subject, const struct sight *s, i
     return true;
 }
 
-static bool check_weights(const struct subject *subject, const struct sight *s, int n,
-                          uint32_t seed)
+static bool check_weights(const struct subject *subject, const struct view *s, int n, uint32_t seed)
 {
     const struct rf_sorted_rays *is = &s->sorted, *should = &s->expected;
 
@@ -260,11 +260,11 @@ static bool check_weights(const struct subject *subject, const struct sight *s, 
     return true;
 }
 
-static bool check_sort(const struct subject *subject, struct sight *s, int n, uint32_t seed)
+static bool check_sort(const struct subject *subject, struct view *s, int n, uint32_t seed)
 {
     int m = 0;
 
-    make_sight(s, n, seed);
+    make_view(s, n, seed);
     for (int wanted = 0; wanted < RF_SORTED_TESTS; wanted++) {
         s->expected.begin[wanted] = (uint8_t)m;
         s->expected.shared[wanted] = 0;
@@ -373,7 +373,7 @@ static bool check_settle(const struct subject *subject, int n, uint32_t seed)
 
 int check_aim(const struct subject *subject)
 {
-    static struct sight sight;
+    static struct view view;
     uint32_t seed = 1;
     bool good = true;
 
@@ -381,7 +381,7 @@ int check_aim(const struct subject *subject)
         const int n = (int)seed % (RF_RAY_CHUNK + 1);
 
         good = check_tolerances(subject, n, seed) && check_settle(subject, n, seed) &&
-               check_aim_at(subject, n, seed) && check_sort(subject, &sight, n, seed);
+               check_aim_at(subject, n, seed) && check_sort(subject, &view, n, seed);
     }
     if (good)
         printf("ok    %-12s %-6s %d cases\n", "aim", subject->cpu, (int)seed - 1);
@@ -389,7 +389,7 @@ int check_aim(const struct subject *subject)
 }
 
 struct bench {
-    struct sight *sight;
+    struct view *view;
     rf_sort_rays_fn *sort_rays;
 };
 
@@ -398,17 +398,17 @@ static void call(void *context)
     const struct bench *b = context;
 
     for (int i = 0; i < 100; i++)
-        b->sort_rays(&b->sight->sorted, &b->sight->job);
+        b->sort_rays(&b->view->sorted, &b->view->job);
 }
 
 void bench_aim(const struct subject *subject)
 {
-    static struct sight sight;
-    struct bench b = {&sight, subject->plain.sort_rays};
+    static struct view view;
+    struct bench b = {&view, subject->plain.sort_rays};
     double plain, own;
 
-    for (uint32_t seed = 1; sight.job.slabs != 4; seed++)
-        make_sight(&sight, RF_RAY_CHUNK, seed);
+    for (uint32_t seed = 1; view.job.slabs != 4; seed++)
+        make_view(&view, RF_RAY_CHUNK, seed);
     plain = best_time(call, &b);
     b.sort_rays = subject->kernels.sort_rays;
     own = best_time(call, &b);

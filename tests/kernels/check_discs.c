@@ -136,10 +136,10 @@ static int rounded(long v, int shift)
     return (int)((v + (1L << (shift - 1))) >> shift);
 }
 
-/* Whether pixel (x, y) meets the slab where mask k looks: the first one up and to the
+/* Whether pixel (x, y) hits the slab where mask k looks: the first one up and to the
  * left, unless it is mirrored. */
-static bool meets(const struct rf_disc_job *job, const struct rf_disc_way *way,
-                  const struct rf_slab *slab, const int16_t *blur, int x, int y, int k)
+static bool is_hit(const struct rf_disc_job *job, const struct rf_disc_way *way,
+                   const struct rf_slab *slab, const int16_t *blur, int x, int y, int k)
 {
     const long step = (1L << way->shift) * way->times;
     const int from = 64 * x + job->left[y], to = 64 * x + job->right[y];
@@ -188,7 +188,7 @@ static int check_hide(const struct subject *subject)
             for (int x = 0; x < RF_TILE; x++)
                 for (int k = 0; k < 2; k++)
                     should[k * LANES + y * RF_TILE + x] =
-                        meets(&job, &way, &slab, blur, x, y - (y - job.first) % way.rows, k)
+                        is_hit(&job, &way, &slab, blur, x, y - (y - job.first) % way.rows, k)
                             ? 0
                             : 0xffff;
         subject->kernels.occlude_disc(visible, blur, SIDE, &slab, &job, &way);
@@ -211,14 +211,14 @@ static int check_meets(const struct subject *subject)
         const struct rf_slab slab = {(int16_t)low, (uint16_t)noise_between(&seed, 0, 900), 0};
         const int at = noise_between(&seed, 0, SIDE * height - 1);
         const bool inside = at % SIDE < width;
-        bool met;
+        bool hit;
 
         for (int i = 0; i < SIDE * SIDE; i++)
             plane[i] = (int16_t)(low < 0 ? low + slab.width + 1 : low - 1);
         plane[at] = (int16_t)(low + (noise(&seed) % 2 ? slab.width : 0));
-        met = subject->kernels.any_in_slab(plane, SIDE, width, height, &slab);
-        if (met != inside)
-            return wrong(subject, "any_in_slab", at, met, inside);
+        hit = subject->kernels.any_in_slab(plane, SIDE, width, height, &slab);
+        if (hit != inside)
+            return wrong(subject, "any_in_slab", at, hit, inside);
     }
     printf("ok    %-12s %-6s\n", "any_in_slab", subject->cpu);
     return 0;

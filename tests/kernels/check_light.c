@@ -404,7 +404,7 @@ static double between_cells(int32_t cell[RF_COVERAGE_CELLS][RF_COVERAGE_CELLS][4
     return (above + (v - j) * (below - above)) / (1 << RF_COVERAGE_SHIFT) / 4096;
 }
 
-static int check_veil(const struct subject *subject)
+static int check_composite_thin(const struct subject *subject)
 {
     uint32_t seed = 15;
 
@@ -446,10 +446,10 @@ int check_light(const struct subject *subject)
     const int failures = check_equal(subject) + check_any(subject) + check_brightest(subject) +
                          check_between(subject) + check_soften(subject) + check_weigh(subject) +
                          check_weigh1(subject) + check_weigh_chroma(subject) +
-                         check_weighed_means(subject) + check_veil(subject);
+                         check_weighed_means(subject) + check_composite_thin(subject);
 
     if (!failures)
-        printf("ok    %-12s %-6s means, weights, brightest, rows between, softening, veils\n",
+        printf("ok    %-12s %-6s means, weights, brightest, rows between, softening, coverage\n",
                "light", subject->cpu);
     return failures;
 }

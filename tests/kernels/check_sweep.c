@@ -21,8 +21,8 @@ enum {
 enum kind { PLAIN, WITH_WEIGHTS, WEIGHTED };
 
 struct stage {
-    struct guarded front, behind; /* groups of planes: blur and light, light and weight */
-    struct guarded weight;        /* weight of the front */
+    struct guarded front, background; /* groups of planes: blur and light, light and weight */
+    struct guarded weight;            /* weight of the front */
     struct rf_slab slab[MOST_SLABS];
     struct rf_sorted_rays rays;
     uint8_t tested[MOST_SLABS][RF_RAY_CHUNK]; /* slab of a test */
@@ -77,7 +77,7 @@ static int32_t make_offset(int n, int32_t *weight, uint32_t *seed)
 }
 
 /* Rays of as many tests as there are slabs, or of fewer too; a last of either layer. */
-static void make_rays(struct stage *s, const uint16_t *front, const uint16_t *behind, int tests,
+static void make_rays(struct stage *s, const uint16_t *front, const uint16_t *background, int tests,
                       bool same, uint32_t *seed)
 {
     static const int counts[] = {0, 1, 15, 16, 17, 24, 32, 63, RF_RAY_CHUNK};
@@ -98,8 +98,8 @@ static void make_rays(struct stage *s, const uint16_t *front, const uint16_t *be
         }
         offset = make_offset(n, &weight_offset, seed);
         rays->last_is_background[n] = noise(seed) % 2;
-        rays->last[n] = (rays->last_is_background[n] ? behind : front + PITCH) + offset;
-        rays->last_weight[n] = rays->last_is_background[n] ? behind + 3 * PITCH + offset
+        rays->last[n] = (rays->last_is_background[n] ? background : front + PITCH) + offset;
+        rays->last_weight[n] = rays->last_is_background[n] ? background + 3 * PITCH + offset
                                                            : s->job.weight + weight_offset;
     }
 }
@@ -157,7 +157,7 @@ static void make_weights(uint16_t *weight, ptrdiff_t stride, int most, bool extr
 static void make_stage(struct stage *s, int tests, bool same, enum place place, uint32_t seed)
 {
     const size_t weights = (SIDE - 1) * WEIGHT_STRIDE + SIDE;
-    uint16_t *front, *behind, *weight;
+    uint16_t *front, *background, *weight;
     bool extreme;
     int most, heaviest = RF_WEIGHT_MAX;
 
@@ -176,15 +176,15 @@ static void make_stage(struct stage *s, int tests, bool same, enum place place, 
     s->kind = noise(&seed) % 2 ? WITH_WEIGHTS : PLAIN;
     if (s->kind == WITH_WEIGHTS && heaviest > most)
         heaviest = most;
-    behind = make_group(&s->behind, 4, 0, most, extreme, place, &seed);
-    make_weights(behind + 3 * PITCH, STRIDE, heaviest, extreme, &seed);
+    background = make_group(&s->background, 4, 0, most, extreme, place, &seed);
+    make_weights(background + 3 * PITCH, STRIDE, heaviest, extreme, &seed);
     weight = guarded_place(&s->weight, weights * 2, 2, place, noise(&seed) % 17);
     weight += PAD * (WEIGHT_STRIDE + 1);
     make_weights(weight, WEIGHT_STRIDE, heaviest, extreme, &seed);
     s->job.weight = weight;
     front = make_group(&s->front, 4, 1, most, extreme, place, &seed);
     make_blurs(s, (int16_t *)front, &seed);
-    make_rays(s, front, behind, tests, same, &seed);
+    make_rays(s, front, background, tests, same, &seed);
     s->job.blur = (const int16_t *)front;
     for (int c = 0; c < 4; c++)
         for (int i = 0; i < LANES; i++)
@@ -244,14 +244,14 @@ static bool check_case(const struct subject *subject, struct stage *s, int tests
 static bool create(struct stage *s)
 {
     return guarded_create(&s->front, SIDE * STRIDE * 2) &&
-           guarded_create(&s->behind, SIDE * STRIDE * 2) &&
+           guarded_create(&s->background, SIDE * STRIDE * 2) &&
            guarded_create(&s->weight, SIDE * WEIGHT_STRIDE * 2);
 }
 
 static void destroy(struct stage *s)
 {
     guarded_destroy(&s->front);
-    guarded_destroy(&s->behind);
+    guarded_destroy(&s->background);
     guarded_destroy(&s->weight);
 }
 

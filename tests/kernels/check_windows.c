@@ -16,7 +16,7 @@ enum {
 
 /* A few of everything that is passed between guarded pages. */
 struct stage {
-    struct guarded blur, behind, least[3], most[3], range, scratch;
+    struct guarded blur, background, least[3], most[3], range, scratch;
 };
 
 static int blur_noise(uint32_t *seed, int kind)
@@ -113,19 +113,19 @@ static bool check_foreground(const struct subject *subject, struct stage *s, int
     const ptrdiff_t stride = RF_CELL * n + noise_between(&seed, 0, 5);
     const int size = (int)(3 * stride) + RF_CELL * n, often = noise_between(&seed, 1, 20);
     const int16_t *blur = make_row(&s->blur, size, place, &seed);
-    int16_t *behind = make_row(&s->behind, size, place, &seed);
+    int16_t *background = make_row(&s->background, size, place, &seed);
     int16_t *most = make_row(&s->most[0], n, place, &seed);
 
     for (int i = 0; i < size; i++)
-        behind[i] = noise(&seed) % (uint32_t)often ? blur[i] : behind[i];
-    subject->kernels.foreground(most, blur, behind, stride, n);
+        background[i] = noise(&seed) % (uint32_t)often ? blur[i] : background[i];
+    subject->kernels.foreground(most, blur, background, stride, n);
     for (int x = 0; x < n; x++) {
         int high = RF_NO_BLUR;
 
         for (int i = 0; i < RF_CELL * RF_CELL; i++) {
             const ptrdiff_t at = i / RF_CELL * stride + x * RF_CELL + i % RF_CELL;
 
-            high = blur[at] != behind[at] && blur[at] > high ? blur[at] : high;
+            high = blur[at] != background[at] && blur[at] > high ? blur[at] : high;
         }
         if (most[x] != high)
             return fail(subject, "foreground", first, n, x, most[x], high);
@@ -180,7 +180,7 @@ int check_windows(const struct subject *subject)
     struct stage s;
     uint32_t seed = 1;
     bool good = guarded_create(&s.blur, 4 * RF_CELL * (MOST_CELLS + 2) * 2) &&
-                guarded_create(&s.behind, 4 * RF_CELL * (MOST_CELLS + 2) * 2) &&
+                guarded_create(&s.background, 4 * RF_CELL * (MOST_CELLS + 2) * 2) &&
                 guarded_create(&s.range, MOST_WINDOWS * 4) &&
                 guarded_create(&s.scratch, 2 * (MOST_WINDOWS + RF_WINDOW_X) * 2);
 
@@ -201,7 +201,7 @@ int check_windows(const struct subject *subject)
                check_bare(subject, &s, n, place, seed);
     }
     guarded_destroy(&s.blur);
-    guarded_destroy(&s.behind);
+    guarded_destroy(&s.background);
     guarded_destroy(&s.range);
     guarded_destroy(&s.scratch);
     for (int j = 0; j < RF_WINDOW_Y; j++) {

@@ -447,22 +447,23 @@ static int check_keep(const struct subject *subject)
 {
     for (uint32_t seed = 1; seed <= 200; seed++) {
         uint16_t out[2 * MOST + 2], own[2 * MOST], filled[2 * MOST + 2];
-        int16_t blur[2 * MOST], behind[2 * MOST];
+        int16_t blur[2 * MOST], background[2 * MOST];
         const int n = (int)seed % (MOST + 1);
         uint32_t state = seed;
 
         for (int i = 0; i < 2 * n; i++) {
             own[i] = (uint16_t)noise(&state);
             blur[i] = (int16_t)noise_between(&state, -32512, 32512);
-            behind[i] = (int16_t)(noise(&state) % 3 ? blur[i] ^ 1 << noise(&state) % 15 : blur[i]);
+            background[i] =
+                (int16_t)(noise(&state) % 3 ? blur[i] ^ 1 << noise(&state) % 15 : blur[i]);
         }
         for (int i = 0; i < 2 * n + 2; i++)
             out[i] = filled[i] = (uint16_t)noise(&state);
-        subject->kernels.restore_known2(out, own, blur, behind, n);
+        subject->kernels.restore_known2(out, own, blur, background, n);
         for (int i = 0; i < 2 * n + 2; i++) {
             const int pair = i & ~1;
-            const bool known =
-                i < 2 * n && (blur[pair] == behind[pair] || blur[pair + 1] == behind[pair + 1]);
+            const bool known = i < 2 * n && (blur[pair] == background[pair] ||
+                                             blur[pair + 1] == background[pair + 1]);
             const uint16_t should = known ? own[i] : filled[i];
 
             if (out[i] != should)

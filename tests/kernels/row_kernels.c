@@ -156,16 +156,16 @@ static void run_mark(const struct rf_kernels *k, void *const *row, int parameter
 
 static void expect_mark(void *const *row, int parameter, int n)
 {
-    int16_t *behind = row[0];
+    int16_t *background = row[0];
     const int16_t *blur = row[1];
     const uint16_t *dilated = row[2];
 
     (void)parameter;
     for (int x = 0; x < n; x++) {
         if (dilated[x] - 32768 > blur[x] + 128)
-            behind[x] = RF_NO_BLUR;
+            background[x] = RF_NO_BLUR;
         else
-            behind[x] = blur[x];
+            background[x] = blur[x];
     }
 }
 

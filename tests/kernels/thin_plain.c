@@ -20,13 +20,13 @@ enum {
 /* A pixel that is looked at. */
 struct look {
     const struct photo *p;
-    int x, y, own;                      /* own disparity */
-    bool near;                          /* the map has it near */
-    int above;                          /* a disparity above this one is near */
-    int width;                          /* width of what is near, where it is least */
-    int far;                            /* disparity of F */
-    int light[3], behind[3], before[3]; /* C, F, N */
-    int spread;                         /* mean squared distance of what F is the mean of */
+    int x, y, own;                             /* own disparity */
+    bool near;                                 /* the map has it near */
+    int above;                                 /* a disparity above this one is near */
+    int width;                                 /* width of what is near, where it is least */
+    int far;                                   /* disparity of F */
+    int light[3], far_light[3], near_light[3]; /* C, F, N */
+    int spread;                                /* mean squared distance of what F is the mean of */
 };
 
 static ptrdiff_t place(const struct look *l, int x, int y)
@@ -43,7 +43,7 @@ static const int8_t way[8][2] = {{1, 0}, {-1, 0},  {0, 1},  {0, -1},
                                  {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
 
 /* The first far pixel in some direction. */
-struct met {
+struct hit {
     int steps; /* 0: there is none */
     ptrdiff_t at;
 };
@@ -59,7 +59,7 @@ static int steps_to_side(const struct look *l, int i, int most)
 }
 
 /* `clean`: that has nothing near beside it, so that all of it is far. */
-static struct met meet(const struct look *l, int i, bool clean, int most)
+static struct hit hit_in(const struct look *l, int i, bool clean, int most)
 {
     const ptrdiff_t step = way[i][1] * l->p->stride + way[i][0];
     const uint16_t *const disparity = l->p->disparity, *const near_most = l->p->most3;
@@ -70,9 +70,9 @@ static struct met meet(const struct look *l, int i, bool clean, int most)
     for (int n = 1; n <= most; n++) {
         at += step;
         if (disparity[at] <= above && (!clean || near_most[at] <= disparity[at] + JUMP))
-            return (struct met){n, at};
+            return (struct hit){n, at};
     }
-    return (struct met){0, 0};
+    return (struct hit){0, 0};
 }
 
 /* How wide what is near, and begins at most two steps from a far pixel, is in the
@@ -105,7 +105,7 @@ static int own_width(const struct look *l)
     int width = WIDE;
 
     for (int i = 0; i < 8; i += 2) {
-        const int a = meet(l, i, false, THIN).steps, b = meet(l, i + 1, false, THIN).steps;
+        const int a = hit_in(l, i, false, THIN).steps, b = hit_in(l, i + 1, false, THIN).steps;
 
         if (a && b && a + b - 1 < width)
             width = a + b - 1;
@@ -116,7 +116,7 @@ static int own_width(const struct look *l)
 /* The pixels that are hit in all directions, and how much each counts: by the inverse square of
  * its distance. */
 struct ring {
-    struct met met[8];
+    struct hit hit[8];
     int weight[8], disparity[8];
 };
 
@@ -149,14 +149,14 @@ static bool look_around(const struct look *l, bool clean, struct ring *ring)
     int nearest = FAR + 1;
 
     for (int i = 0; i < 8; i++) {
-        const struct met met = meet(l, i, clean, FAR);
-        const int square = met.steps * met.steps * (i < 4 ? 1 : 2);
+        const struct hit hit = hit_in(l, i, clean, FAR);
+        const int square = hit.steps * hit.steps * (i < 4 ? 1 : 2);
 
-        ring->met[i] = met;
+        ring->hit[i] = hit;
         ring->weight[i] = square ? 1440 / square : 0;
-        ring->disparity[i] = square ? l->p->disparity[met.at] : 0;
-        if (square && met.steps < nearest)
-            nearest = met.steps;
+        ring->disparity[i] = square ? l->p->disparity[hit.at] : 0;
+        if (square && hit.steps < nearest)
+            nearest = hit.steps;
     }
     return nearest <= (clean ? CLEAN : FAR);
 }
@@ -175,15 +175,15 @@ static bool set_far(struct look *l, bool clean)
         if (!same_surface(&ring, i, l->far))
             continue;
         for (int c = 0; c < 3; c++)
-            sum[c] += ring.weight[i] * l->p->light[c][ring.met[i].at];
+            sum[c] += ring.weight[i] * l->p->light[c][ring.hit[i].at];
         weights += ring.weight[i];
         count++;
     }
     for (int c = 0; c < 3; c++)
-        l->behind[c] = (int)((sum[c] + weights / 2) / weights);
+        l->far_light[c] = (int)((sum[c] + weights / 2) / weights);
     for (int i = 0; i < 8; i++) {
         for (int c = 0; same_surface(&ring, i, l->far) && c < 3; c++) {
-            const int off = l->p->light[c][ring.met[i].at] - l->behind[c];
+            const int off = l->p->light[c][ring.hit[i].at] - l->far_light[c];
 
             squares += off * off;
         }
@@ -211,7 +211,7 @@ static int set_near(struct look *l)
             most = l->p->disparity[at] > most ? l->p->disparity[at] : most;
             for (int c = 0; c < 3; c++) {
                 light[c] = l->p->light[c][at];
-                weight += (light[c] - l->behind[c]) * (light[c] - l->behind[c]) >> 6;
+                weight += (light[c] - l->far_light[c]) * (light[c] - l->far_light[c]) >> 6;
             }
             for (int c = 0; c < 3; c++)
                 sum[c] += (int64_t)(weight + 1) * light[c];
@@ -219,7 +219,7 @@ static int set_near(struct look *l)
         }
     }
     for (int c = 0; weights && c < 3; c++)
-        l->before[c] = (int)((sum[c] + weights / 2) / weights);
+        l->near_light[c] = (int)((sum[c] + weights / 2) / weights);
     return most;
 }
 
@@ -229,7 +229,7 @@ static int64_t contrast(const struct look *l)
     int64_t sum = 0;
 
     for (int c = 0; c < 3; c++)
-        sum += (int64_t)(l->light[c] - l->behind[c]) * (l->light[c] - l->behind[c]);
+        sum += (int64_t)(l->light[c] - l->far_light[c]) * (l->light[c] - l->far_light[c]);
     return sum;
 }
 
@@ -248,9 +248,9 @@ static int share(const struct look *l)
     int alpha;
 
     for (int c = 0; c < 3; c++) {
-        const int64_t whole = l->before[c] - l->behind[c];
+        const int64_t whole = l->near_light[c] - l->far_light[c];
 
-        along += whole * (l->light[c] - l->behind[c]);
+        along += whole * (l->light[c] - l->far_light[c]);
         square += whole * whole;
     }
     if (along <= 0 || square < FAINT * 16 ||
@@ -258,8 +258,8 @@ static int share(const struct look *l)
         return 0;
     alpha = along >= square ? 255 : (int)(255 * along / square);
     for (int c = 0; c < 3; c++) {
-        const int off = l->light[c] - l->behind[c];
-        const int room = off < 0 ? l->behind[c] : WHITE - l->behind[c];
+        const int off = l->light[c] - l->far_light[c];
+        const int room = off < 0 ? l->far_light[c] : WHITE - l->far_light[c];
         const int least = off ? (255 * abs(off) + room - 1) / (room ? room : 1) : 0;
 
         alpha = least > alpha ? least : alpha;
@@ -270,7 +270,7 @@ static int share(const struct look *l)
 static bool shines(const struct look *l)
 {
     for (int c = 0; c < 3; c++)
-        if (l->before[c] > SHINES || l->light[c] > SHINES)
+        if (l->near_light[c] > SHINES || l->light[c] > SHINES)
             return true;
     return false;
 }
@@ -300,7 +300,7 @@ static bool take_apart(struct look *l, struct rf_thin *thin)
                              .near_disparity = (uint16_t)(l->near ? l->own : near),
                              .far_disparity = (uint16_t)l->far};
     for (int c = 0; c < 3; c++)
-        thin->light[c] = (uint16_t)l->behind[c];
+        thin->light[c] = (uint16_t)l->far_light[c];
     return true;
 }
 

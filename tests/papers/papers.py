@@ -348,7 +348,7 @@ def main():
              "- Mulder's level 3 spreads a pixel over 29x29 by the 5x5 filters alone; the paper "
              "counts 31x31.\n"
              "- Kosloff's layers come from a renderer; ours are cut from one picture, so nothing "
-             "is known behind an edge, and the region beside it stands in.\n"]
+             "is known of the hidden background at an edge, and the region beside it stands in.\n"]
     (args.out / "papers.md").write_text("\n".join(text), encoding="utf-8")
     print(f"wrote {args.out / 'papers.md'}", file=sys.stderr)
 

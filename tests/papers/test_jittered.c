@@ -44,7 +44,7 @@ static void mean_of_many(void **state)
     struct picture p = picture_make(W, H, 6);
     struct refocus_renderer *renderer = prepared(&p, 6, 2);
     uint8_t full[3 * W * H], exact[3 * W * H], out[3 * W * H];
-    double sum[3 * W * H] = {0}, bias = 0, scatter = 0, rim = 0;
+    double sum[3 * W * H] = {0}, bias = 0, scatter = 0, edge = 0;
 
     (void)state;
     render(renderer, REFOCUS_METHOD_RAYTRACE, 2, 0, full);
@@ -58,10 +58,10 @@ static void mean_of_many(void **state)
     }
     for (int i = 0; i < 3 * W * H; i++) {
         bias += pow(sum[i] - exact[i], 2) / (3.0 * W * H);
-        rim += pow((double)full[i] - exact[i], 2) / (3.0 * W * H);
+        edge += pow((double)full[i] - exact[i], 2) / (3.0 * W * H);
     }
-    if (sqrt(rim) > 2.5 || sqrt(scatter) < 3 || bias > scatter / 8)
-        fail_msg("rms %g at the rim, %g of one, %g of the mean", sqrt(rim), sqrt(scatter),
+    if (sqrt(edge) > 2.5 || sqrt(scatter) < 3 || bias > scatter / 8)
+        fail_msg("rms %g at the edge, %g of one, %g of the mean", sqrt(edge), sqrt(scatter),
                  sqrt(bias));
     refocus_renderer_destroy(&renderer);
     picture_free(&p);

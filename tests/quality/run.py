@@ -22,7 +22,7 @@ SCENES = ["portrait", "tabletop", "fence", "nightlights"]
 METHODS = [
     ("input", "method=input", "untouched photo: the floor"),
     ("standard", "method=sweep,highlight=4,thin=1",
-     "the default: two layers, 64 rays, light given back to clipped lamps, thin things drawn"),
+     "the default: two layers, 64 rays, light given back to clipped highlights, thin structures drawn"),
     ("standard-off", "method=sweep,thin=1", "the same with `--highlights off`"),
     ("sweep", "method=sweep", "the same of what is in the photo"),
     ("best", "method=sweep,rays=128,highlight=4,thin=1", "the default with 128 rays"),
@@ -50,7 +50,7 @@ RAYS = [
 ]
 LIGHTS = [
     ("gain-1", "highlight=1", "as the photo has them"),
-    ("gain-2", "highlight=2", "lamps up to twice as bright as white"),
+    ("gain-2", "highlight=2", "highlights up to twice as bright as white"),
     ("gain-3", "highlight=3", "three times"),
     ("gain-4", "highlight=4", "four times: standard"),
     ("gain-4-s400", "highlight=4,sigma=400", "four times, σ = 400"),
@@ -77,14 +77,14 @@ BLENDS = [
     ("stored-s64", "blend=stored,sigma=64", "stored values, σ = 64"),
 ]
 THIN = [
-    ("met", "highlight=4", "thin things are met by 64 rays"),
+    ("rays", "highlight=4", "rays alone, 64, show thin structures"),
     ("drawn", "highlight=4,thin=1",
      "far before the focus and in it they are drawn: standard"),
-    ("met-32", "highlight=4,rays=32", "32 rays: preview"),
+    ("rays-32", "highlight=4,rays=32", "32 rays: preview"),
     ("drawn-32", "highlight=4,rays=32,thin=1", "32 rays, drawn"),
-    ("met-128", "highlight=4,rays=128", "128 rays"),
+    ("rays-128", "highlight=4,rays=128", "128 rays"),
     ("drawn-128", "highlight=4,rays=128,thin=1", "128 rays, drawn: best"),
-    ("met-512", "highlight=4,rays=512", "512 rays"),
+    ("rays-512", "highlight=4,rays=512", "512 rays"),
 ]
 SCORES = [("psnr", "PSNR", "{:.2f}"), ("edge_psnr", "near edges", "{:.2f}"),
           ("ssim", "SSIM", "{:.4f}"), ("rmse", "RMSE", "{:.2f}")]
@@ -164,9 +164,9 @@ def write(out, methods, rows, rays, against, blends, lights, thin, others):
         "## Number of rays, `sweep`: mean of the twelve views\n\n" + mean_table(RAYS, rays),
         "The same against the picture of `sweep-full`:\n\n" + mean_table(RAYS[1:], against),
         "## Blending, `sweep`: mean of the twelve views\n\n" + mean_table(BLENDS, blends),
-        "## Clipped lamps, `sweep`: mean of the twelve views\n\n" + mean_table(LIGHTS, lights),
-        "## Thin things, `sweep`: mean of the twelve views\n\n" + mean_table(THIN, thin),
-        "## Thin things: PSNR of each view\n\n" + view_table(THIN, thin, "psnr", "{:.2f}"),
+        "## Clipped highlights, `sweep`: mean of the twelve views\n\n" + mean_table(LIGHTS, lights),
+        "## Thin structures, `sweep`: mean of the twelve views\n\n" + mean_table(THIN, thin),
+        "## Thin structures: PSNR of each view\n\n" + view_table(THIN, thin, "psnr", "{:.2f}"),
         "## Other apertures: PSNR of each view\n\n" + view_table(METHODS, others, "psnr", "{:.2f}"),
         "## Other apertures: PSNR near edges\n\n"
         + view_table(METHODS, others, "edge_psnr", "{:.2f}"),

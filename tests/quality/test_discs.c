@@ -15,7 +15,7 @@
 
 #include "png_io.h"
 
-enum { SKIPPED = 77, K = 20, MOST_LAMPS = 400 };
+enum { SKIPPED = 77, K = 20, MOST_HIGHLIGHTS = 400 };
 
 struct view {
     int width, height;
@@ -138,7 +138,7 @@ static double light_of(uint8_t code)
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
-struct lamp {
+struct highlight {
     double x, y;
     int pixels;
 };
@@ -150,9 +150,9 @@ static bool is_clipped(const uint8_t *p)
 }
 
 /* Clipped pixels that touch, all of them marked as seen. */
-static struct lamp flood(const struct view *view, uint8_t *seen, int *stack, int at)
+static struct highlight flood(const struct view *view, uint8_t *seen, int *stack, int at)
 {
-    struct lamp lamp = {0, 0, 0};
+    struct highlight highlight = {0, 0, 0};
     int count = 0;
 
     stack[count++] = at;
@@ -160,9 +160,9 @@ static struct lamp flood(const struct view *view, uint8_t *seen, int *stack, int
     while (count > 0) {
         const int p = stack[--count], x = p % view->width, y = p / view->width;
 
-        lamp.x += x;
-        lamp.y += y;
-        lamp.pixels++;
+        highlight.x += x;
+        highlight.y += y;
+        highlight.pixels++;
         for (int j = -1; j <= 1; j++) {
             for (int i = -1; i <= 1; i++) {
                 const int q = p + j * view->width + i;
@@ -175,12 +175,12 @@ static struct lamp flood(const struct view *view, uint8_t *seen, int *stack, int
             }
         }
     }
-    lamp.x /= lamp.pixels;
-    lamp.y /= lamp.pixels;
-    return lamp;
+    highlight.x /= highlight.pixels;
+    highlight.y /= highlight.pixels;
+    return highlight;
 }
 
-static int find_lamps(const struct view *view, struct lamp lamps[MOST_LAMPS])
+static int find_highlights(const struct view *view, struct highlight highlights[MOST_HIGHLIGHTS])
 {
     const int pixels = view->width * view->height;
     uint8_t *seen = calloc((size_t)pixels, 1);
@@ -188,9 +188,9 @@ static int find_lamps(const struct view *view, struct lamp lamps[MOST_LAMPS])
 
     if (!seen || !stack)
         exit(1);
-    for (int i = 0; i < pixels && count < MOST_LAMPS; i++)
+    for (int i = 0; i < pixels && count < MOST_HIGHLIGHTS; i++)
         if (!seen[i] && is_clipped(view->photo + 3 * i))
-            lamps[count++] = flood(view, seen, stack, i);
+            highlights[count++] = flood(view, seen, stack, i);
     free(seen);
     free(stack);
     return count;
@@ -198,7 +198,8 @@ static int find_lamps(const struct view *view, struct lamp lamps[MOST_LAMPS])
 
 /* Adds the light in the inner 0.6 of a highlight's disc, ours and the reference's; false: the
  * reference is clipped itself. */
-static bool add_disc(const struct view *view, const struct lamp *lamp, double radius, double sum[2])
+static bool add_disc(const struct view *view, const struct highlight *highlight, double radius,
+                     double sum[2])
 {
     double own[2] = {0, 0};
     int n = 0, clipped = 0;
@@ -207,7 +208,7 @@ static bool add_disc(const struct view *view, const struct lamp *lamp, double ra
         for (int x = 0; x < view->width; x++) {
             const int i = 3 * (y * view->width + x);
 
-            if (hypot(x - lamp->x, y - lamp->y) > 0.6 * radius)
+            if (hypot(x - highlight->x, y - highlight->y) > 0.6 * radius)
                 continue;
             n++;
             clipped += view->reference[i] > 253 || view->reference[i + 1] > 253 ||
@@ -228,19 +229,19 @@ static bool add_disc(const struct view *view, const struct lamp *lamp, double ra
 static int disc_brightness(const char *scenes)
 {
     struct view view = view_read(scenes, "nightlights", "gt_df0.966_K20.png", 0.96635);
-    static struct lamp lamps[MOST_LAMPS];
-    const int count = find_lamps(&view, lamps);
+    static struct highlight highlights[MOST_HIGHLIGHTS];
+    const int count = find_highlights(&view, highlights);
     double sum[2] = {0, 0};
     int measured = 0;
 
     render(&view, NULL);
     for (int i = 0; i < count; i++) {
-        const struct lamp *lamp = &lamps[i];
-        const int at = (int)(lamp->y + 0.5) * view.width + (int)(lamp->x + 0.5);
+        const struct highlight *highlight = &highlights[i];
+        const int at = (int)(highlight->y + 0.5) * view.width + (int)(highlight->x + 0.5);
         const double radius = K * fabs(view.disparity[at] / 65535.0 - view.df);
 
-        if (lamp->pixels >= 10 && lamp->pixels <= 130 && radius >= 4)
-            measured += add_disc(&view, lamp, radius, sum);
+        if (highlight->pixels >= 10 && highlight->pixels <= 130 && radius >= 4)
+            measured += add_disc(&view, highlight, radius, sum);
     }
     view_free(&view);
     printf("nightlights: %d discs, %.3f of the reference's light\n", measured, sum[0] / sum[1]);

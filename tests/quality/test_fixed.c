@@ -55,7 +55,7 @@ static double blur_at(const struct scene *s, size_t q)
     return s->K * (s->df - s->disparity[q] / 65535.0);
 }
 
-/* The pixel that ray (u, v) of (x, y) meets at blur s. */
+/* The pixel that ray (u, v) of (x, y) hits at blur s. */
 static size_t offset(const struct scene *s, int x, int y, const struct refocus_ray *ray,
                      double blur)
 {
@@ -107,7 +107,7 @@ static void search_all(const struct scene *s, const double light[256], int tests
 /* One ray of the sweep: the first slab in which something is hit, else the background. */
 static void sweep_ray(const struct scene *s, const struct refocus_renderer *r,
                       const struct rf_tile_plan *plan, const struct refocus_ray *ray, int x, int y,
-                      double behind, const double light[256], double sum[3])
+                      double background_blur, const double light[256], double sum[3])
 {
     for (int i = 0; i < plan->slabs; i++) {
         const size_t q = offset(s, x, y, ray, plan->slab[i].centre / 256.0);
@@ -119,8 +119,8 @@ static void sweep_ray(const struct scene *s, const struct refocus_renderer *r,
             return;
         }
     }
-    const int dx = (int)floor(ray->u / 32768.0 * behind + 0.5);
-    const int dy = (int)floor(ray->v / 32768.0 * behind + 0.5);
+    const int dx = (int)floor(ray->u / 32768.0 * background_blur + 0.5);
+    const int dy = (int)floor(ray->v / 32768.0 * background_blur + 0.5);
     for (int c = 0; c < 3; c++)
         sum[c] += r->background.light.channel[c][(y + dy) * r->view.stride + x + dx] /
                   (double)RF_LIGHT_MAX;

@@ -326,10 +326,10 @@ static struct picture night(int width, int height)
     struct picture p = picture_make(width, height, 123);
 
     for (int i = 0; i < width * height; i++) {
-        const bool lamp = i % width % 17 < 4 && i / width % 19 < 4;
+        const bool highlight = i % width % 17 < 4 && i / width % 19 < 4;
 
         for (int c = 0; c < 3; c++)
-            p.rgb[3 * i + c] = lamp ? (c == 2 ? 200 : 255) : p.rgb[3 * i + c] / 5;
+            p.rgb[3 * i + c] = highlight ? (c == 2 ? 200 : 255) : p.rgb[3 * i + c] / 5;
     }
     return p;
 }

@@ -338,15 +338,15 @@ bool effect_params(int i, float focus, float blur, struct refocus_settings *para
     static const uint32_t method[METHODS] = {REFOCUS_METHOD_SWEEP, REFOCUS_METHOD_SEARCH,
                                              REFOCUS_METHOD_BLUR, REFOCUS_METHOD_DIFFUSION};
     static const char *const names[] = {
-        "sweep, tilted",   "search, tilted", "blur, tilted", "diffusion, tilted",
-        "tilt, no depth",  "bands",          "focus map",    "sharp map",
-        "clamps",          "cylinder",       "plus",         "plane",
-        "sphere",          "field picture",  "all of focus", "iris",
-        "cat's eye",       "bubbles",        "rings full",   "squeezed star",
-        "heart weighted",  "fringe",         "fringe full",  "star filter",
-        "grain",           "lamps 8",        "lamps 16",     "lamps 16 weighted",
-        "mask, sides",     "all of bokeh",   "star cut off", "blades cut off, full",
-        "hearts of lamps", "stars of lamps"};
+        "sweep, tilted",   "search, tilted", "blur, tilted",  "diffusion, tilted",
+        "tilt, no depth",  "bands",          "focus map",     "sharp map",
+        "clamps",          "cylinder",       "plus",          "plane",
+        "sphere",          "field picture",  "all of focus",  "iris",
+        "cat's eye",       "bubbles",        "rings full",    "squeezed star",
+        "heart weighted",  "fringe",         "fringe full",   "star filter",
+        "grain",           "highlights 8",   "highlights 16", "highlights 16 weighted",
+        "mask, sides",     "all of bokeh",   "star cut off",  "blades cut off, full",
+        "hearts of light", "stars of light"};
     const int count = sizeof names / sizeof *names;
 
     *params = refocus_settings_default(focus, blur);

@@ -13,7 +13,7 @@ static const struct refocus_image image = {.struct_size = sizeof(struct refocus_
                                            .stride = {3 * W}};
 
 /* A light of 5 x 5 pixels in the dark, in front of nothing, at disparity d. */
-static struct refocus_renderer *lamp_at(int x, int y, uint16_t d)
+static struct refocus_renderer *highlight_at(int x, int y, uint16_t d)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, d);
     struct refocus_renderer *renderer;
@@ -66,17 +66,17 @@ static struct disc disc_at(int x, int y, int channel)
     return d;
 }
 
-static struct disc render_lamp(int x, int y, uint16_t depth, const struct refocus_settings *params,
-                               int channel)
+static struct disc render_highlight(int x, int y, uint16_t depth,
+                                    const struct refocus_settings *params, int channel)
 {
-    struct refocus_renderer *renderer = lamp_at(x, y, depth);
+    struct refocus_renderer *renderer = highlight_at(x, y, depth);
 
     assert_int_equal(refocus_render_settings(renderer, params, &image), REFOCUS_OK);
     refocus_renderer_destroy(&renderer);
     return disc_at(x, y, channel);
 }
 
-static struct disc lamp_through(const struct refocus_aperture_params *aperture, uint16_t depth)
+static struct disc highlight_through(const struct refocus_aperture_params *aperture, uint16_t depth)
 {
     struct refocus_settings params = twelve();
     struct refocus_aperture *a;
@@ -84,7 +84,7 @@ static struct disc lamp_through(const struct refocus_aperture_params *aperture, 
 
     assert_int_equal(refocus_aperture_create(&a, aperture), REFOCUS_OK);
     params.render.aperture = a;
-    disc = render_lamp(W / 2, H / 2, depth, &params, 1);
+    disc = render_highlight(W / 2, H / 2, depth, &params, 1);
     refocus_aperture_destroy(&a);
     return disc;
 }
@@ -103,8 +103,8 @@ static void hearts(void **state)
 
     (void)state;
     p.figure = REFOCUS_FIGURE_HEART;
-    behind = lamp_through(&p, BEHIND);
-    before = lamp_through(&p, BEFORE);
+    behind = highlight_through(&p, BEHIND);
+    before = highlight_through(&p, BEFORE);
     assert_true(behind.above > 0.55 && before.above < 0.45);
     about("light of a heart", behind.all, 25, 0.03);
     about("light of a heart before the focus", before.all, 25, 0.03);
@@ -115,14 +115,16 @@ static void hearts(void **state)
 static void sides(void **state)
 {
     struct refocus_aperture_params p = refocus_aperture_params_default();
-    const double lamp = 2 * 2.0; /* mean squares of 5 x 5 pixels */
+    const double highlight = 2 * 2.0; /* mean squares of 5 x 5 pixels */
 
     (void)state;
     p.edge_behind = 0.6;
     p.edge_before = -0.6;
-    const struct disc behind = lamp_through(&p, BEHIND), before = lamp_through(&p, BEFORE);
-    about("a disc with a bright rim", behind.xx + behind.yy - lamp, 144 * (0.5 + 0.6 / 3), 0.04);
-    about("a disc that fades", before.xx + before.yy - lamp, 144 * (0.5 - 0.6 / 6), 0.04);
+    const struct disc behind = highlight_through(&p, BEHIND),
+                      before = highlight_through(&p, BEFORE);
+    about("a disc with a bright edge", behind.xx + behind.yy - highlight, 144 * (0.5 + 0.6 / 3),
+          0.04);
+    about("a disc that fades", before.xx + before.yy - highlight, 144 * (0.5 - 0.6 / 6), 0.04);
 }
 
 static void squeezed(void **state)
@@ -131,7 +133,7 @@ static void squeezed(void **state)
 
     (void)state;
     p.squeeze = 0.55;
-    const struct disc oval = lamp_through(&p, BEHIND);
+    const struct disc oval = highlight_through(&p, BEHIND);
     about("width / height of an oval", sqrt((oval.xx - 2) / (oval.yy - 2)), 0.55, 0.03);
     about("light of an oval", oval.all, 25, 0.02);
 }
@@ -147,9 +149,9 @@ static void cat_eye(void **state)
 
     (void)state;
     params.look.cat_eye = 0.8f;
-    disc = render_lamp(W / 2, H / 2, BEHIND, &params, 1);
+    disc = render_highlight(W / 2, H / 2, BEHIND, &params, 1);
     about("the middle's disc", sqrt((disc.xx - 2) / (disc.yy - 2)), 1, 0.03);
-    disc = render_lamp(x, y, BEHIND, &params, 1);
+    disc = render_highlight(x, y, BEHIND, &params, 1);
     const double pushed = 0.8 * pow(x + 0.5 - W / 2.0, 2) / (W * W / 4.0 + H * H / 4.0);
     for (int i = -500; i < 500; i++) {
         const double at = (i + 0.5) / 500, h = 1 - pow(fabs(at) + pushed, 2);
@@ -174,7 +176,7 @@ static void fringes(void **state)
         params.look.fringe = 0.25f * (float)sign;
         for (int before = 0; before < 2; before++) {
             const uint16_t depth = before ? BEFORE : BEHIND;
-            const struct disc red = render_lamp(W / 2, H / 2, depth, &params, 0);
+            const struct disc red = render_highlight(W / 2, H / 2, depth, &params, 0);
             const struct disc green = disc_at(W / 2, H / 2, 1), blue = disc_at(W / 2, H / 2, 2);
             const bool green_is_wider = (sign > 0) != (before == 1);
             const double ratio = sqrt((green.xx - 2) / (red.xx - 2));
@@ -196,8 +198,8 @@ static void stops(void **state)
         for (int weighted = 0; weighted < 2; weighted++) {
             params.highlights.gain = (float)gain;
             params.render.sigma = weighted ? 1e5f : INFINITY; /* all weights nearly the same */
-            about("light of a lamp", render_lamp(W / 2, H / 2, BEHIND, &params, 1).all, 25 * gain,
-                  0.03);
+            about("light of a highlight", render_highlight(W / 2, H / 2, BEHIND, &params, 1).all,
+                  25 * gain, 0.03);
         }
     }
 }
@@ -207,7 +209,7 @@ static void star(void **state)
     struct refocus_settings params = refocus_settings_default(0.1f, 30);
     const int x = W / 2, y = H / 2;
     static uint8_t plain[3 * W * H];
-    struct refocus_renderer *renderer = lamp_at(x, y, BEHIND);
+    struct refocus_renderer *renderer = highlight_at(x, y, BEHIND);
     double added = 0;
 
     (void)state;
@@ -428,7 +430,7 @@ static void changed_map(void **state)
 static void refused(void **state)
 {
     struct refocus_aperture_params p = refocus_aperture_params_default();
-    struct refocus_renderer *renderer = lamp_at(W / 2, H / 2, BEHIND);
+    struct refocus_renderer *renderer = highlight_at(W / 2, H / 2, BEHIND);
     struct refocus_aperture *a;
 
     (void)state;

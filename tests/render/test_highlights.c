@@ -257,7 +257,7 @@ static void wires(void **state)
 }
 
 /* A highlight far before the focus, whose edge the map gives to what is sharp behind it. However
- * little of the highlight a pixel of the edge holds, none stays behind as a dot: of each, how much
+ * little of the highlight a pixel of the edge holds, none is left as a dot: of each, how much
  * brighter than the pixels around it is counted. */
 static int brightest_dot(double light)
 {

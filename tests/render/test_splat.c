@@ -1,5 +1,5 @@
 /* test_splat.c: highlights that are splatted are even discs, hidden where rays say so, of the light
- * that rays would meet. */
+ * that rays would hit. */
 #include "pictures.h"
 #include "things.h"
 

@@ -120,7 +120,7 @@ static void wire(void **state)
 /* A hair in focus, a fifth of a pixel wide, before stripes. */
 static void strands(void **state)
 {
-    static uint8_t out[MOST], behind[MOST];
+    static uint8_t out[MOST], background[MOST];
     struct picture p = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){60, 70, 50}, FAR), far;
     struct setting s = plain;
     double off[2] = {0, 0};
@@ -141,14 +141,14 @@ static void strands(void **state)
         p.disparity[i] = NEAR;
     }
     s.focus = NEAR / 65535.0f;
-    render_fresh(&far, false, &s, behind);
+    render_fresh(&far, false, &s, background);
     for (int pass = 0; pass < 2; pass++) {
         s.thin = !pass;
         render_fresh(&p, true, &s, out);
         for (int x = 40; x < WIDTH - 40; x++) {
             const int i = 3 * (HEIGHT / 2 * WIDTH + x);
             const double should =
-                picture_code(0.2 * picture_light(200) + 0.8 * picture_light(behind[i]));
+                picture_code(0.2 * picture_light(200) + 0.8 * picture_light(background[i]));
 
             off[pass] += fabs(out[i] - should);
             pixels += !pass;
@@ -161,10 +161,10 @@ static void strands(void **state)
     picture_free(&far);
 }
 
-/* Two wires in focus: what lies behind is blurred, their edges are not. */
-static void held(void **state)
+/* Two wires in focus: the background is blurred, their edges are not. */
+static void matted(void **state)
 {
-    static uint8_t out[MOST], behind[MOST];
+    static uint8_t out[MOST], background[MOST];
     struct picture p = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){30, 60, 50}, FAR), far, share;
     struct setting s = plain;
     double off[2] = {0, 0};
@@ -182,13 +182,13 @@ static void held(void **state)
     picture_line(&share, 100, 0, 0.4, 1, 3, 255);
     picture_line(&share, 0, 60, 1, 0.15, 2, 255);
     s.focus = NEAR / 65535.0f;
-    render_fresh(&far, false, &s, behind);
+    render_fresh(&far, false, &s, background);
     for (int pass = 0; pass < 2; pass++) {
         s.thin = !pass;
         render_fresh(&p, true, &s, out);
         for (int i = 0; i < WIDTH * HEIGHT; i++) {
             const double alpha = share.rgb[3 * i] / 255.0;
-            const double should = alpha * 220 + (1 - alpha) * behind[3 * i];
+            const double should = alpha * 220 + (1 - alpha) * background[3 * i];
 
             if (alpha > 0 && alpha < 1) {
                 off[pass] += fabs(out[3 * i] - should);
@@ -196,7 +196,7 @@ static void held(void **state)
             }
         }
     }
-    printf("held: %.2f codes off, by rays %.2f\n", off[0] / pixels, off[1] / pixels);
+    printf("matted: %.2f codes off, by rays %.2f\n", off[0] / pixels, off[1] / pixels);
     assert_true(off[0] < 6 * pixels);
     assert_true(off[0] < off[1] / 3);
     picture_free(&p);
@@ -395,14 +395,9 @@ static void memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wire),
-        cmocka_unit_test(held),
-        cmocka_unit_test(strands),
-        cmocka_unit_test(elsewhere),
-        cmocka_unit_test(same_everywhere),
-        cmocka_unit_test(regions),
-        cmocka_unit_test(sequence),
-        cmocka_unit_test(memory),
+        cmocka_unit_test(wire),      cmocka_unit_test(matted),          cmocka_unit_test(strands),
+        cmocka_unit_test(elsewhere), cmocka_unit_test(same_everywhere), cmocka_unit_test(regions),
+        cmocka_unit_test(sequence),  cmocka_unit_test(memory),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -54,11 +54,11 @@ void twin_create(struct twin *t, const struct picture *p, const struct refocus_s
                        0};
     t->map_blur = plane(t);
     t->blur = plane(t);
-    t->behind_blur = plane(t);
+    t->background_blur = plane(t);
     for (int c = 0; c < 3; c++) {
         t->light[c] = plane(t);
         t->smooth[c] = plane(t);
-        t->behind[c] = plane(t);
+        t->background[c] = plane(t);
         for (int i = 0; i < t->width * t->height; i++)
             t->light[c][i] = t->smooth[c][i] =
                 twin_to_light(params->render.blend, p->rgb[3 * i + c]);
@@ -73,11 +73,11 @@ void twin_destroy(struct twin *t)
 {
     free(t->map_blur);
     free(t->blur);
-    free(t->behind_blur);
+    free(t->background_blur);
     for (int c = 0; c < 3; c++) {
         free(t->light[c]);
         free(t->smooth[c]);
-        free(t->behind[c]);
+        free(t->background[c]);
     }
 }
 

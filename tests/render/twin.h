@@ -21,10 +21,10 @@ struct twin {
     const uint16_t *disparity;
     const struct twin_silhouette *silhouette;
     int silhouettes;
-    double *light[3], *smooth[3], *behind[3]; /* 0 to 1 */
-    double *map_blur;                         /* signed blur in pixels, of the map alone */
-    double *blur;                             /* signed blur in pixels, with the silhouettes */
-    double *behind_blur;
+    double *light[3], *smooth[3], *background[3]; /* 0 to 1 */
+    double *map_blur;                             /* signed blur in pixels, of the map alone */
+    double *blur;                                 /* signed blur in pixels, with the silhouettes */
+    double *background_blur;
 };
 
 /* The planes of a photo; all NaN or of the photo itself where a method has no use for them. */
@@ -45,8 +45,8 @@ static inline int twin_at(const struct twin *t, int x, int y)
     return y * t->width + x;
 }
 
-/* Where ray (u, v) of (x, y) meets blur s. */
-static inline int twin_meets(const struct twin *t, int x, int y, struct refocus_ray ray, double s)
+/* Where ray (u, v) of (x, y) hits blur s. */
+static inline int twin_hit(const struct twin *t, int x, int y, struct refocus_ray ray, double s)
 {
     return twin_at(t, x + (int)floor(ray.u / 32768.0 * s + 0.5),
                    y + (int)floor(ray.v / 32768.0 * s + 0.5));
@@ -69,7 +69,7 @@ struct twin_strip {
     int x, y, height;
 };
 
-/* Whether the background is taken for slab [low, high] where rays that are moved by (dx, dy) meet
+/* Whether the background is taken for slab [low, high] where rays that are moved by (dx, dy) hit
  * it: in the cells around there nothing is deeper, the background shows it just so, and some is
  * nearer. */
 bool twin_is_deepest(const struct twin_cells *cells, struct twin_strip strip, int dx, int dy,

@@ -36,9 +36,9 @@ static void mark(struct twin *t)
             for (int q = 0; q < t->width && !foreground; q++)
                 foreground = fmax(down[y * t->width + q], up[y * t->width + q]) >
                              t->blur[p] + 0.5 + abs(q - x) / 2.0;
-            t->behind_blur[p] = foreground ? NAN : t->blur[p];
+            t->background_blur[p] = foreground ? NAN : t->blur[p];
             for (int c = 0; c < 3; c++)
-                t->behind[c][p] = t->smooth[c][p];
+                t->background[c][p] = t->smooth[c][p];
         }
     }
     free(down);
@@ -121,7 +121,9 @@ static void pull(struct level *fine, const struct level *coarse)
 void twin_background(struct twin *t)
 {
     struct level level[32] = {
-        {t->width, t->height, {t->behind[0], t->behind[1], t->behind[2], t->behind_blur}}};
+        {t->width,
+         t->height,
+         {t->background[0], t->background[1], t->background[2], t->background_blur}}};
     int levels = 1;
 
     mark(t);

@@ -8,24 +8,24 @@ static void trace(const struct twin *t, int x, int y, struct refocus_ray ray, co
 {
     const double length = hypot(ray.u, ray.v) / 32768;
     const int p = twin_at(t, x, y);
-    double s = 0, found = blur[twin_meets(t, x, y, ray, t->K * (t->df - 1))];
+    double s = 0, found = blur[twin_hit(t, x, y, ray, t->K * (t->df - 1))];
     int q = p;
     bool valid = false;
 
     for (int i = 0; i < t->params->search.iterations && !valid; i++) {
         s = found;
-        q = twin_meets(t, x, y, ray, s);
+        q = twin_hit(t, x, y, ray, s);
         found = blur[q];
         valid = length * fabs(found - s) <= 0.5;
     }
     if (valid || found <= blur[p]) {
         twin_add(t, sum, t->light, q, ray.weight);
     } else if (t->params->search.background) {
-        twin_add(t, sum, t->behind, twin_meets(t, x, y, ray, t->behind_blur[p]), ray.weight);
+        twin_add(t, sum, t->background, twin_hit(t, x, y, ray, t->background_blur[p]), ray.weight);
     } else if (t->params->search.mirror) {
         ray.u = (int16_t)-ray.u;
         ray.v = (int16_t)-ray.v;
-        twin_add(t, sum, t->light, twin_meets(t, x, y, ray, s), ray.weight);
+        twin_add(t, sum, t->light, twin_hit(t, x, y, ray, s), ray.weight);
     } else {
         twin_add(t, sum, t->light, p, ray.weight);
     }

@@ -210,10 +210,10 @@ static int deepest_of(const struct twin *t, const struct twin_cells *cells, cons
 }
 
 static void trace(const struct twin *t, const struct plan *plan, int deepest, int x, int y,
-                  struct refocus_ray ray, double behind, struct twin_sum *sum)
+                  struct refocus_ray ray, double background_blur, struct twin_sum *sum)
 {
     for (int i = 0; i < deepest; i++) {
-        const int q = twin_meets(t, x, y, ray, plan->slab[i].centre);
+        const int q = twin_hit(t, x, y, ray, plan->slab[i].centre);
 
         if (t->blur[q] >= plan->slab[i].low && t->blur[q] <= plan->slab[i].high) {
             twin_add(t, sum, t->smooth, q, ray.weight);
@@ -221,8 +221,8 @@ static void trace(const struct twin *t, const struct plan *plan, int deepest, in
         }
     }
     if (deepest < plan->slabs)
-        behind = plan->slab[deepest].centre;
-    twin_add(t, sum, t->behind, twin_meets(t, x, y, ray, behind), ray.weight);
+        background_blur = plan->slab[deepest].centre;
+    twin_add(t, sum, t->background, twin_hit(t, x, y, ray, background_blur), ray.weight);
 }
 
 /* Rows that are computed: see src/gather/tile_rows.h. */
@@ -231,9 +231,9 @@ struct rows {
 };
 
 /* Returns the least blur of all that is visible from a tile, pixels. */
-static double least_blur(const struct plan *plan, double behind)
+static double least_blur(const struct plan *plan, double background_blur)
 {
-    double least = fabs(behind);
+    double least = fabs(background_blur);
 
     for (int i = 0; i < plan->slabs; i++) {
         const struct slab *slab = &plan->slab[i];
@@ -358,7 +358,7 @@ static void sharp_tile(const struct twin *t, int tx, int ty, uint8_t *rgb)
 static void sweep_strip(const struct twin *t, const struct twin_cells *cells,
                         const struct plan *plan, const struct rows *rows, int first, int end,
                         struct twin_strip strip, const struct refocus_ray *ray, int rays,
-                        double behind, struct twin_sum sums[TWIN_TILE * TWIN_TILE])
+                        double background_blur, struct twin_sum sums[TWIN_TILE * TWIN_TILE])
 {
     const int y0 = strip.y / TWIN_TILE * TWIN_TILE;
 
@@ -367,7 +367,7 @@ static void sweep_strip(const struct twin *t, const struct twin_cells *cells,
 
         for (int i = first * TWIN_TILE; i < end * TWIN_TILE; i++)
             trace(t, plan, deepest, strip.x + i % TWIN_TILE, y0 + rows->at[i / TWIN_TILE], ray[n],
-                  behind, &sums[i]);
+                  background_blur, &sums[i]);
     }
 }
 
@@ -376,8 +376,9 @@ static void sweep_tile(const struct twin *t, const struct twin_cells *cells,
                        uint8_t *rgb)
 {
     const int x0 = tx * TWIN_TILE, y0 = ty * TWIN_TILE, set = set_for(sets, plan->reach);
-    const double behind = t->behind_blur[twin_at(t, x0 + TWIN_TILE / 2, y0 + TWIN_TILE / 2)];
-    const double least = least_blur(plan, behind);
+    const double background_blur =
+        t->background_blur[twin_at(t, x0 + TWIN_TILE / 2, y0 + TWIN_TILE / 2)];
+    const double least = least_blur(plan, background_blur);
     const struct rows rows = rows_of(t, sets, least);
     const int strips = rows.count < TWIN_TILE / 2 ? 1 : 2;
     struct twin_sum sums[TWIN_TILE * TWIN_TILE] = {{{0}, 0}};
@@ -385,7 +386,7 @@ static void sweep_tile(const struct twin *t, const struct twin_cells *cells,
     for (int i = 0; i < strips; i++)
         sweep_strip(t, cells, plan, &rows, i * rows.count / strips, (i + 1) * rows.count / strips,
                     (struct twin_strip){x0, y0 + i * TWIN_TILE / 2, TWIN_TILE / strips},
-                    sets->ray[set], sets->count[set], behind, sums);
+                    sets->ray[set], sets->count[set], background_blur, sums);
     soften(sums, rows.count, softness(t, plan, least));
     for (int y = 0; y < TWIN_TILE && y0 + y < t->height; y++) {
         for (int x = 0; x < TWIN_TILE && x0 + x < t->width; x++) {

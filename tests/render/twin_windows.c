@@ -22,7 +22,7 @@ void twin_cells(const struct twin *t, struct twin_cells *cells)
 
             cell.least = fmin(cell.least, t->blur[q]);
             cell.most = fmax(cell.most, t->blur[q]);
-            if (t->behind_blur[q] != t->blur[q])
+            if (t->background_blur[q] != t->blur[q])
                 cell.foreground = fmax(cell.foreground, t->blur[q]);
         }
         cells->cell[i] = cell;

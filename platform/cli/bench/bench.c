@@ -1,4 +1,4 @@
-/* bench.c: the command `refocus bench` times kernels and whole frames, and counts what rays meet.
+/* bench.c: the command `refocus bench` times kernels and whole frames, and counts what rays hit.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,7 +40,7 @@ static const struct option options[] = {
     {.kind = OPTION_FLAG,
      .name = "--rays",
      .offset = offsetof(struct settings, statistics),
-     .help = "without a number: no times, but what the rays of the mask meet: how many "
+     .help = "without a number: no times, but what the rays of the mask hit: how many "
              "find a true intersection after 1, 2, ... tests of the search"},
     {.kind = OPTION_FLAG,
      .name = "--frames",

@@ -1,4 +1,4 @@
-/* bench_rays.c: every ray of a scene is followed and counted by the surface that it meets first. */
+/* bench_rays.c: every ray of a scene is followed and counted by the surface that it hits first. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,8 +26,8 @@ static double d_at(const struct scene *s, struct hit q)
     return s->disparity[(size_t)y * (size_t)s->width + (size_t)x] / 65535.0;
 }
 
-/* Eq. 4: where ray (u, v) of p meets disparity d. */
-static struct hit meet(const struct scene *s, struct hit p, double u, double v, double d)
+/* Eq. 4: where ray (u, v) of p hits disparity d. */
+static struct hit hit_at(const struct scene *s, struct hit p, double u, double v, double d)
 {
     const double blur = s->K * (s->df - d);
 
@@ -48,7 +48,7 @@ static bool trace(const struct scene *s, struct hit p, double u, double v, struc
     for (int i = 0; i <= steps; i++) {
         const double d = steps ? 1 - (double)i / steps : 1;
 
-        *q = steps ? meet(s, p, u, v, d) : p;
+        *q = steps ? hit_at(s, p, u, v, d) : p;
         if (steps == 0 || confirms(s, *q, length, d))
             return true;
     }
@@ -59,10 +59,10 @@ static bool trace(const struct scene *s, struct hit p, double u, double v, struc
  * *q is the last pixel looked at. */
 static int search(const struct scene *s, struct hit p, double u, double v, int tests, struct hit *q)
 {
-    double d = d_at(s, meet(s, p, u, v, 1));
+    double d = d_at(s, hit_at(s, p, u, v, 1));
 
     for (int i = 1; i <= tests; i++) {
-        *q = meet(s, p, u, v, d);
+        *q = hit_at(s, p, u, v, d);
         if (confirms(s, *q, hypot(u, v), d))
             return i;
         d = d_at(s, *q);
@@ -163,7 +163,7 @@ void ray_statistics_print(const struct ray_statistics *s)
 {
     const double of = (double)s->rays / 100;
 
-    printf("%ld rays of %ld pixels, blur %.4g, focus %.3f; %.2f %% meet nothing\n", s->rays,
+    printf("%ld rays of %ld pixels, blur %.4g, focus %.3f; %.2f %% hit nothing\n", s->rays,
            s->pixels, s->K, s->focus, (double)s->hidden / of);
     printf("tests  first found  front-most  in the set of p\n");
     for (int i = 0; i < RAYS_TESTS; i++)

@@ -1,4 +1,4 @@
-/* bench_rays.h: statistics of the surfaces that rays meet, as in Yang et al. 2016, figures 2 and
+/* bench_rays.h: statistics of the surfaces that rays hit, as in Yang et al. 2016, figures 2 and
  * 3. */
 #ifndef RF_CLI_BENCH_RAYS_H
 #define RF_CLI_BENCH_RAYS_H
@@ -11,7 +11,7 @@ enum { RAYS_TESTS = 8 };
 struct ray_statistics {
     double K, focus;
     long pixels, rays;       /* looked at: every ray of the mask, of a grid of pixels */
-    long hidden;             /* rays that meet nothing in the picture */
+    long hidden;             /* rays that hit nothing in the picture */
     long found[RAYS_TESTS];  /* first found after i + 1 tests */
     long never;              /* not within RAYS_TESTS */
     long first[RAYS_TESTS];  /* with i + 1 tests the result is the front-most hit, or beside it */

@@ -94,7 +94,7 @@ static void fill_hole(const struct rows *r, int begin, int end)
     }
 }
 
-/* The whole row has moved out of sight: the extension of its border is seen. */
+/* The whole row has moved out of the picture: the extension of its border is seen. */
 static void fill_with_border(const struct rows *r)
 {
     const int edge = place(r, 0) < 0 ? r->width - 1 : 0;

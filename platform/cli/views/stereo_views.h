@@ -15,7 +15,7 @@ enum { STEREO_MOST = 256 }; /* pixels of parallax */
  *     parallax (d - focus)  pixels to the right
  *
  * in steps of 1/256, so that the plane in focus stays where it is; the nearest that
- * meets a pixel wins. nearest: room for a row. All in integers: the same bits
+ * hits a pixel wins. nearest: room for a row. All in integers: the same bits
  * everywhere.
  */
 void stereo_warp(const struct refocus_image *photo, const uint16_t *disparity, double focus,

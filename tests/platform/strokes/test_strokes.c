@@ -18,7 +18,7 @@ static struct refocus_strokes *begin(void)
     return strokes;
 }
 
-/* Over the disc, without its rim. */
+/* Over the disc, without its edge. */
 static const float over[] = {120, 120, 160, 90, 200, 120, 160, 150, 140, 120};
 enum { OVER = sizeof over / sizeof *over / 2 };
 
@@ -43,7 +43,7 @@ static void test_segments_and_undo(void **unused)
     static uint16_t expected[W * H], before[W * H];
     struct refocus_strokes *strokes = begin();
     const struct refocus_stroke object = make_stroke(REFOCUS_STROKE_OBJECT, 16, 0.5f);
-    const float elsewhere[] = {20, 20, 60, 200}, rim[] = {160, 60};
+    const float elsewhere[] = {20, 20, 60, 200}, edge[] = {160, 60};
     struct refocus_changed changed;
 
     (void)unused;
@@ -51,7 +51,7 @@ static void test_segments_and_undo(void **unused)
     memcpy(before, refocus_strokes_disparity(strokes), sizeof before);
     paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, OVER);
     memcpy(expected, refocus_strokes_disparity(strokes), sizeof expected);
-    paint(strokes, REFOCUS_STROKE_LESS, 8, -1, rim, 1);
+    paint(strokes, REFOCUS_STROKE_LESS, 8, -1, edge, 1);
     paint(strokes, REFOCUS_STROKE_FILL, 1, 0.9f, NULL, 0);
     paint(strokes, REFOCUS_STROKE_MORE, 12, -1, elsewhere, 2);
     paint(strokes, REFOCUS_STROKE_BRUSH, 12, 1, elsewhere, 2);
