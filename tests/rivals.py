@@ -137,8 +137,8 @@ def main():
         "## Beside others\n",
         "One thread each, in turns, processor time of the filter alone, the best of "
         f"{args.rounds}. examples/data/portrait, focus {FOCUS}; brought to 1920x1080 by repeating "
-        "pixels. The others blur each pixel by its own radius, one layer and a square or disc "
-        "of their own; above 1 means slower than we are.\n", sections.table(head, rows)]))
+        "pixels. The others blur each pixel by its own radius, with one layer and a square or "
+        "disc; a ratio above 1 means slower than refocus.\n", sections.table(head, rows)]))
     print(f"wrote {args.out}", file=sys.stderr)
 
 

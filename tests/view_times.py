@@ -98,14 +98,13 @@ def main():
     with open(os.path.join(TOP, 'tests/view.md'), 'w') as file:
         file.write('''# The viewer: from a tap to a picture
 
-Written by `tests/view_times.py BUILD`: milliseconds from a tap in a window of 1280x960 pixels to the
-picture on the screen that answers it, of %d taps between two surfaces, the reading of the
-event and the drawing included. The first picture is of the photo reduced by the factor
-given, 32 rays; the full one of the whole photo, 64 rays, K = 1/50 of its width up to 127
-pixels. Its processor time is the least, of all threads together, from the
-tap to that picture, the drawing included: more than a machine with nothing else to do takes,
-as two threads render. The scene `portrait`, enlarged; memory is the most that the process held,
-SDL included. %s; %s; load average %.1f.
+Written by `tests/view_times.py BUILD`: the time in milliseconds from a tap in a window of 1280x960
+pixels to the picture on the screen that shows its focus, reading the event and drawing included, for
+%d taps between two surfaces. The first picture is rendered with 32 rays from the photo reduced by the
+factor given; the full one with 64 rays from the whole photo, K = 1/50 of its width up to 127 pixels.
+Processor time is the least of all threads together from the tap to the first picture, drawing
+included. As two threads render, it is more than the time that an idle machine takes. The scene is
+`portrait`, enlarged. Memory is the peak of the process, SDL included. %s; %s; load average %.1f.
 
 | megapixels | photo | reduced | first: min | median | its processor time | full: min | median | MiB |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |

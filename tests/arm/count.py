@@ -237,9 +237,9 @@ def main():
             "focus 0.689, NEON, "
             "one thread, RGB in and out, highlights splatted. Instructions are counted exactly, under "
             "emulation. Cycles are an ESTIMATE that no ARM machine has confirmed: LLVM's models of the cores (the "
-            "A57's schedule stands for the A72, the Neoverse N1's for the A76), each block as if "
-            "it followed itself, all data in the first cache, no branch missed; a lower bound, "
-            "and easily 30 % off.\n",
+            "A57's schedule stands for the A72, the Neoverse N1's for the A76), each block in "
+            "a loop of its own, all data in the first-level cache, no branch mispredicted. They are "
+            "lower bounds, and may be 30 % off.\n",
             sections.table(["size", "rays", "", "prepare and highlights, instructions a pixel",
                             "render, instructions a pixel"] +
                            [f"{core}, cycles a pixel, both" for core in CORES], counts)]

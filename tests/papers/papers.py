@@ -332,23 +332,25 @@ def main():
              "tabletop, focus 0, the largest weight 1/8:\n",
              diffusion(refocus, folder / "tabletop", args.quick),
              "Fields on tabletop:\n", fields(refocus, folder / "tabletop", pictures),
-             "## Where our outcome differs\n",
-             f"- Fig. 3a: {t1:.0%} of the rays are found after one test and {t2:.0%} more after "
-             "two, next to none later. That T = 1 suffices we do not find: its RMSE at K = 20 is "
-             f"{at20['search T=1']:.1f}, that of T = 2 {at20['search T=2']:.1f}, of full tracing "
-             f"{at20['raytrace']:.1f}.\n"
+             "## Where our results differ\n",
+             f"- Fig. 3a: {t1:.0%} of the rays find an intersection in the first test and "
+             f"{t2:.0%} more in the second, almost none later. We do not confirm that T = 1 "
+             f"suffices: its RMSE at K = 20 is {at20['search T=1']:.1f}, that of T = 2 is "
+             f"{at20['search T=2']:.1f}, and that of full ray tracing {at20['raytrace']:.1f}.\n"
              f"- Table 1: the light field is {'slower' if relative < 1 else 'faster'} than the "
-             f"filter ({relative:.2f} of its frames a second; theirs 0.33), but ours makes 256 "
-             "views, not one for each of 1,257 rays. Jittered sampling, as fast as the filter "
-             f"on their GPU, has {jitter:.2f} of its frames here, in double precision.\n"
-             f"- Noise of jittered sampling costs little in RMSE (a = 2: {at20['jittered a=2']:.1f}"
-             f", a = 4: {at20['jittered a=4']:.1f}); it is seen, not measured, by that.\n"
+             f"filter ({relative:.2f} times its frames a second; in the paper 0.33 times), but ours "
+             "makes 256 views, not one for each of 1,257 rays. Jittered sampling, as fast as the "
+             f"filter on the GPU of the paper, reaches {jitter:.2f} times its frames here, in "
+             "double precision.\n"
+             f"- The noise of jittered sampling hardly raises the RMSE (a = 2: "
+             f"{at20['jittered a=2']:.1f}, a = 4: {at20['jittered a=4']:.1f}), although it is "
+             "plainly visible.\n"
              "- Potmesil's physical wavelengths make rings far below a pixel at photographic "
-             "f-numbers; `--spread lommel` takes the radius of Airy's disc in pixels instead.\n"
+             "f-numbers; `--spread lommel` is therefore given the radius of the Airy disc in pixels.\n"
              "- Mulder's level 3 spreads a pixel over 29x29 by the 5x5 filters alone; the paper "
              "counts 31x31.\n"
-             "- Kosloff's layers come from a renderer; ours are cut from one picture, so nothing "
-             "is known of the hidden background at an edge, and the region beside it stands in.\n"]
+             "- Kosloff's layers come from a renderer; ours are cut from one picture, so "
+             "the hidden background at an edge is not known, and is filled with the colours beside it.\n"]
     (args.out / "papers.md").write_text("\n".join(text), encoding="utf-8")
     print(f"wrote {args.out / 'papers.md'}", file=sys.stderr)
 

@@ -27,8 +27,8 @@ below exact on portrait and tabletop, 1.0 dB on fence.'''
 
 TIME = '''`refocus-depth-quality --time SCENE...`: 320x240 samples to 1920x1080 pixels, memory and threads of
 its own in every call, the least and the median of 21 calls (5 of slow ones), CPU time of the
-whole process. Of a shared machine the wall time is not worth much, the CPU time is. Asked: 5 ms
-on two threads. OpenCV takes the threads that it wants.'''
+whole process. On a shared machine wall time means little; CPU time is reliable. Asked: 5 ms
+on two threads. OpenCV chooses its own number of threads.'''
 
 FLICKER = '''`refocus-depth-flicker --scenes SCENE...`: videos of 20 frames made of the scenes, 150x120 samples
 with new noise of 1 % and new holes of 3 % in each, from the sixth frame on; panning by one sample
@@ -219,7 +219,7 @@ def main():
     photos = os.environ.get('REFOCUS_PHOTOS', os.path.join(TOP, '..', 'shared', 'photos'))
     folders = [os.path.join(scenes, name) for name in ('portrait', 'tabletop', 'fence')]
     there = sections_of(page) if only else {}
-    text = '# Depth: what coarse maps cost, and how good made ones are\n\nWritten by ' \
+    text = '# Depth: cost of coarse maps, and quality of estimated ones\n\nWritten by ' \
            '`tests/quality/depth.py BUILD`.\n'
     with tempfile.TemporaryDirectory() as work:
         parts = list(scene_sections(tools, folders))

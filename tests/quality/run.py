@@ -22,24 +22,24 @@ SCENES = ["portrait", "tabletop", "fence", "nightlights"]
 METHODS = [
     ("input", "method=input", "untouched photo: the floor"),
     ("standard", "method=sweep,highlight=4,thin=1",
-     "the default: two layers, 64 rays, light given back to clipped highlights, thin structures drawn"),
+     "the default: two layers, 64 rays, clipped highlights restored, thin structures composited"),
     ("standard-off", "method=sweep,thin=1", "the same with `--highlights off`"),
-    ("sweep", "method=sweep", "the same of what is in the photo"),
+    ("sweep", "method=sweep", "`standard-off` without thin structures"),
     ("best", "method=sweep,rays=128,highlight=4,thin=1", "the default with 128 rays"),
     ("search-T1-full", "method=search,iterations=1,rays=full",
-     "the paper to the letter: one test, every ray"),
+     "as in the paper: one test, every ray"),
     ("search-T2-full", "method=search,iterations=2,rays=full", "two tests, every ray"),
     ("search-T1", "method=search,iterations=1", "one test, 64 rays"),
     ("search-T2", "method=search,iterations=2", "two tests, 64 rays"),
     ("search-T4-full", "method=search,iterations=4,rays=full", "four tests, every ray"),
     ("search-T2-back", "method=search,iterations=2,background=1",
-     "two tests, 64 rays, hidden rays take the background layer"),
-    ("raytrace", "method=raytrace", "ray tracing, 64 rays, hidden rays mirrored"),
+     "two tests, 64 rays, rays without a hit take the hidden background"),
+    ("raytrace", "method=raytrace", "ray tracing, 64 rays, rays without a hit mirrored"),
 ]
 # Many seconds a view, and so for the twelve views only.
 SLOW = [
     ("raytrace-full", "method=raytrace,rays=full",
-     "ray tracing, every ray, hidden rays mirrored (the oracle)"),
+     "ray tracing, every ray, rays without a hit mirrored (the reference)"),
 ]
 RAYS = [
     ("sweep-full", "rays=full", "every ray"),
@@ -50,7 +50,7 @@ RAYS = [
 ]
 LIGHTS = [
     ("gain-1", "highlight=1", "as the photo has them"),
-    ("gain-2", "highlight=2", "highlights up to twice as bright as white"),
+    ("gain-2", "highlight=2", "highlights of up to twice white"),
     ("gain-3", "highlight=3", "three times"),
     ("gain-4", "highlight=4", "four times: standard"),
     ("gain-4-s400", "highlight=4,sigma=400", "four times, σ = 400"),
@@ -77,9 +77,9 @@ BLENDS = [
     ("stored-s64", "blend=stored,sigma=64", "stored values, σ = 64"),
 ]
 THIN = [
-    ("rays", "highlight=4", "rays alone, 64, show thin structures"),
+    ("rays", "highlight=4", "64 rays, no separation"),
     ("drawn", "highlight=4,thin=1",
-     "far before the focus and in it they are drawn: standard"),
+     "separated and composited far before the focus and in it: standard"),
     ("rays-32", "highlight=4,rays=32", "32 rays: preview"),
     ("drawn-32", "highlight=4,rays=32,thin=1", "32 rays, drawn"),
     ("rays-128", "highlight=4,rays=128", "128 rays"),
