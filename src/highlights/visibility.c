@@ -189,6 +189,10 @@ static struct rf_disc_way way_to(const struct rf_splat_run *run, const struct oc
 
     while (farthest << way.shift <= INT16_MAX / 4)
         way.shift++;
+    /* No pixel is as far away as the farthest. So there is a bit for a slab that is more than half
+     * of the way to a run that is out of focus by 64 pixels and more. */
+    if (fabs(occluder->part) * (65536 >> way.shift) > INT16_MAX && farthest << way.shift <= 1 << 14)
+        way.shift++;
     times = floor(occluder->part * (65536 >> way.shift) + 0.5);
     limit = floor(far * 8388608.0 / (farthest << way.shift));
     way.times = (int16_t)clamp(times, limit < INT16_MAX ? limit : INT16_MAX);

@@ -177,6 +177,51 @@ static void hidden(void **state)
     }
 }
 
+/* A highlight that is out of focus by 100 pixels is cut off by what is most of the way to it. */
+static void hidden_from_afar(void **state)
+{
+    static const uint16_t edges[] = {19661, 6554, 45875}; /* out of focus by 70, 90, 30 pixels */
+
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        struct picture p = picture_flat(W, H, (uint8_t[3]){10, 10, 10}, 0);
+        struct refocus_aperture *gathered = make_aperture(0, true);
+        struct refocus_settings params = refocus_settings_default(1, 100);
+        struct refocus_renderer *renderer;
+        static uint8_t out[2][3 * W * H];
+        double light = 0, off = 0;
+
+        for (int y = 0; y < H; y++)
+            for (int x = 0; x < CX; x++)
+                p.disparity[y * W + x] = edges[k];
+        for (int y = CY - 2; y <= CY + 2; y++)
+            memset(p.rgb + 3 * (y * W + CX + 8), 255, 15);
+        renderer = prepared(&p, 100, 2);
+        params.highlights.gain = 16;
+        params.render.rays = REFOCUS_RAYS_FULL;
+        for (int i = 0; i < 2; i++) {
+            const struct refocus_image image =
+                refocus_image_packed(REFOCUS_FORMAT_RGB8, out[i], W, H, 3 * W);
+
+            params.render.aperture = i ? gathered : NULL;
+            assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+        }
+        for (int i = 0; i < W * H; i++) {
+            const double dark = picture_light(10), of_rays = picture_light(out[1][3 * i + 1]);
+            const double own = picture_light(out[0][3 * i + 1]);
+
+            light += (own - dark) * (own - dark);
+            off += (own - of_rays) * (own - of_rays);
+        }
+        if (off > 0.01 * light || light == 0)
+            fail_msg("an edge at %u: rays do not gather %.4f of what is splatted", edges[k],
+                     off / light);
+        refocus_aperture_destroy(&gathered);
+        refocus_renderer_destroy(&renderer);
+        picture_free(&p);
+    }
+}
+
 /* Light of each channel, at a gain of 4, through such an iris, of what there is
  * without. */
 static void gained(struct refocus_renderer *renderer, int shape, bool gathered, double times[3])
@@ -225,9 +270,8 @@ static void ways(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(discs),
-        cmocka_unit_test(slanted),
-        cmocka_unit_test(hidden),
+        cmocka_unit_test(discs),  cmocka_unit_test(slanted),
+        cmocka_unit_test(hidden), cmocka_unit_test(hidden_from_afar),
         cmocka_unit_test(ways),
     };
 
