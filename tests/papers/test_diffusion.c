@@ -17,7 +17,7 @@ static double now(void)
  * that is white in the middle. Red before green: green in the middle means it leaks. */
 static void figure_2(void **state)
 {
-    enum { SIDE = 120, RADIUS = 40, RIM = 8 };
+    enum { SIDE = 120, RADIUS = 40, EDGE = 8 };
     struct picture p = picture_flat(SIDE, SIDE, (uint8_t[3]){0, 200, 0}, 0);
     static uint8_t field[SIDE * SIDE], out[3 * SIDE * SIDE];
     struct refocus_disparity map = refocus_disparity8(field, SIDE, SIDE, SIDE);
@@ -35,7 +35,7 @@ static void figure_2(void **state)
             p.rgb[3 * i] = (uint8_t)(i / 4 % 2 ? 255 : 180);
             p.rgb[3 * i + 1] = 0;
         }
-        field[i] = r < RADIUS - RIM ? 255 : 0;
+        field[i] = r < RADIUS - EDGE ? 255 : 0;
     }
     renderer = prepared(&p, 30, 2);
     for (uint32_t solver = 0; solver < 2; solver++) {
@@ -54,14 +54,14 @@ static void figure_2(void **state)
                 fail_msg("%d of the wall shines through at radius %g", out[3 * i + 1], r);
             if (r >= RADIUS)
                 assert_memory_equal(out + 3 * i, p.rgb + 3 * i, 3);
-            if (r < RADIUS - 2 * RIM && abs(out[3 * i] - 222) > 12)
+            if (r < RADIUS - 2 * EDGE && abs(out[3 * i] - 222) > 12)
                 fail_msg("the middle is %d, its texture should be gone", out[3 * i]);
         }
     }
     /* The naive filter: alpha averaged over a disc of the pixel's own radius. */
     for (int y = -30; y <= 30; y++)
         for (int x = -30; x <= 30; x++) /* about a pixel near the edge, blurred by 30 */
-            naive_leak += hypot(x, y) <= 30 && hypot(x + RADIUS - RIM - 2, y) >= RADIUS;
+            naive_leak += hypot(x, y) <= 30 && hypot(x + RADIUS - EDGE - 2, y) >= RADIUS;
     naive_leak /= 30 * 30 * 3.14159;
     assert_true(naive_leak > 0.1);
     refocus_renderer_destroy(&renderer);
