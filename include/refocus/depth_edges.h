@@ -39,7 +39,7 @@ struct refocus_depth_edges_report {
     float on_photo;       /**< share of the edges that lie on the photo's, 0 to 1 */
     float grown;          /**< near surfaces were made smaller by so much; < 0: larger */
     float shift_x;        /**< the whole map was moved to the right by so much */
-    float shift_y;        /**< and down */
+    float shift_y;        /**< the whole map was moved down by so much */
     uint32_t bent;        /**< 1: edges were moved block by block */
     uint32_t parted;      /**< 1: pixels of ramps were given to one of two surfaces */
     float changed;        /**< share of the pixels that differ by 1/255 or more from the map as

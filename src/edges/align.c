@@ -24,7 +24,7 @@
 
 enum {
     REACH = RF_EDGE_SHIFT,
-    SHIFTS = 89, /* that are no longer than sqrt(REACH^2 + 1) */
+    SHIFTS = 89, /* shifts that are no longer than sqrt(REACH^2 + 1) */
     GROWTHS = 2 * REACH + 3,
     FEWEST = 200, /* edges that can tell */
     LARGE_BLOCK = 16,
@@ -41,14 +41,14 @@ struct shift {
     int x, y;
 };
 
-/* What the blocks of a map say. Sums are over the edges of a block, smoothed over neighbours. */
+/* The edges of a map, summed up block by block and smoothed over neighbouring blocks. */
 struct blocks {
     struct rf_edges *e;
     int side, across, down;
     int shifts, every;
     struct shift shift[SHIFTS];
     int32_t *support;      /* for each shift and block */
-    int32_t *count;        /* of edges, in 1/256 */
+    int32_t *count;        /* number of edges, in 1/256 */
     double *right, *below; /* where the edges of a block fit best, pixels */
     double *weight;
     int64_t total[SHIFTS];
@@ -137,7 +137,7 @@ static int64_t median(const int64_t *value, int n)
     return sorted[n / 2];
 }
 
-/* What one block wants. */
+/* The shift that one block wants. */
 struct wish {
     struct shift shift;
     double gain; /* in support over that in place, in medians; longer shifts have to gain more */

@@ -76,11 +76,11 @@ struct rf_edges {
     uint16_t *near, *far; /* the ends of a ramp; both are the pixel's own where there is none */
     uint16_t *label;      /* the end that a pixel of a ramp is closer to; else its own disparity */
     uint16_t *largest;    /* the largest step on a ramp */
-    uint16_t *spare;      /* what a pass writes before it replaces what it reads */
+    uint16_t *spare;      /* output of a pass before it replaces its input */
     uint16_t *kept;       /* the map before a change that may be taken back */
     struct rf_photo_gradient gradient;
-    struct rf_edge_range *range; /* of blocks */
-    uint8_t *rough;              /* of blocks: whether there may be an edge */
+    struct rf_edge_range *range; /* one for each block */
+    uint8_t *rough;              /* one for each block: whether there may be an edge */
     struct rf_map_edge *edge;
     int edges, most_edges;
     struct rf_edge_blocks blocks;

@@ -10,7 +10,7 @@ enum {
     FLAT = 79,       /* 0.0012: a smaller step belongs to the surface */
     ENDS = 12,       /* so does one of less than a twelfth of the ramp's largest step */
     CLEAR = 6554,    /* 0.1: contrasts that softness is measured by */
-    BINS = 256,      /* of contrast / largest step, in 1/16 pixels */
+    BINS = 256,      /* contrast / largest step, in 1/16 pixels */
     FEWEST = 50,     /* pixels along edges to measure softness by */
     PERCENTILE = 85, /* wires and hair look less soft than the map is: their two ramps overlap */
 };

@@ -15,7 +15,7 @@
 
 enum {
     MOST_REACH = 16,
-    DENSE_REACH = 9, /* of more, every other row is looked at */
+    DENSE_REACH = 9, /* beyond it every other row is looked at */
     SIDE = 2 * MOST_REACH + 1,
     ALIKE = 5,  /* a surface goes on with less than a fifth of the ramp's contrast */
     FEWEST = 4, /* pixels that show it */
@@ -24,8 +24,8 @@ _Static_assert(SIDE *(MOST_REACH + 1) <= RF_MOST_VOTERS, "no window has more pix
 
 struct settle {
     struct rf_edges *e;
-    int width;          /* of the band, pixels */
-    uint16_t *contrast; /* of the greatest ramp near by; 0 outside of bands */
+    int width;          /* half of the band, pixels */
+    uint16_t *contrast; /* contrast of the greatest ramp near by; 0 outside of bands */
     int reach, step;
     uint8_t nearness[SIDE][SIDE];
 };
@@ -89,7 +89,7 @@ static void widen_columns(void *context, int band, int worker)
     }
 }
 
-/* Those beyond bands, from whom the others take their disparity. */
+/* Cores are the pixels beyond bands, from which the others take their disparity. */
 static void find_cores(void *context, int band, int worker)
 {
     const struct settle *settle = context;

@@ -27,7 +27,7 @@ enum {
     SIDE = 2 * MOST_REACH + 1,
     WHOLE = 65536,
     MOST_OWN = WHOLE * 85 / 100, /* a surface that has this much of the window is not thin */
-    LEAST_OWN = 2,               /* of which too little is seen: the mean of B^2 is 1/50 */
+    LEAST_OWN = 2, /* percent: too little is seen of a surface whose mean of B^2 is less */
 };
 
 struct thin {

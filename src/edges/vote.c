@@ -16,7 +16,7 @@
 
 enum {
     MOST_REACH = 16,
-    DENSE_REACH = 9, /* of more, every other row votes */
+    DENSE_REACH = 9, /* beyond it every other row votes */
     SIDE = 2 * MOST_REACH + 1,
 };
 _Static_assert((2 * DENSE_REACH + 1) * (2 * DENSE_REACH + 1) <= RF_MOST_VOTERS &&

@@ -33,10 +33,10 @@ typedef void rf_steepest_fn(uint8_t *out, const uint16_t *const row[3], int n);
  */
 enum { RF_MOST_VOTERS = 578 };
 struct rf_vote_window {
-    const uint8_t *colour[3]; /* of the window's first pixel, as voters and nearness */
+    const uint8_t *colour[3]; /* the window's first pixel, as in `voter` */
     const uint16_t *voter;    /* disparity, at least 1; 0: none */
     ptrdiff_t stride;         /* elements of the planes above */
-    const uint8_t *nearness;  /* of the window's rows that are looked at */
+    const uint8_t *nearness;  /* rows of the window that are looked at */
     ptrdiff_t nearness_stride;
     int columns, rows, step;
     uint8_t own[3]; /* the pixel's colour */

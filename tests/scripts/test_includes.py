@@ -14,8 +14,8 @@ import sys
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 # What the core is made of, from the ground up. A folder knows those before it.
 ORDER = ['tables', 'support', 'colour', 'simd', 'kernels', 'image', 'aperture', 'optics', 'focus',
-         'depth', 'tiles', 'background', 'passes', 'thin', 'highlights', 'look', 'gather', 'papers',
-         'renderer']
+         'depth', 'edges', 'tiles', 'background', 'passes', 'thin', 'highlights', 'look', 'gather',
+         'papers', 'renderer']
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.M)
 SOURCES = ('*.c', '*.h', '*.cpp', '*.hpp')
 MOST_NAMING_THE_RENDERER = 20

@@ -17,7 +17,7 @@ const char *edges_summary(uint32_t index);
 int edges_place(const struct refocus_image *photo, uint16_t **disparity, int width, int height,
                 struct refocus_depth_edges_report *report, const char *name);
 
-/* What was found and done; null for a report of nothing. */
+/* The report as JSON; null where edges were left as given. */
 json_t *edges_json(const struct refocus_depth_edges_report *report);
 
 #endif
