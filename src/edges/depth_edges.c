@@ -66,33 +66,36 @@ static void lay_out(struct rf_edges *e, struct rf_arena *arena)
 
 /* ----- photo and map ----- */
 
-static uint8_t mean_code(const struct refocus_image *photo, int bytes, int x, int y, int side)
+/* The mean code of the pixels of a square, cut off at the sides of the photo. */
+static uint8_t mean_code(const uint8_t *in, ptrdiff_t stride, int bytes, int width, int height)
 {
-    const int x1 = rf_smaller(x + side, photo->width), y1 = rf_smaller(y + side, photo->height);
-    const int n = (x1 - x) * (y1 - y);
+    const int n = width * height;
     int sum = n / 2;
 
-    for (int v = y; v < y1; v++)
-        for (int u = x; u < x1; u++)
-            sum += photo->plane[0][v * photo->stride[0] + (ptrdiff_t)u * bytes];
+    for (int v = 0; v < height; v++)
+        for (int u = 0; u < width; u++)
+            sum += in[v * stride + (ptrdiff_t)u * bytes];
     return (uint8_t)(sum / n);
 }
 
 static void load_photo(void *context, int y, int worker)
 {
     const struct job *job = context;
-    const struct rf_order order = rf_order_of(job->photo->format);
+    const struct refocus_image *photo = job->photo;
+    const struct rf_order order = rf_order_of(photo->format);
     const int at[3] = {order.r, order.g, order.b}, k = job->reduced;
     const struct rf_edges *e = &job->edges;
 
     (void)worker;
     for (int c = 0; c < 3; c++) {
-        struct refocus_image channel = *job->photo;
+        const uint8_t *in = photo->plane[0] + (ptrdiff_t)y * k * photo->stride[0] + at[c];
         uint8_t *out = e->colour[c] + y * e->stride;
 
-        channel.plane[0] += at[c];
         for (int x = 0; x < e->width; x++)
-            out[x] = mean_code(&channel, order.bytes, x * k, y * k, k);
+            out[x] = k == 1 ? in[(ptrdiff_t)x * order.bytes]
+                            : mean_code(in + (ptrdiff_t)x * k * order.bytes, photo->stride[0],
+                                        order.bytes, rf_smaller(k, photo->width - x * k),
+                                        rf_smaller(k, photo->height - y * k));
     }
 }
 
@@ -280,7 +283,7 @@ static void choose_size(struct job *job)
     } while ((int64_t)map->width * MOST_ENLARGED < e->width &&
              (int64_t)map->height * MOST_ENLARGED < e->height);
     job->reduced /= 2;
-    e->stride = e->width + 2;
+    e->stride = rf_larger(e->width, RF_MOST_VOTE_COLUMNS) + 2;
     job->columns = rf_smaller(map->width, e->width);
     job->rows = rf_smaller(map->height, e->height);
     job->enlarged = job->columns != e->width || job->rows != e->height || job->reduced > 1 ||

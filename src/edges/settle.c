@@ -5,29 +5,21 @@
  * surface goes on beyond the band take the mean of what is there. What has nothing like it beyond
  * the band is thin, and is left to thin.c.
  */
-#include "edges/edges.h"
+#include "edges/window.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-#include "support/compare.h"
-#include "support/exp_minus.h"
-
 enum {
-    MOST_REACH = 16,
-    DENSE_REACH = 9, /* beyond it every other row is looked at */
-    SIDE = 2 * MOST_REACH + 1,
     ALIKE = 5,  /* a surface goes on with less than a fifth of the ramp's contrast */
     FEWEST = 4, /* pixels that show it */
 };
-_Static_assert(SIDE *(MOST_REACH + 1) <= RF_MOST_VOTERS, "no window has more pixels");
 
 struct settle {
     struct rf_edges *e;
     int width;          /* half of the band, pixels */
     uint16_t *contrast; /* contrast of the greatest ramp near by; 0 outside of bands */
-    int reach, step;
-    uint8_t nearness[SIDE][SIDE];
+    uint16_t *core;     /* disparity beyond bands; 0 in them */
+    struct rf_vote_shape shape;
 };
 
 static void find_contrast(void *context, int band, int worker)
@@ -97,12 +89,17 @@ static void find_cores(void *context, int band, int worker)
     const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++)
+    for (int y = band * RF_EDGE_BAND; y < end; y++) {
+        uint16_t *core = settle->core + y * e->stride;
+
         for (int x = 0; x < e->width; x++) {
             const ptrdiff_t at = y * e->stride + x;
 
-            e->largest[at] = settle->contrast[at] ? 0 : (uint16_t)rf_larger(e->map[at], 1);
+            core[x] = settle->contrast[at] ? 0 : (uint16_t)rf_larger(e->map[at], 1);
         }
+        for (int x = e->width; x < RF_MOST_VOTE_COLUMNS; x++)
+            core[x] = 0;
+    }
 }
 
 static struct rf_core_sums look(const struct settle *settle, int x, int y)
@@ -110,18 +107,15 @@ static struct rf_core_sums look(const struct settle *settle, int x, int y)
     const struct rf_edges *e = settle->e;
     const ptrdiff_t at = y * e->stride + x;
     const int own = e->label[at], most = settle->contrast[at] / ALIKE;
-    const int left = rf_smaller(settle->reach, x);
-    const int right = rf_smaller(settle->reach, e->width - 1 - x);
-    const int above = rf_smaller(settle->reach, y) / settle->step;
-    const int below = rf_smaller(settle->reach, e->height - 1 - y) / settle->step;
+    const struct rf_vote_place place = rf_place_window(e, &settle->shape, x, y);
     const struct rf_core_window window = {
-        .core = e->largest + at - above * settle->step * e->stride - left,
+        .core = settle->core + place.first,
         .stride = e->stride,
-        .nearness = &settle->nearness[MOST_REACH - above * settle->step][MOST_REACH - left],
-        .nearness_stride = SIDE * settle->step,
-        .columns = left + 1 + right,
-        .rows = above + 1 + below,
-        .step = settle->step,
+        .nearness = place.nearness,
+        .nearness_stride = sizeof settle->shape.nearness[0] * settle->shape.step,
+        .columns = settle->shape.columns,
+        .rows = place.rows,
+        .step = settle->shape.step,
         .least = (uint16_t)rf_larger(own - most, 1),
         .most = (uint16_t)rf_smaller(own + most, 65535),
     };
@@ -154,16 +148,14 @@ static void settle_band(void *context, int band, int worker)
 
 void rf_settle(struct rf_edges *e, double softness)
 {
-    struct settle settle = {.e = e, .width = (int)(0.7 * softness + 1), .contrast = e->kept};
-    double spread;
+    struct settle settle = {
+        .e = e,
+        .width = (int)(0.7 * softness + 1),
+        .contrast = e->kept,
+        .core = e->largest,
+        .shape = rf_vote_shape(softness, 0.35),
+    };
 
-    settle.reach = rf_smaller(rf_larger((int)(3.5 * softness + 0.5), 6), MOST_REACH);
-    settle.step = settle.reach > DENSE_REACH ? 2 : 1;
-    spread = 0.35 * settle.reach;
-    for (int y = -MOST_REACH; y <= MOST_REACH; y++)
-        for (int x = -MOST_REACH; x <= MOST_REACH; x++)
-            settle.nearness[MOST_REACH + y][MOST_REACH + x] =
-                (uint8_t)(255 * rf_exp_minus((x * x + y * y) / (2 * spread * spread)) + 0.5);
     rf_pool_run(e->pool, find_contrast, &settle, rf_edge_bands(e));
     rf_pool_run(e->pool, widen_rows, &settle, rf_edge_bands(e));
     rf_pool_run(e->pool, widen_columns, &settle, rf_edge_bands(e));

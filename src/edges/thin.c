@@ -13,18 +13,13 @@
  * A wire of 2 pixels in a map of softness 2: B = 0.38 in its middle. With the wire at 0.9 and 0.1
  * behind it the map's peak is 0.38 0.9 + 0.62 0.1 = 0.40; v = (0.40 - 0.062) / 0.38 = 0.9.
  */
-#include "edges/edges.h"
+#include "edges/window.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "support/compare.h"
-#include "support/exp_minus.h"
-
 enum {
-    MOST_REACH = 16,
-    SIDE = 2 * MOST_REACH + 1,
     WHOLE = 65536,
     MOST_OWN = WHOLE * 85 / 100, /* a surface that has this much of the window is not thin */
     LEAST_OWN = 2, /* percent: too little is seen of a surface whose mean of B^2 is less */
@@ -34,49 +29,52 @@ struct thin {
     struct rf_edges *e;
     uint16_t *own;   /* B, Q16 */
     uint16_t *other; /* O */
-    int reach, near_by;
-    uint16_t gauss[SIDE][SIDE]; /* Q16, of sum 1 */
+    int reach, near_by, columns;
+    /* The Gaussian in Q16, of sum 1 at most, and 0 beyond the reach. */
+    uint16_t gauss[2 * RF_VOTE_REACH + 1][2 * RF_VOTE_MIDDLE + 1];
 };
 
+/* Rounded down: the sum of all may not exceed 1. */
 static void make_gauss(struct thin *thin, double softness)
 {
-    double line[SIDE], sum = 0;
+    const int reach = thin->reach;
+    double line[2 * RF_VOTE_REACH + 1], sum = 0;
 
-    for (int i = 0; i <= 2 * thin->reach; i++) {
-        const double off = (i - thin->reach) / softness;
+    for (int i = 0; i <= 2 * reach; i++) {
+        const double off = (i - reach) / softness;
 
         line[i] = rf_exp_minus(off * off / 2);
         sum += line[i];
     }
-    for (int y = 0; y <= 2 * thin->reach; y++)
-        for (int x = 0; x <= 2 * thin->reach; x++)
-            thin->gauss[y][x] = (uint16_t)(WHOLE * line[y] * line[x] / (sum * sum) + 0.5);
+    for (int y = 0; y <= 2 * reach; y++)
+        for (int x = 0; x <= 2 * reach; x++)
+            thin->gauss[RF_VOTE_REACH - reach + y][RF_VOTE_MIDDLE - reach + x] =
+                (uint16_t)(WHOLE * line[y] * line[x] / (sum * sum));
 }
 
-/* Beyond the sides the last pixel is repeated, as a Gaussian filter does. */
+/* Shares are those of what lies within the map. */
 static void part_window(const struct thin *thin, int x, int y)
 {
     const struct rf_edges *e = thin->e;
     const ptrdiff_t at = y * e->stride + x;
-    const int surface = e->label[at], reach = thin->reach;
-    uint32_t own = 0;
-    uint64_t other = 0;
+    const int above = rf_smaller(thin->reach, y);
+    const int below = rf_smaller(thin->reach, e->height - 1 - y);
+    const int last = rf_larger(e->width - thin->columns, 0);
+    const int left = rf_smaller(rf_larger(x - thin->reach, 0), last);
+    const struct rf_surface_window window = {
+        .label = e->label + (y - above) * e->stride + left,
+        .stride = e->stride,
+        .weight = &thin->gauss[RF_VOTE_REACH - above][RF_VOTE_MIDDLE - (x - left)],
+        .weight_stride = sizeof thin->gauss[0] / sizeof thin->gauss[0][0],
+        .columns = thin->columns,
+        .rows = above + 1 + below,
+        .surface = e->label[at],
+        .most = RF_EDGE_STEP,
+    };
+    const struct rf_surface_sums sums = e->kernels->surface_sums(&window);
 
-    for (int v = -reach; v <= reach; v++) {
-        const uint16_t *row = e->label + rf_smaller(rf_larger(y + v, 0), e->height - 1) * e->stride;
-        const uint16_t *gauss = thin->gauss[v + reach];
-
-        for (int u = -reach; u <= reach; u++) {
-            const int d = row[rf_smaller(rf_larger(x + u, 0), e->width - 1)];
-
-            if (abs(d - surface) < RF_EDGE_STEP)
-                own += gauss[u + reach];
-            else
-                other += (uint32_t)gauss[u + reach] * (uint32_t)d;
-        }
-    }
-    thin->own[at] = (uint16_t)(own < WHOLE ? own : WHOLE - 1);
-    thin->other[at] = (uint16_t)(other >> 16 < WHOLE ? other >> 16 : WHOLE - 1);
+    thin->own[at] = (uint16_t)rf_smaller((int)((uint64_t)sums.own * WHOLE / sums.all), WHOLE - 1);
+    thin->other[at] = (uint16_t)((uint64_t)sums.other / sums.all);
 }
 
 static void part_band(void *context, int band, int worker)
@@ -91,6 +89,27 @@ static void part_band(void *context, int band, int worker)
             thin->own[y * e->stride + x] = WHOLE - 1;
             if (rf_edge_is_rough(e, x, y))
                 part_window(thin, x, y);
+        }
+}
+
+/* Marks the blocks that are looked at to explain a pixel of a thin surface. */
+static void mark_blocks(struct rf_edges *e, int reach)
+{
+    const int across = rf_edge_blocks_across(e);
+    const int down = (e->height + RF_EDGE_BLOCK - 1) / RF_EDGE_BLOCK;
+    const int blocks = (reach + RF_EDGE_BLOCK - 1) / RF_EDGE_BLOCK;
+
+    memset(e->rough, 0, (size_t)across * (size_t)down);
+    for (int y = 0; y < e->height; y++)
+        for (int x = 0; x < e->width; x++) {
+            const int u = x / RF_EDGE_BLOCK, v = y / RF_EDGE_BLOCK;
+            const int last = rf_smaller(v + blocks, down - 1), left = rf_larger(u - blocks, 0);
+
+            if (e->is_wide[y * e->stride + x])
+                continue;
+            for (int row = rf_larger(v - blocks, 0); row <= last; row++)
+                memset(e->rough + row * across + left, 1,
+                       (size_t)(rf_smaller(u + blocks, across - 1) - left + 1));
         }
 }
 
@@ -134,8 +153,7 @@ static void explain_band(void *context, int band, int worker)
         for (int x = 0; x < e->width; x++) {
             const ptrdiff_t at = y * e->stride + x;
 
-            e->spare[at] =
-                e->is_wide[at] || thin->own[at] > MOST_OWN ? e->label[at] : explain(thin, x, y);
+            e->spare[at] = e->is_wide[at] ? e->label[at] : explain(thin, x, y);
         }
 }
 
@@ -144,10 +162,13 @@ void rf_restore_thin(struct rf_edges *e, double softness)
     const double spread = 1.15 * softness; /* with what the decision of pixels adds */
     struct thin thin = {.e = e, .own = e->near, .other = e->far};
 
-    thin.reach = rf_smaller((int)ceil(2.2 * spread), MOST_REACH);
+    if (e->width < RF_MOST_VOTE_COLUMNS) /* windows do not fit */
+        return;
+    thin.reach = rf_smaller((int)ceil(2.2 * spread), RF_VOTE_REACH);
+    thin.columns = 2 * thin.reach < RF_VOTE_COLUMNS ? RF_VOTE_COLUMNS : RF_MOST_VOTE_COLUMNS;
     thin.near_by = rf_larger(thin.reach, 3);
     make_gauss(&thin, spread);
-    rf_find_rough_blocks(e, e->label);
+    mark_blocks(e, thin.near_by);
     rf_pool_run(e->pool, part_band, &thin, rf_edge_bands(e));
     rf_pool_run(e->pool, explain_band, &thin, rf_edge_bands(e));
     for (int y = 0; y < e->height; y++)

@@ -9,27 +9,15 @@
  * and takes the mean of those that it was given to. The second term is what the map itself says: it
  * decides where the photo does not.
  */
-#include "edges/edges.h"
-
-#include "support/compare.h"
-#include "support/exp_minus.h"
-
-enum {
-    MOST_REACH = 16,
-    DENSE_REACH = 9, /* beyond it every other row votes */
-    SIDE = 2 * MOST_REACH + 1,
-};
-_Static_assert((2 * DENSE_REACH + 1) * (2 * DENSE_REACH + 1) <= RF_MOST_VOTERS &&
-                   SIDE * (MOST_REACH + 1) <= RF_MOST_VOTERS,
-               "no window has more voters");
+#include "edges/window.h"
 
 struct vote {
     struct rf_edges *e;
     uint16_t *voter;
-    int reach, step;
-    uint8_t nearness[SIDE][SIDE]; /* a Gaussian of 3/4 of the reach */
+    struct rf_vote_shape shape;
 };
 
+/* What lies beyond the right side of a narrow map does not vote. */
 static void find_voters(void *context, int band, int worker)
 {
     const struct vote *vote = context;
@@ -37,34 +25,35 @@ static void find_voters(void *context, int band, int worker)
     const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++)
+    for (int y = band * RF_EDGE_BAND; y < end; y++) {
+        uint16_t *voter = vote->voter + y * e->stride;
+
         for (int x = 0; x < e->width; x++) {
             const ptrdiff_t at = y * e->stride + x;
 
-            vote->voter[at] =
-                rf_is_between(e, at, e->map[at]) ? 0 : (uint16_t)rf_larger(e->label[at], 1);
+            voter[x] = rf_is_between(e, at, e->map[at]) ? 0 : (uint16_t)rf_larger(e->label[at], 1);
         }
+        for (int x = e->width; x < RF_MOST_VOTE_COLUMNS; x++)
+            voter[x] = 0;
+    }
 }
 
-/* The rows of a window are those whose distance from its middle is a multiple of the step. */
 static struct rf_votes ask(const struct vote *vote, int x, int y)
 {
     const struct rf_edges *e = vote->e;
     const ptrdiff_t at = y * e->stride + x;
+    const struct rf_vote_place place = rf_place_window(e, &vote->shape, x, y);
     const int near = e->near[at], far = e->far[at], half = (near - far) / 2;
-    const int left = rf_smaller(vote->reach, x), right = rf_smaller(vote->reach, e->width - 1 - x);
-    const int above = rf_smaller(vote->reach, y) / vote->step;
-    const int below = rf_smaller(vote->reach, e->height - 1 - y) / vote->step;
-    const ptrdiff_t first = at - above * vote->step * e->stride - left;
     const struct rf_vote_window window = {
-        .colour = {e->colour[0] + first, e->colour[1] + first, e->colour[2] + first},
-        .voter = vote->voter + first,
+        .colour = {e->colour[0] + place.first, e->colour[1] + place.first,
+                   e->colour[2] + place.first},
+        .voter = vote->voter + place.first,
         .stride = e->stride,
-        .nearness = &vote->nearness[MOST_REACH - above * vote->step][MOST_REACH - left],
-        .nearness_stride = SIDE * vote->step,
-        .columns = left + 1 + right,
-        .rows = above + 1 + below,
-        .step = vote->step,
+        .nearness = place.nearness,
+        .nearness_stride = sizeof vote->shape.nearness[0] * vote->shape.step,
+        .columns = vote->shape.columns,
+        .rows = place.rows,
+        .step = vote->shape.step,
         .own = {e->colour[0][at], e->colour[1][at], e->colour[2][at]},
         .least = (uint16_t)rf_larger(far - half, 1),
         .middle = (uint16_t)((near + far) / 2),
@@ -164,16 +153,8 @@ static void clean_band(void *context, int band, int worker)
 
 void rf_vote(struct rf_edges *e, double softness)
 {
-    struct vote vote = {.e = e, .voter = e->largest};
-    double spread;
+    struct vote vote = {.e = e, .voter = e->largest, .shape = rf_vote_shape(softness, 0.75)};
 
-    vote.reach = rf_smaller(rf_larger((int)(3.5 * softness + 0.5), 6), MOST_REACH);
-    vote.step = vote.reach > DENSE_REACH ? 2 : 1;
-    spread = 0.75 * vote.reach;
-    for (int y = -MOST_REACH; y <= MOST_REACH; y++)
-        for (int x = -MOST_REACH; x <= MOST_REACH; x++)
-            vote.nearness[MOST_REACH + y][MOST_REACH + x] =
-                (uint8_t)(255 * rf_exp_minus((x * x + y * y) / (2 * spread * spread)) + 0.5);
     rf_pool_run(e->pool, find_voters, &vote, rf_edge_bands(e));
     rf_pool_run(e->pool, decide_band, &vote, rf_edge_bands(e));
     rf_pool_run(e->pool, clean_band, &vote, rf_edge_bands(e));

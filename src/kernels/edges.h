@@ -21,17 +21,25 @@ enum { RF_NO_DIRECTION = 8 };
 typedef void rf_steepest_fn(uint8_t *out, const uint16_t *const row[3], int n);
 
 /*
+ * Windows around a pixel: rows 0, step, 2 step ... of columns 0 to columns - 1. They are a multiple
+ * of RF_VOTE_COLUMNS, so that vectors are full: where less is wanted, nearness is 0.
+ */
+enum {
+    RF_VOTE_COLUMNS = 16,
+    RF_MOST_VOTE_ROWS = 32,
+    RF_MOST_VOTE_COLUMNS = 32,
+};
+
+/*
  * tally: how much those around a pixel that look like it are near, and how much far: sums of
  *
  *     weight = nearness (1 - (difference / 73)^2)^8 / 32,   difference = |R - r| + |G - g| + |B -
  * b|
  *
- * (a Gaussian, nearly, of 18 codes) over the pixels of a window whose disparity is from `least` to
- * `most`; above `middle` they are near. *_value are sums of weight x (disparity - least) / 32, all
- * rounded down. A window has rows 0, step, 2 step ... of columns 0 to columns - 1; a voter of 0
- * does not vote. At most RF_MOST_VOTERS: then all sums fit 32 bits.
+ * (a Gaussian, nearly, of 18 codes) over the pixels of a window whose disparity is from `least`,
+ * not 0, to `most`; above `middle` they are near. *_value are sums of weight x (disparity - least)
+ * / 32, all rounded down. A voter of 0 does not vote.
  */
-enum { RF_MOST_VOTERS = 578 };
 struct rf_vote_window {
     const uint8_t *colour[3]; /* the window's first pixel, as in `voter` */
     const uint16_t *voter;    /* disparity, at least 1; 0: none */
@@ -45,16 +53,17 @@ struct rf_vote_window {
 struct rf_votes {
     uint32_t near, far, near_value, far_value;
 };
-static_assert((uint64_t)RF_MOST_VOTERS * (255 * 255 / 32) * (65535 / 32) <= UINT32_MAX,
+static_assert((uint64_t)RF_MOST_VOTE_ROWS * RF_MOST_VOTE_COLUMNS * (255 * 255 / 32) *
+                      (65535 / 32) <=
+                  UINT32_MAX,
               "sums of values fit 32 bits");
 typedef struct rf_votes rf_tally_fn(const struct rf_vote_window *window);
 
 /*
- * core_sums: of the pixels of a window whose disparity is from `least`, which is not 0, to `most`:
- * how many there are, the sum of their nearness, and that of nearness times disparity. Rows as for
- * tally; at most RF_MOST_CORE_COLUMNS columns, so that the sums of a row fit 32 bits.
+ * core_sums: of the pixels of a window whose nearness is not 0 and whose disparity is from `least`,
+ * not 0, to `most`: how many there are, the sum of their nearness, and that of nearness times
+ * disparity.
  */
-enum { RF_MOST_CORE_COLUMNS = 256 };
 struct rf_core_window {
     const uint16_t *core; /* disparity, at least 1; 0: none */
     ptrdiff_t stride;
@@ -67,7 +76,25 @@ struct rf_core_sums {
     uint64_t value;
     uint32_t weight, count;
 };
-static_assert((uint64_t)RF_MOST_CORE_COLUMNS * 255 * 65535 <= UINT32_MAX, "a row fits 32 bits");
+static_assert((uint64_t)RF_MOST_VOTE_ROWS * 255 * 65535 <= UINT32_MAX, "a column fits 32 bits");
 typedef struct rf_core_sums rf_core_sums_fn(const struct rf_core_window *window);
+
+/*
+ * surface_sums: the weights of the pixels of a window (step 1) that differ by less than `most` from
+ * `surface`, those of all, and the sum of weight times disparity over the others. Weights add up to
+ * at most 2^16, so that every sum fits 32 bits.
+ */
+struct rf_surface_window {
+    const uint16_t *label; /* disparity */
+    ptrdiff_t stride;
+    const uint16_t *weight; /* Q16 */
+    ptrdiff_t weight_stride;
+    int columns, rows;
+    uint16_t surface, most;
+};
+struct rf_surface_sums {
+    uint32_t own, all, other;
+};
+typedef struct rf_surface_sums rf_surface_sums_fn(const struct rf_surface_window *window);
 
 #endif
