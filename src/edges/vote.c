@@ -17,7 +17,7 @@ struct vote {
     struct rf_vote_shape shape;
 };
 
-/* What lies beyond the right side of a narrow map does not vote. */
+/* Columns beyond the right side of a narrow map do not vote. */
 static void find_voters(void *context, int band, int worker)
 {
     const struct vote *vote = context;
