@@ -36,7 +36,7 @@ struct refocus_depth_edges_report {
     uint32_t struct_size; /**< sizeof(struct refocus_depth_edges_report), set by the caller */
     float softness;       /**< standard deviation of the Gaussian that would make such edges of
                                sharp ones; 0.4 = sharp, 0 = there are too few edges to tell */
-    float on_photo;       /**< share of the edges that lie on the photo's, 0 to 1 */
+    float on_photo;       /**< share of the edges that lie on the photo's, 0 to 1, in the end */
     float grown;          /**< near surfaces were made smaller by so much; < 0: larger */
     float shift_x;        /**< the whole map was moved to the right by so much */
     float shift_y;        /**< the whole map was moved down by so much */
@@ -66,6 +66,8 @@ static inline struct refocus_depth_edges_report refocus_depth_edges_report_defau
  *   - Wires and hair get back the disparity that a soft map mixed with what is behind them.
  *
  * A map of the photo's size that is sharp and lies on the photo comes out as it is, to the code.
+ * A small map whose samples were taken at points, as sensors do, is brought to the photo's size by
+ * refocus_upsample(): its edges are not looked for in the photo, and on_photo is 0.
  * Of large photos with small maps the work is done at up to four times the map's size, and the
  * rest by refocus_upsample(). The result does not depend on threads or processor.
  *

@@ -19,6 +19,9 @@ enum {
 /* Softer edges are ramps of several pixels, which show. An exact map has 0.4, with smooth
  * silhouettes 1; straight lines between samples two pixels apart make 1.2. */
 static const double SOFT = 1.25;
+/* Samples of a small map that were taken at points, as sensors do, have 0.4 at their own size;
+ * means over areas mix two surfaces along edges and have 0.7 and more. */
+static const double MIXED = 0.6;
 
 struct job {
     const struct refocus_image *photo;
@@ -183,6 +186,20 @@ static void load_map(struct job *job)
     rf_pool_run(e->pool, enlarge_row, job, e->height);
 }
 
+/* The softness of the samples as they are, in pixels of their own. */
+static double softness_of_samples(struct job *job)
+{
+    struct rf_edges own = job->edges;
+
+    own.width = job->columns;
+    own.height = job->rows;
+    job->sample.at = own.map;
+    rf_pool_run(own.pool, load_samples, job, job->rows);
+    rf_find_ramps(&own, (struct rf_ramp_limits){.steps = 16, .contrast = RF_EDGE_STEP});
+    job->sample.at = own.near;
+    return rf_measure_softness(&own);
+}
+
 /* ----- order of the passes ----- */
 
 /* Works on job->edges and leaves the result in its map; says whether it differs from the samples.
@@ -249,6 +266,17 @@ static void copy_samples(const struct refocus_disparity *map, uint16_t *out, ptr
     }
 }
 
+static int upsample(const struct refocus_image *photo, const struct refocus_disparity *map,
+                    const struct refocus_depth_edges_params *params, uint16_t *out,
+                    ptrdiff_t stride)
+{
+    struct refocus_upsample_params upsample = refocus_upsample_params_default();
+
+    upsample.threads = params->threads;
+    upsample.cpu = params->cpu;
+    return refocus_upsample(photo, map, &upsample, out, stride);
+}
+
 /* Brings the result to the photo's size. */
 static int give_out(const struct job *job, const struct refocus_depth_edges_params *params,
                     bool changed, uint16_t *out, ptrdiff_t stride)
@@ -256,15 +284,11 @@ static int give_out(const struct job *job, const struct refocus_depth_edges_para
     const struct rf_edges *e = &job->edges;
     const struct refocus_disparity result =
         refocus_disparity16(e->map, e->width, e->height, e->stride * (ptrdiff_t)sizeof *e->map);
-    struct refocus_upsample_params upsample = refocus_upsample_params_default();
 
-    if (!changed && !job->enlarged) {
-        copy_samples(job->map, out, stride);
-        return REFOCUS_OK;
-    }
-    upsample.threads = params->threads;
-    upsample.cpu = params->cpu;
-    return refocus_upsample(job->photo, &result, &upsample, out, stride);
+    if (changed || job->enlarged)
+        return upsample(job->photo, &result, params, out, stride);
+    copy_samples(job->map, out, stride);
+    return REFOCUS_OK;
 }
 
 /* The photo is reduced by a power of two until the map need not be enlarged by more than
@@ -290,6 +314,28 @@ static void choose_size(struct job *job)
                     map->width != photo->width || map->height != photo->height;
 }
 
+static int place(struct job *job, const struct refocus_depth_edges_params *params, uint16_t *out,
+                 ptrdiff_t stride, struct refocus_depth_edges_report *report)
+{
+    struct rf_edges *e = &job->edges;
+    bool changed;
+
+    if (job->enlarged) {
+        const double softness = softness_of_samples(job);
+
+        if (softness < MIXED) {
+            report->softness = (float)(softness * job->photo->width / job->columns);
+            report->parted = 1;
+            return upsample(job->photo, job->map, params, out, stride);
+        }
+    }
+    rf_pool_run(e->pool, load_photo, job, e->height);
+    load_map(job);
+    changed = run(job, report);
+    report->changed = changed ? share_changed(job) : 0;
+    return give_out(job, params, changed, out, stride);
+}
+
 static int start(struct job *job, const struct refocus_depth_edges_params *params, uint16_t *out,
                  ptrdiff_t stride, struct refocus_depth_edges_report *report)
 {
@@ -299,7 +345,6 @@ static int start(struct job *job, const struct refocus_depth_edges_params *param
     struct rf_pool pool;
     void *block;
     int status;
-    bool changed;
 
     lay_out(e, &arena);
     if (arena.used > PTRDIFF_MAX)
@@ -315,12 +360,8 @@ static int start(struct job *job, const struct refocus_depth_edges_params *param
     status = rf_pool_start(&pool, rf_thread_count(params->threads), NULL, &run_state);
     if (status == REFOCUS_OK) {
         e->pool = &pool;
-        rf_pool_run(&pool, load_photo, job, e->height);
-        load_map(job);
-        changed = run(job, report);
-        report->changed = changed ? share_changed(job) : 0;
+        status = place(job, params, out, stride, report);
         rf_pool_end(&pool);
-        status = give_out(job, params, changed, out, stride);
     }
     free(block);
     return status;
