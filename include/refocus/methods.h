@@ -40,6 +40,19 @@ REFOCUS_API const char *refocus_method_name(uint32_t method);
 /** One line on what a method does, NULL for an unknown one. Thread-safe. */
 REFOCUS_API const char *refocus_method_summary(uint32_t method);
 
+/** Bits of refocus_method_traits(): what a method can and needs. Later versions may have more. */
+enum refocus_method_trait {
+    REFOCUS_METHOD_ANY_FOCUS = 1 << 0,   /**< tilts, bands, maps, clamps and fields of focus; the
+                                              others render that of a plain lens alone */
+    REFOCUS_METHOD_DISC_ONLY = 1 << 1,   /**< it knows no aperture other than a disc */
+    REFOCUS_METHOD_TAKES_RAYS = 1 << 2,  /**< params->rays counts */
+    REFOCUS_METHOD_WHOLE_PHOTO = 1 << 3, /**< it needs memory of its own, see `methods` of struct
+                                              refocus_renderer_params, and renders no `in_place` */
+};
+
+/** Bits of enum refocus_method_trait, or-ed; 0 for an unknown method. Thread-safe. */
+REFOCUS_API uint32_t refocus_method_traits(uint32_t method);
+
 /** `search`: the randomized intersection search of Yang et al. 2016, section 4.
  *  Start from refocus_search_params_default(). */
 struct refocus_search_params {

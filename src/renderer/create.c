@@ -61,7 +61,7 @@ static int check_methods(const struct rf_log *log, const struct refocus_renderer
         if (!rf_method_of(params->papers, i))
             return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "methods has %s, which needs papers",
                              refocus_method_name(i));
-        if (params->in_place && rf_method_info(i)->whole_photo)
+        if (params->in_place && (refocus_method_traits(i) & REFOCUS_METHOD_WHOLE_PHOTO))
             return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
                              "in_place is 1, may be 0 with method %s, which needs the whole photo",
                              refocus_method_name(i));

@@ -3,29 +3,38 @@
 
 #include <string.h>
 
-static const struct rf_method_info info[REFOCUS_METHOD_COUNT] = {
+enum {
+    ANY_FOCUS = REFOCUS_METHOD_ANY_FOCUS,
+    DISC_ONLY = REFOCUS_METHOD_DISC_ONLY,
+    RAYS = REFOCUS_METHOD_TAKES_RAYS,
+    WHOLE = REFOCUS_METHOD_WHOLE_PHOTO
+};
+
+static const struct {
+    const char *name, *summary;
+    uint32_t traits;
+} info[REFOCUS_METHOD_COUNT] = {
     [REFOCUS_METHOD_SWEEP] = {"sweep", "two layers, front-most hit, swept over disparities",
-                              .any_focus = true},
+                              ANY_FOCUS | RAYS},
     [REFOCUS_METHOD_SEARCH] = {"search", "randomized intersection search, Yang et al. 2016",
-                               .any_focus = true},
+                               ANY_FOCUS | RAYS},
     [REFOCUS_METHOD_RAYTRACE] = {"raytrace", "full image-space ray tracing, Yang et al. 2016; slow",
-                                 .any_focus = false},
+                                 RAYS},
     [REFOCUS_METHOD_JITTERED] = {"jittered",
-                                 "the same for a ray of each cell of the mask; slow, grainy",
-                                 .any_focus = false},
+                                 "the same for a ray of each cell of the mask; slow, grainy", 0},
     [REFOCUS_METHOD_LIGHTFIELD] = {"lightfield",
                                    "views from all over the aperture, warped and added up",
-                                   .whole_photo = true},
+                                   WHOLE | RAYS},
     [REFOCUS_METHOD_BLUR] = {"blur", "each pixel blurred by its own circle of confusion",
-                             .any_focus = true},
+                             ANY_FOCUS | RAYS},
     [REFOCUS_METHOD_SCATTER] = {"scatter", "each pixel spread over its circle, Potmesil 1981",
-                                .disc_only = true, .whole_photo = true},
+                                DISC_ONLY | WHOLE},
     [REFOCUS_METHOD_FOVEATED] = {"foveated", "exact at the centre of attention, Mulder 2000",
-                                 .disc_only = true, .whole_photo = true},
+                                 DISC_ONLY | WHOLE},
     [REFOCUS_METHOD_INTERPOLATED] = {"interpolated", "between three pictures, NVIDIA 2004; quick",
-                                     .disc_only = true, .whole_photo = true},
+                                     DISC_ONLY | WHOLE},
     [REFOCUS_METHOD_DIFFUSION] = {"diffusion", "heat through a field of blur, Kosloff 2007",
-                                  .any_focus = true, .disc_only = true, .whole_photo = true},
+                                  ANY_FOCUS | DISC_ONLY | WHOLE},
 };
 
 static const struct rf_method own[REFOCUS_METHOD_COUNT] = {
@@ -43,9 +52,9 @@ const char *refocus_method_summary(uint32_t method)
     return method < REFOCUS_METHOD_COUNT ? info[method].summary : NULL;
 }
 
-const struct rf_method_info *rf_method_info(uint32_t method)
+uint32_t refocus_method_traits(uint32_t method)
 {
-    return &info[method];
+    return method < REFOCUS_METHOD_COUNT ? info[method].traits : 0;
 }
 
 const struct rf_method *rf_method_of(const struct refocus_papers *papers, uint32_t method)

@@ -21,7 +21,7 @@ static bool is_plain_focus(const struct refocus_renderer *r, const struct rf_set
 /* Words for a setting that the method refuses, or NULL. */
 static const char *refused(const struct refocus_renderer *r, const struct rf_settings *s)
 {
-    const struct rf_method_info *method = rf_method_info(s->method);
+    const uint32_t traits = refocus_method_traits(s->method);
     const bool sweep = s->method == REFOCUS_METHOD_SWEEP;
 
     if (!sweep && s->cat_eye > 0)
@@ -30,9 +30,9 @@ static const char *refused(const struct refocus_renderer *r, const struct rf_set
         return "look->fringe, which belongs to the sweep";
     if (!sweep && has_sides(s))
         return "an aperture that differs before and behind the focus, which belongs to the sweep";
-    if (method->disc_only && s->aperture && !rf_aperture_is_disc(s->aperture))
+    if ((traits & REFOCUS_METHOD_DISC_ONLY) && s->aperture && !rf_aperture_is_disc(s->aperture))
         return "an aperture other than a disc";
-    if (!method->any_focus && !is_plain_focus(r, s))
+    if (!(traits & REFOCUS_METHOD_ANY_FOCUS) && !is_plain_focus(r, s))
         return "focus or field other than that of a plain lens";
     return NULL;
 }

@@ -17,6 +17,9 @@ import sys
 import tempfile
 import threading
 
+from methods import method_names, methods_with_rays
+
+REFOCUS = os.path.abspath(sys.argv[1])
 SLOW = float(os.environ.get('REFOCUS_SLOW', '1'))
 WIDTH, HEIGHT, FRAMES = 17, 11, 4  # odd: a half pair at the end of each row and column
 HALF = (WIDTH + 1) // 2 * ((HEIGHT + 1) // 2)
@@ -60,9 +63,8 @@ GROUPS = [
      '0.5'],
 ]
 # Tried with each format and with each sink, but not with each pair of them.
-METHODS = ('raytrace', 'jittered', 'lightfield', 'blur', 'scatter', 'foveated', 'interpolated',
-           'diffusion')
-WITHOUT_RAYS = 'jittered', 'scatter', 'foveated', 'interpolated', 'diffusion'
+METHODS = [m for m in method_names(REFOCUS) if m not in ('sweep', 'search')]
+WITHOUT_RAYS = set(METHODS) - set(methods_with_rays(REFOCUS))
 # Options that nothing here takes: an exit code and words, or what standard output begins with.
 ALONE = {'--dmabuf': (2, 'it is for V4L2 cameras'), '--list': 'FORMAT', '--help': 'usage:'}
 IN_BASE = '--camera', '--depth', '--out', '--blur', '--json'
@@ -83,7 +85,7 @@ def run(args, folder, timeout=60):
 
 
 def read_help():
-    """The formats, sinks, raw formats, methods and options that the help names."""
+    """The formats, sinks, raw formats and options that the help names."""
     text = run(['--help'], '.').stdout.decode()
     options = set(re.findall(r'^  (?:-., )?(?:    )?(--[a-z-]+)', text, re.M))
     flat = ' '.join(text.split())
@@ -91,18 +93,15 @@ def read_help():
     out = re.search(r'--out SINK (.*?) --list', flat).group(1)
     sinks = out.split(';')[0].replace(' (default)', '').replace(' or ', ', ').split(', ')
     raw = re.sub(r' \([^)]*\)', '', out.split('FORMAT ')[-1]).replace(' or ', ', ').split(', ')
-    methods = re.search(r'--method NAME(.*?)^  --', text, re.M | re.S).group(1)
-    return (set(formats) - {'any'}, set(sinks), set(raw),
-            set(re.findall(r'^ {28}(\w+)', methods, re.M)), options)
+    return set(formats) - {'any'}, set(sinks), set(raw), options
 
 
 def check_tables():
     """What the help has and the tables have not, and the other way."""
-    formats, sinks, raw, methods, options = read_help()
+    formats, sinks, raw, options = read_help()
     covered = {a for group in GROUPS for a in group if a.startswith('--')} | {'--method'}
     for what, there, here in (('formats', formats, set(FORMATS)), ('sinks', sinks, set(SINKS)),
                               ('raw formats', raw, set(RAW)),
-                              ('methods', methods, {'sweep', 'search', *METHODS}),
                               ('options', options, covered | set(ALONE) | set(IN_BASE))):
         if there != here:
             yield '%s: the help has %s, the tables here %s' % (what, sorted(there - here),
@@ -313,5 +312,4 @@ def main():
 
 
 if __name__ == '__main__':
-    REFOCUS = os.path.abspath(sys.argv[1])
     sys.exit(main())

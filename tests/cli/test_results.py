@@ -9,10 +9,10 @@ import struct
 import unittest
 
 import pictures
-from case import Case, H, W
+from case import Case, H, REFOCUS, W
+from methods import method_names
 
-METHODS = ('sweep', 'search', 'raytrace', 'jittered', 'lightfield', 'blur', 'scatter', 'foveated',
-           'interpolated', 'diffusion')
+METHODS = method_names(REFOCUS)
 
 
 class Results(Case):

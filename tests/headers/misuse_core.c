@@ -71,6 +71,8 @@ static void words(void)
     GIVES_NULL(refocus_method_name, UINT32_MAX);
     GIVES_NULL(refocus_method_summary, REFOCUS_METHOD_COUNT);
     GIVES_NULL(refocus_method_summary, UINT32_MAX);
+    GIVES(0, refocus_method_traits, REFOCUS_METHOD_COUNT);
+    GIVES(0, refocus_method_traits, UINT32_MAX);
     GIVES_NULL(refocus_cpu_name, UINT32_MAX);
 }
 

@@ -165,21 +165,21 @@ static void check_same(struct refocus_renderer *renderer, const struct refocus_s
 
 static void plain_lens(void **state)
 {
-    static const uint32_t method[] = {REFOCUS_METHOD_SWEEP, REFOCUS_METHOD_SEARCH,
-                                      REFOCUS_METHOD_BLUR, REFOCUS_METHOD_DIFFUSION};
     static uint16_t map[W * H];
     const struct refocus_disparity picture = refocus_disparity16(map, W, H, 2 * W);
     struct picture p = picture_make(W, H, 6);
     struct refocus_renderer *renderer = prepared(&p, 12, 2);
 
     (void)state;
-    for (size_t m = 0; m < sizeof method / sizeof *method; m++) {
+    for (uint32_t method = 0; method < REFOCUS_METHOD_COUNT; method++) {
         const struct refocus_settings plain = refocus_settings_default(0.45f, 12);
         const int df = (int)floor((double)plain.render.focus_disparity * 65535 + 0.5);
         struct refocus_settings params = plain;
         struct refocus_focus_plane plane;
 
-        params.render.method = method[m];
+        if (!(refocus_method_traits(method) & REFOCUS_METHOD_ANY_FOCUS))
+            continue;
+        params.render.method = method;
         params.field.shape = REFOCUS_FIELD_PLANE;
         params.field.angle = 90;
         params.field.radius = 0;
@@ -193,7 +193,7 @@ static void plain_lens(void **state)
         check_same(renderer, &params, "a picture of the lens's blur");
 
         params = plain;
-        params.render.method = method[m];
+        params.render.method = method;
         params.focus.map = &picture;
         for (int i = 0; i < W * H; i++)
             map[i] = (uint16_t)df;
@@ -205,14 +205,14 @@ static void plain_lens(void **state)
         check_same(renderer, &params, "an empty mask");
 
         params = plain;
-        params.render.method = method[m];
+        params.render.method = method;
         params.focus.transition = 0.3f;
         params.focus.bands = 1;
         params.focus.band[0] = (struct refocus_band){params.render.focus_disparity, 0, 0.2f};
         check_same(renderer, &params, "bands without a width");
 
         params = plain;
-        params.render.method = method[m];
+        params.render.method = method;
         assert_int_equal(
             refocus_focus_plane_of_points(
                 &plane,
@@ -319,8 +319,7 @@ static void refused(void **state)
 
     (void)state;
     for (uint32_t method = 0; method < REFOCUS_METHOD_COUNT; method++) {
-        const bool takes = method == REFOCUS_METHOD_SWEEP || method == REFOCUS_METHOD_SEARCH ||
-                           method == REFOCUS_METHOD_BLUR || method == REFOCUS_METHOD_DIFFUSION;
+        const bool takes = refocus_method_traits(method) & REFOCUS_METHOD_ANY_FOCUS;
         struct refocus_settings params = refocus_settings_default(0.5f, 6);
 
         params.render.method = method;

@@ -260,17 +260,14 @@ static int show(struct viewing *v, view_run_fn *run_window)
 
 static int check_method(const struct engine_settings *settings)
 {
-    const uint32_t without_memory =
-        REFOCUS_METHOD_BIT(REFOCUS_METHOD_SWEEP) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_SEARCH) |
-        REFOCUS_METHOD_BIT(REFOCUS_METHOD_RAYTRACE) | REFOCUS_METHOD_BIT(REFOCUS_METHOD_JITTERED) |
-        REFOCUS_METHOD_BIT(REFOCUS_METHOD_BLUR);
+    const uint32_t method = (uint32_t)settings->method;
+    char words[METHOD_WORDS];
 
-    if (without_memory & REFOCUS_METHOD_BIT(settings->method))
+    if (!(refocus_method_traits(method) & REFOCUS_METHOD_WHOLE_PHOTO))
         return EXIT_DONE;
-    return report_failure(EXIT_WRONG, "--method",
-                          "'%s' is not for the window; give sweep, search, raytrace, jittered "
-                          "or blur",
-                          refocus_method_name((uint32_t)settings->method));
+    return report_failure(EXIT_WRONG, "--method", "'%s' is not for the window; give %s",
+                          refocus_method_name(method),
+                          method_words(words, REFOCUS_METHOD_WHOLE_PHOTO, false));
 }
 
 /* The photo, its depth, all 0 where there is none, and the strokes over it. */

@@ -108,8 +108,9 @@ int variants_begin(struct variants *variants, const char *list,
     size_t length;
 
     memset(variants, 0, sizeof *variants);
-    for (uint32_t i = 0; !list && i < (disc ? REFOCUS_METHOD_COUNT : REFOCUS_METHOD_SCATTER); i++)
-        snprintf(all + strlen(all), sizeof all - strlen(all), "%s,", refocus_method_name(i));
+    for (uint32_t i = 0; !list && i < REFOCUS_METHOD_COUNT; i++)
+        if (disc || !(refocus_method_traits(i) & REFOCUS_METHOD_DISC_ONLY))
+            snprintf(all + strlen(all), sizeof all - strlen(all), "%s,", refocus_method_name(i));
     list = list ? list : all;
     length = strlen(list) + 1;
     /* the list, its entries, and their options with two dashes for a colon */

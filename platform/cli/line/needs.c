@@ -89,9 +89,9 @@ static bool has_value(const struct option *option, const void *settings)
     return false;
 }
 
-static bool is_of(const struct option *option, int word)
+static bool is_of(const struct option *option, uint32_t word)
 {
-    return option->of_words == 0 || word < 0 || (option->of_words >> word & 1) != 0;
+    return option->of_takes ? option->of_takes(word) : (option->of_words >> word & 1) != 0;
 }
 
 /* "search, blur" */
@@ -101,7 +101,7 @@ static void list_words(const struct option *option, char text[TEXT_LENGTH])
 
     text[0] = '\0';
     for (uint32_t i = 0; option->of_word(i) && n < TEXT_LENGTH; i++)
-        if (option->of_words >> i & 1)
+        if (is_of(option, i))
             n += snprintf(text + n, (size_t)(TEXT_LENGTH - n), "%s%s", n > 0 ? ", " : "",
                           option->of_word(i));
 }
@@ -138,11 +138,11 @@ static bool is_met(const struct command *command, const char *needs, const void 
 static int check(const struct command *command, const struct option *option, const void *settings)
 {
     const bool met = is_met(command, option->needs, settings);
-    const int word =
-        option->of_words ? *(const int *)((const char *)settings + option->of_offset) : -1;
+    const int word = option->of ? *(const int *)((const char *)settings + option->of_offset) : -1;
 
-    if (option->of_words)
-        return is_of(option, word) || met ? OPTIONS_PARSED : not_of(option, word);
+    if (option->of)
+        return word < 0 || is_of(option, (uint32_t)word) || met ? OPTIONS_PARSED
+                                                                : not_of(option, word);
     if (!option->needs || met)
         return OPTIONS_PARSED;
     return report_failure(EXIT_WRONG, option->name, "it goes with %.*s; give that too",

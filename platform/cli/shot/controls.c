@@ -226,19 +226,18 @@ bool controls_suit_method(const struct refocus_settings *p)
                      p->focus.least_disparity > 0 || p->focus.most_disparity < 1 ||
                      p->focus.blur_limit < p->render.max_blur_radius;
 
-    return !any || p->render.method == REFOCUS_METHOD_SWEEP ||
-           p->render.method == REFOCUS_METHOD_SEARCH || p->render.method == REFOCUS_METHOD_BLUR ||
-           p->render.method == REFOCUS_METHOD_DIFFUSION;
+    return !any || (refocus_method_traits(p->render.method) & REFOCUS_METHOD_ANY_FOCUS);
 }
 
 int controls_check_method(const struct refocus_settings *p)
 {
+    char words[METHOD_WORDS];
+
     if (controls_suit_method(p))
         return EXIT_DONE;
-    return report_failure(EXIT_WRONG, "--method",
-                          "%s knows the focus of a plain lens only; give sweep, "
-                          "search, blur or diffusion",
-                          refocus_method_name(p->render.method));
+    return report_failure(
+        EXIT_WRONG, "--method", "%s knows the focus of a plain lens only; give %s",
+        refocus_method_name(p->render.method), method_words(words, REFOCUS_METHOD_ANY_FOCUS, true));
 }
 
 void controls_free(struct controls *controls)

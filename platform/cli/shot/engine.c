@@ -47,10 +47,9 @@ const char *engine_blend_summary(uint32_t index)
     return index < sizeof blends / sizeof *blends ? blends[index].summary : NULL;
 }
 
-/* Methods whose circles of confusion are circles. */
 static int check_aperture(uint32_t method, const struct engine_settings *settings)
 {
-    if (method < REFOCUS_METHOD_SCATTER ||
+    if (!(refocus_method_traits(method) & REFOCUS_METHOD_DISC_ONLY) ||
         bokeh_is_plain_disc(&settings->bokeh, settings->aperture))
         return EXIT_DONE;
     return report_failure(EXIT_WRONG, "--aperture",

@@ -54,7 +54,7 @@ const char *engine_blend_summary(uint32_t index);
      .word_value = REFOCUS_RAYS_FULL,                                                              \
      .help = "ray samples a pixel at the largest blur; full = every pixel of the "                 \
              "aperture mask; default: by --quality",                                               \
-     OF_METHODS(type, member.method, OF_RAYS)},                                                    \
+     OF_METHODS_THAT(type, member.method, method_takes_rays)},                                     \
         {.kind = OPTION_CHOICE,                                                                    \
          .name = "--quality",                                                                      \
          .argument = "NAME",                                                                       \

@@ -1,0 +1,21 @@
+"""The methods that the refocus command knows, as its help and its errors list them, so that tests
+go through all of them."""
+import re
+import subprocess
+
+
+def method_names(refocus):
+    """In the order of the help of --method, the default first."""
+    text = subprocess.run([refocus, 'render', '--help'], stdout=subprocess.PIPE, text=True,
+                          check=True).stdout
+    rows = re.search(r'^  --method NAME(.*?)^  --', text, re.M | re.S).group(1)
+    names = re.findall(r'^ {28}(\w+)', rows, re.M)
+    assert names[:2] == ['sweep', 'search'] and len(names) > 9, names
+    return names
+
+
+def methods_with_rays(refocus):
+    """Those that --rays changes something with: what the error of another one names."""
+    line = subprocess.run([refocus, 'render', 'x', '-o', 'x.png', '--method', 'jittered', '--rays',
+                           '9'], stderr=subprocess.PIPE, text=True).stderr
+    return re.search('; give (.*), or leave it out', line).group(1).split(', ')
