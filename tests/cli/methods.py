@@ -18,4 +18,6 @@ def methods_with_rays(refocus):
     """Those that --rays changes something with: what the error of another one names."""
     line = subprocess.run([refocus, 'render', 'x', '-o', 'x.png', '--method', 'jittered', '--rays',
                            '9'], stderr=subprocess.PIPE, text=True).stderr
-    return re.search('; give (.*), or leave it out', line).group(1).split(', ')
+    names = re.search('; give (.*), or leave it out', line).group(1).split(', ')
+    assert names[:5] == ['sweep', 'search', 'raytrace', 'lightfield', 'blur'], names
+    return names

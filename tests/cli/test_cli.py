@@ -9,7 +9,7 @@ import unittest
 
 import pictures
 from case import Case, H, REFOCUS, W
-from methods import method_names
+from methods import method_names, methods_with_rays
 
 METHODS = method_names(REFOCUS)
 
@@ -215,7 +215,7 @@ class Limits(Case):
                 ('search', 'sweep', '--iterations', '1'), ('search', 'blur', '--mirror'),
                 ('search', 'sweep', '--background'), ('sweep', 'search', '--highlights', '2'),
                 ('sweep', 'scatter', '--highlight-stops', '2'),
-                ('sweep, search, raytrace, lightfield, blur', 'jittered', '--rays', '8'),
+                (', '.join(methods_with_rays(REFOCUS)), 'jittered', '--rays', '8'),
                 ('jittered', 'sweep', '--cell', '3'),
                 ('scatter', 'sweep', '--spread', 'lommel'),
                 ('scatter', 'sweep', '--depth-ratio', '3'),
