@@ -5,6 +5,8 @@
 #include "kernels/kernels.h"
 
 #include <assert.h>
+#include <limits.h>
+#include <math.h>
 #include <string.h>
 
 /* The sizes of sets. A tile uses the smallest set that is dense enough for its blur, at most the
@@ -232,4 +234,9 @@ int rf_rays_of_equal_weight(const struct rf_ray_set *set, int first)
     while (n < most && set->ray[first + n].weight == set->ray[first].weight)
         n++;
     return n;
+}
+
+double rf_ray_gap(int rays)
+{
+    return sqrt(3.14159265358979 / (rays == REFOCUS_RAYS_FULL ? INT_MAX : rays));
 }

@@ -62,6 +62,9 @@ struct rf_ray_request {
 void rf_ray_sets_make(struct rf_ray_sets *sets, const struct rf_ray_request *request,
                       struct rf_run *run);
 
+/* How far apart that many rays, or those of every pixel, lie at a blur of 1. */
+double rf_ray_gap(int rays);
+
 /* The set for a tile that blurs of up to `reach` (Q7.8) reach: it has enough rays for these, at
  * most as many as the preset, or more where a highlight in reach is undersampled. */
 const struct rf_ray_set *rf_choose_ray_set(const struct rf_ray_sets *sets, int reach,

@@ -1,9 +1,18 @@
 /* mark.c: marks the foreground pixels, where the hidden background is to be inpainted. */
 #include "background/mark.h"
 
+#include <assert.h>
 #include <string.h>
 
 #include "kernels/kernels.h"
+#include "support/compare.h"
+
+int rf_mark_reach(bool plain, int max_blur_radius)
+{
+    static_assert(2 * RF_SPREAD_MARGIN - 1 >= 2 * 2 * REFOCUS_MAX_BLUR_RADIUS,
+                  "the cone has fallen by the largest difference of blurs");
+    return rf_smaller((plain ? 2 : 4) * max_blur_radius, 2 * RF_SPREAD_MARGIN - 1);
+}
 
 /* Dilated values are s + 2^15, so that 0 lies below all of them. */
 static void bias_row(uint16_t *restrict out, const int16_t *restrict s, int width)
@@ -30,6 +39,14 @@ void rf_background_dilate(const struct rf_executor *exec, const struct rf_viewpo
     }
 }
 
+/* Copies a row of light to the background. */
+static void copy_row(const struct rf_mark *mark, int y, int width)
+{
+    for (int c = 0; c < mark->planes; c++)
+        memcpy(mark->background.light.channel[c] + y * mark->background.light.stride,
+               mark->smooth.channel[c] + y * mark->smooth.stride, (size_t)width * 2);
+}
+
 void rf_background_mark_rows(const struct rf_executor *exec, const struct rf_viewport *view,
                              const struct rf_mark *mark, int y0, int y1, int worker)
 {
@@ -48,8 +65,41 @@ void rf_background_mark_rows(const struct rf_executor *exec, const struct rf_vie
         dilated = exec->kernels->spread_row(row, spare, mark->reach, w);
         exec->kernels->mark_foreground(blur, mark->blur.at + y * mark->blur.stride, dilated, w);
         blur[w] = RF_NO_BLUR; /* a column more if the width is odd */
-        for (int c = 0; c < mark->planes; c++)
-            memcpy(mark->background.light.channel[c] + y * mark->background.light.stride,
-                   mark->smooth.channel[c] + y * mark->smooth.stride, (size_t)w * 2);
+        copy_row(mark, y, w);
+    }
+}
+
+void rf_known_store(const struct rf_known *known, const struct rf_viewport *view,
+                    struct rf_blur_q8 marked, struct rf_rect block)
+{
+    for (int y = block.y0; y < block.y1; y++) {
+        const int16_t *blur = marked.at + (y - view->y0) * marked.stride - view->x0;
+        uint8_t *row = known->bits + y * known->stride;
+
+        for (int x = block.x0; x < block.x1; x += 8) {
+            int bits = 0;
+
+            for (int i = 0; i < 8 && x + i < block.x1; i++)
+                bits |= (blur[x + i] != RF_NO_BLUR) << i;
+            row[x / 8] = (uint8_t)bits;
+        }
+    }
+}
+
+void rf_known_mark_rows(const struct rf_known *known, const struct rf_viewport *view,
+                        const struct rf_mark *mark, int y0, int y1)
+{
+    for (int y = y0; y < y1; y++) {
+        const uint8_t *row = known->bits + (y + view->y0) * known->stride;
+        const int16_t *blur = mark->blur.at + y * mark->blur.stride;
+        int16_t *out = mark->background.blur.at + y * mark->background.blur.stride;
+
+        for (int x = 0; x < view->width; x++) {
+            const int q = x + view->x0;
+
+            out[x] = row[q / 8] >> q % 8 & 1 ? blur[x] : RF_NO_BLUR;
+        }
+        out[view->width] = RF_NO_BLUR; /* a column more if the width is odd */
+        copy_row(mark, y, view->width);
     }
 }

@@ -39,6 +39,10 @@ struct rf_mark {
                                         of `smooth` */
 };
 
+/* How many steps the cone is followed for: it falls by half a pixel of blur for each pixel, and
+ * blurs of a plain lens differ by K at most, those of tilts and fields by twice that. */
+int rf_mark_reach(bool plain, int max_blur_radius);
+
 /* Dilates along columns and diagonals: from above, or from below. Both may run at once. */
 void rf_background_dilate(const struct rf_executor *exec, const struct rf_viewport *view,
                           const struct rf_mark *mark, bool upwards);
@@ -46,5 +50,21 @@ void rf_background_dilate(const struct rf_executor *exec, const struct rf_viewpo
 /* Dilates rows y0 to y1 - 1 along themselves and marks them. */
 void rf_background_mark_rows(const struct rf_executor *exec, const struct rf_viewport *view,
                              const struct rf_mark *mark, int y0, int y1, int worker);
+
+/* Tells which pixels of a photo are no foreground, where no plane of all of it is stored: bit x % 8
+ * of byte x / 8 of a row. */
+struct rf_known {
+    uint8_t *bits;
+    ptrdiff_t stride;
+};
+
+/* Stores what is marked in the window, for a block of the photo that begins at a multiple of 8. */
+void rf_known_store(const struct rf_known *known, const struct rf_viewport *view,
+                    struct rf_blur_q8 marked, struct rf_rect block);
+
+/* Marks rows y0 to y1 - 1 of the window as they were stored: reads `blur` and `smooth` of `mark`,
+ * and writes its background, of three planes. */
+void rf_known_mark_rows(const struct rf_known *known, const struct rf_viewport *view,
+                        const struct rf_mark *mark, int y0, int y1);
 
 #endif

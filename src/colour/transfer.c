@@ -66,3 +66,14 @@ bool rf_weights_keep_codes(const struct rf_transfer *transfer, const uint16_t we
             return false;
     return true;
 }
+
+bool rf_weights_of_light(uint16_t light_weight[RF_LIGHT_MAX + 1],
+                         const struct rf_transfer *transfer, double sigma)
+{
+    uint16_t weight[256];
+
+    rf_highlight_weights(weight, sigma);
+    for (int light = 0; light <= RF_LIGHT_MAX; light++)
+        light_weight[light] = weight[transfer->to_code[4 * light]];
+    return rf_weights_keep_codes(transfer, weight);
+}

@@ -42,4 +42,9 @@ void rf_highlight_weights(uint16_t weight[256], double sigma);
  */
 bool rf_weights_keep_codes(const struct rf_transfer *transfer, const uint16_t weight[256]);
 
+/* Sets the weight of each Q12 light max(R, G, B) with that sigma. Returns
+ * rf_weights_keep_codes(). */
+bool rf_weights_of_light(uint16_t light_weight[RF_LIGHT_MAX + 1],
+                         const struct rf_transfer *transfer, double sigma);
+
 #endif

@@ -55,6 +55,10 @@ struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius);
 void rf_focus_plan_make(struct rf_focus_plan *plan, const struct rf_settings *params,
                         struct rf_focus focus, int width, int height);
 
+/* The largest blur that there can be, in pixels. With a plain lens the end that is farther from the
+ * focus has it; else it may be all of max_blur_radius, K. */
+float rf_focus_largest(const struct rf_focus_plan *plan, float max_blur_radius);
+
 /* Signed blur of n pixels of disparities from (x, y) on, Q7.8. */
 void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur, const uint16_t *disparity, int x,
                   int y, int n);

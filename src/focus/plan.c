@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "aperture/aperture.h"
+#include "support/compare.h"
 
 struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius)
 {
@@ -94,4 +95,11 @@ void rf_focus_plan_make(struct rf_focus_plan *plan, const struct rf_settings *p,
     plan->plain = p->field == REFOCUS_FIELD_LENS && plan->least == 0 && plan->most == RF_ONE &&
                   plan->limit >= focus.radius && plan->share == 65536 && !plan->tilt_x &&
                   !plan->tilt_y && !plan->tilt && !plan->bands && !plan->surface && !plan->sharp;
+}
+
+float rf_focus_largest(const struct rf_focus_plan *plan, float max_blur_radius)
+{
+    const int df = plan->focus.disparity, farther = rf_larger(df, UINT16_MAX - df);
+
+    return plan->plain ? ((float)farther * plan->focus.radius / 65536 + 1) / 256 : max_blur_radius;
 }

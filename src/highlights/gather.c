@@ -241,6 +241,22 @@ static void boost_run(const struct gather *g, const struct rf_highlight *run)
         boost_pixel(g, run, i);
 }
 
+enum rf_bright rf_bright_of(float gain)
+{
+    return gain <= 1                   ? RF_WHITE
+           : gain <= RF_PLAIN_GAIN     ? RF_BRIGHT
+           : gain <= 2 * RF_PLAIN_GAIN ? RF_BRIGHTER
+                                       : RF_BRIGHTEST;
+}
+
+int rf_most_light(enum rf_bright bright)
+{
+    static const int times[] = {
+        [RF_WHITE] = 1, [RF_BRIGHT] = 4, [RF_BRIGHTER] = 8, [RF_BRIGHTEST] = 16};
+
+    return times[bright] * RF_LIGHT_MAX;
+}
+
 void rf_boost_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
                          struct rf_light_q12 smooth, float gain, double gap, int most)
 {

@@ -37,6 +37,7 @@
 #include "image/photo_source.h"
 #include "image/planes.h"
 #include "image/viewport.h"
+#include "kernels/gather.h"
 #include "support/arena.h"
 #include "support/executor.h"
 #include "tiles/bins.h"
@@ -221,6 +222,10 @@ void rf_raise_highlights(const struct rf_executor *exec, const struct rf_highlig
 
 /* Up to RF_PLAIN_GAIN, sums of 16 bits hold the light of 16 rays over 4. */
 enum { RF_PLAIN_GAIN = 4, RF_MOST_GAIN = 16 };
+
+/* How far light of that gain may exceed white, and the most light, Q12, of such. */
+enum rf_bright rf_bright_of(float gain);
+int rf_most_light(enum rf_bright bright);
 
 /* Adds the light that clipping took to `smooth`, the pre-filtered light, up to `most` there, at a
  * gain from 1 to 16. It is spread over half a gap of the rays, so that more than one ray hits it.

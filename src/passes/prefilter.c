@@ -2,6 +2,7 @@
 #include "passes/prefilter.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -15,6 +16,29 @@ enum {
 static_assert(MARGIN >= 2 * (1 << (RF_PREFILTER_STEPS - 1)), "neighbours of chroma, two a sample");
 static_assert(65535 * RF_SMOOTH_THIRD <= INT32_MAX && 65535 * RF_SMOOTH_THIRD >> 16 == 10922,
               "the whole share, Q15");
+
+void rf_prefilter_bounds(int above[RF_PREFILTER_STEPS], int rays, int largest)
+{
+    for (int i = 0; i < RF_PREFILTER_STEPS; i++) {
+        const double gap = 1.5 * (1 << i);
+        const double s = 256 * gap * sqrt(rays / 3.14159265358979);
+
+        above[i] = rays != REFOCUS_RAYS_FULL && s < largest ? (int)s : INT16_MAX;
+    }
+}
+
+void rf_prefilter_chroma_bounds(int above[RF_PREFILTER_STEPS],
+                                const int luma_above[RF_PREFILTER_STEPS],
+                                const struct rf_ray_set *set)
+{
+    const double times = 2 * sqrt((double)set->shared / set->count);
+
+    for (int i = 0; i < RF_PREFILTER_STEPS; i++) {
+        const double s = times * luma_above[i];
+
+        above[i] = s < INT16_MAX ? (int)s : INT16_MAX;
+    }
+}
 
 /* A step for some planes that lie alike: three of light, luminance, or chroma. */
 struct step {

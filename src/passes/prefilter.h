@@ -9,6 +9,7 @@
 #ifndef RF_PREFILTER_H
 #define RF_PREFILTER_H
 
+#include "aperture/ray_set.h"
 #include "image/chroma.h"
 #include "image/planes.h"
 #include "image/viewport.h"
@@ -42,6 +43,17 @@ struct rf_prefilter {
     const struct rf_prefilter_chroma *chroma; /* NULL: a photo of R, G and B; else light is
                                                  luminance, in channel[0] alone */
 };
+
+/* Sets the |s| from which on the rays of a preset lie 1.5, 3 and 6 pixels apart: for 64 rays 6.8,
+ * 13.5 and 27.1 pixels. Those that are not below `largest`, Q7.8, and those of the rays of every
+ * pixel become INT16_MAX. */
+void rf_prefilter_bounds(int above[RF_PREFILTER_STEPS], int rays, int largest);
+
+/* Sets the |s| at which gaps between the rays of chroma, in its samples, are as wide as those of
+ * luma are at luma_above. */
+void rf_prefilter_chroma_bounds(int above[RF_PREFILTER_STEPS],
+                                const int luma_above[RF_PREFILTER_STEPS],
+                                const struct rf_ray_set *set);
 
 static inline int rf_prefilter_over(int above, bool fades)
 {

@@ -146,8 +146,8 @@ static void lay_out_blocks(struct refocus_renderer *r, const struct refocus_rend
     r->background_group = rf_arena_take(arena, size, 2);
     photo->alpha = rf_arena_take(arena, (uint64_t)side * (uint64_t)side, 1);
     lay_out_lists(arena, photo, w, h);
-    in_place->known_stride = (w + 7) / 8;
-    in_place->known = rf_arena_take(arena, (uint64_t)in_place->known_stride * (uint64_t)h, 1);
+    in_place->known.stride = (w + 7) / 8;
+    in_place->known.bits = rf_arena_take(arena, (uint64_t)in_place->known.stride * (uint64_t)h, 1);
     rf_pyramid_shape(&in_place->kept, w, h);
     for (int i = RF_KEPT; i <= in_place->kept.levels; i++)
         lay_out_level(arena, &in_place->kept.level[i]);

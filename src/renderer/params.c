@@ -2,6 +2,7 @@
 #include "renderer/params.h"
 
 #include "aperture/aperture.h"
+#include "image/format.h"
 #include "renderer/methods.h"
 
 static bool has_sides(const struct rf_settings *s)
@@ -60,4 +61,37 @@ int rf_check_settings(const struct rf_log *log, const struct refocus_renderer *r
     return what ? rf_refuse(log, REFOCUS_ERR_ARGUMENT, "method is %u, %s, which refuses %s",
                             (unsigned)s->method, refocus_method_name(s->method), what)
                 : REFOCUS_OK;
+}
+
+/* Whether the look is one that only photos of R, G and B can have. */
+static bool has_look(const struct rf_frame *f)
+{
+    const struct rf_settings *p = f->params;
+
+    return p->cat_eye > 0 || p->fringe != 0 || p->grain > 0 ||
+           (p->star_spikes > 0 && p->star_strength > 0) || has_sides(p);
+}
+
+int rf_check_yuv(const struct rf_log *log, const struct rf_frame *f, struct rf_rect region)
+{
+    const struct refocus_renderer *r = rf_renderer_of(f);
+    const int odd_rows = r->yuv.down ? 1 : 0;
+
+    if (refocus_format_is_yuv(f->out->format) != r->yuv.on)
+        return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED, "out->format is %u, may be one of %s",
+                         (unsigned)f->out->format, r->yuv.on ? "Y, U and V" : "R, G and B");
+    if (!r->yuv.on)
+        return REFOCUS_OK;
+    if (rf_chroma_down(f->out->format) != r->yuv.down ||
+        f->params->method != REFOCUS_METHOD_SWEEP || has_look(f))
+        return rf_refuse(
+            log, REFOCUS_ERR_UNSUPPORTED,
+            "a photo of Y, U and V may be rendered by the sweep alone, without cat's eye, "
+            "fringe, grain, stars and two-sided apertures, into its own sampling");
+    if (region.x0 % 2 || (region.x1 % 2 && region.x1 < r->photo.width) || (region.y0 & odd_rows) ||
+        ((region.y1 & odd_rows) && region.y1 < r->photo.height))
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
+                         "region is from (%d, %d) to (%d, %d), may not split samples of U and V",
+                         region.x0, region.y0, region.x1, region.y1);
+    return REFOCUS_OK;
 }

@@ -10,4 +10,8 @@
 int rf_check_settings(const struct rf_log *log, const struct refocus_renderer *r,
                       const struct rf_settings *settings);
 
+/* REFOCUS_OK if the prepared photo, in Y, U and V or not, can be rendered so into f->out;
+ * REFOCUS_ERR_UNSUPPORTED, or REFOCUS_ERR_ARGUMENT for a region that splits samples. */
+int rf_check_yuv(const struct rf_log *log, const struct rf_frame *f, struct rf_rect region);
+
 #endif

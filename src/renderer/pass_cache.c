@@ -9,7 +9,6 @@
 #include "image/viewport.h"
 #include "renderer/load.h"
 #include "renderer/renderer.h"
-#include "renderer/render_yuv.h"
 #include "thin/thin.h"
 
 static void reblend_band(void *context, int band, int worker)

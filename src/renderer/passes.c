@@ -2,7 +2,6 @@
 #include "renderer/passes.h"
 
 #include <assert.h>
-#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -15,7 +14,6 @@
 #include "image/border.h"
 #include "image/viewport.h"
 #include "renderer/renderer.h"
-#include "renderer/render_yuv.h"
 #include "thin/thin.h"
 #include "tiles/ranges.h"
 
@@ -37,7 +35,6 @@ static bool may_premultiply(const struct rf_frame *f)
 void rf_set_weights(struct rf_frame *f)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
-    uint16_t weight[256];
     const float sigma = f->params->sigma;
 
     f->weighted = rf_weighs(f->params);
@@ -45,12 +42,7 @@ void rf_set_weights(struct rf_frame *f)
     if (!f->weighted)
         return;
     if (r->weight_sigma != sigma || r->weight_blend != r->blend) {
-        const struct rf_transfer *transfer = &r->transfer[r->blend];
-
-        rf_highlight_weights(weight, sigma);
-        for (int light = 0; light <= RF_LIGHT_MAX; light++)
-            r->light_weight[light] = weight[transfer->to_code[4 * light]];
-        r->keep_codes = rf_weights_keep_codes(transfer, weight);
+        r->keep_codes = rf_weights_of_light(r->light_weight, &r->transfer[r->blend], sigma);
         r->weight_sigma = sigma;
         r->weight_blend = r->blend;
     }
@@ -120,6 +112,24 @@ static void range_band(void *context, int band, int worker)
     rf_range_rows(&rf_renderer_of(f)->exec, &rf_renderer_of(f)->view, &pass, band, worker);
 }
 
+static struct rf_prefilter_chroma prefilter_chroma(const struct rf_frame *f)
+{
+    const struct refocus_renderer *r = rf_renderer_of(f);
+    struct rf_prefilter_chroma pass = {
+        .size = r->chroma.size,
+        .blur = r->chroma.blur,
+        .light = r->chroma.light,
+        .spare = r->chroma.background,
+        .smooth = r->chroma.smooth,
+    };
+    const float largest = 256 * rf_focus_largest(&f->plan, f->params->max_blur_radius);
+
+    rf_prefilter_chroma_bounds(pass.above, f->prefilter_above,
+                               &r->ray_sets.set[r->ray_sets.preset]);
+    pass.steps = largest > (float)pass.above[1] ? RF_PREFILTER_STEPS : 1;
+    return pass;
+}
+
 /* Pre-filters the light. The hidden background's planes serve as scratch: they are not in use yet.
  */
 static void prefilter(struct rf_frame *f)
@@ -138,16 +148,10 @@ static void prefilter(struct rf_frame *f)
 
     memcpy(pass.above, f->prefilter_above, sizeof pass.above);
     if (r->yuv.on) {
-        chroma = rf_chroma_prefilter(f);
+        chroma = prefilter_chroma(f);
         pass.chroma = &chroma;
     }
     rf_prefilter(&r->exec, &r->view, &pass);
-}
-
-/* How far apart rays are at a blur of 1. */
-static double ray_gap(const struct rf_settings *p)
-{
-    return sqrt(3.14159265358979 / (p->rays == REFOCUS_RAYS_FULL ? INT_MAX : p->rays));
 }
 
 float rf_gathered_gain(const struct rf_frame *f)
@@ -161,7 +165,6 @@ static void mark_highlights(struct rf_frame *f)
 {
     const struct rf_highlight_window *window = &f->splat.window;
     const struct rf_blur_patch patch = patch_of(f);
-    const float gain = rf_gathered_gain(f);
 
     f->bright = RF_WHITE;
     if (f->params->highlight_gain <= 1 || !rf_has_highlights(window->highlights, window->view))
@@ -169,20 +172,15 @@ static void mark_highlights(struct rf_frame *f)
     rf_mark_highlights(f->exec, window, f->splats);
     if (f->splats)
         return;
-    rf_widen_highlights(f->exec, window, &patch, ray_gap(f->params));
-    f->bright = gain <= RF_PLAIN_GAIN       ? RF_BRIGHT
-                : gain <= 2 * RF_PLAIN_GAIN ? RF_BRIGHTER
-                                            : RF_BRIGHTEST;
+    rf_widen_highlights(f->exec, window, &patch, rf_ray_gap(f->params->rays));
+    f->bright = rf_bright_of(rf_gathered_gain(f));
 }
 
 void rf_pass_boost(struct rf_frame *f)
 {
-    static const int times[] = {
-        [RF_WHITE] = 1, [RF_BRIGHT] = 4, [RF_BRIGHTER] = 8, [RF_BRIGHTEST] = 16};
-
     if (f->bright != RF_WHITE)
         rf_boost_highlights(f->exec, &f->splat.window, f->smooth, rf_gathered_gain(f),
-                            ray_gap(f->params), times[f->bright] * RF_LIGHT_MAX);
+                            rf_ray_gap(f->params->rays), rf_most_light(f->bright));
 }
 
 /* Afterwards the light is the photo's again, whatever happens, as the next frame needs it too. */
@@ -200,17 +198,6 @@ void rf_pass_prefilter(struct rf_frame *f)
     prefilter(f);
     if (rf_thin_is_separated(&f->thin))
         rf_thin_swap_light_back(&f->thin);
-}
-
-/* The number of steps of the mark's cone. It falls by half a pixel of blur for each pixel, and
- * blurs of a lens differ by K at most, those of tilts and fields by twice that. */
-static int mark_reach(const struct rf_frame *f)
-{
-    const int steps = (f->plan.plain ? 2 : 4) * rf_renderer_of(f)->view.pad;
-
-    static_assert(2 * RF_SPREAD_MARGIN - 1 >= 2 * 2 * REFOCUS_MAX_BLUR_RADIUS,
-                  "the cone has fallen by the largest difference of blurs");
-    return steps < 2 * RF_SPREAD_MARGIN - 1 ? steps : 2 * RF_SPREAD_MARGIN - 1;
 }
 
 struct mark {
@@ -343,7 +330,7 @@ void rf_pass_inpaint(struct rf_frame *f, int levels)
     rf_plane_begin(&r->lifetimes, RF_PLANE_FOREGROUND);
     rf_pool_run(&r->pool, note_band, r, rf_bands(&r->view));
     if (f->bright != RF_WHITE)
-        rf_raise_highlights(f->exec, &f->splat.window, &r->foreground, ray_gap(f->params));
+        rf_raise_highlights(f->exec, &f->splat.window, &r->foreground, rf_ray_gap(f->params->rays));
     rf_pool_run(&r->pool, bare_band, r, rf_bands(&r->view));
 }
 
@@ -363,7 +350,7 @@ void rf_pass_mark_background(struct rf_frame *f, int levels)
     struct refocus_renderer *r = rf_renderer_of(f);
     struct mark mark = {.r = r,
                         .pass = {.planes = r->yuv.on ? 1 : 3,
-                                 .reach = mark_reach(f),
+                                 .reach = rf_mark_reach(f->plan.plain, r->view.pad),
                                  .blur = r->blur,
                                  .smooth = r->smooth,
                                  .cone = r->cone,

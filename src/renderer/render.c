@@ -1,8 +1,6 @@
 /* render.c: renders one frame: checks it, runs its passes and then its tiles. */
 #include <refocus/render.h>
 
-#include <math.h>
-
 #include "highlights/highlights.h"
 #include "gather/tile_rows.h"
 #include "image/read.h"
@@ -11,7 +9,6 @@
 #include "renderer/methods.h"
 #include "renderer/params.h"
 #include "renderer/passes.h"
-#include "renderer/render_yuv.h"
 #include "renderer/settings.h"
 #include "support/compare.h"
 #include "thin/thin.h"
@@ -78,24 +75,6 @@ static void look_item(void *context, int item, int worker)
                                  rf_smaller((ty + 1) * RF_TILE, f->region.y1)});
 }
 
-/* Sets the blurs from which on the rays of the preset lie 1.5, 3 and 6 pixels apart: for 64
- * rays 6.8, 13.5 and 27.1 pixels. The steps of live frames set in gradually; those of stills, which
- * do not move, at once, as highlights keep more of their light then. */
-static void set_prefilter(struct rf_frame *f)
-{
-    const struct rf_settings *p = f->params;
-
-    f->prefilter_fades = p->rays <= RF_LIVE_RAYS;
-    for (int i = 0; i < RF_PREFILTER_STEPS; i++) {
-        const double gap = 1.5 * (1 << i);
-        const double above = 256 * gap * sqrt(p->rays / 3.14159265358979);
-
-        f->prefilter_above[i] = INT16_MAX;
-        if (p->prefilter && p->rays != REFOCUS_RAYS_FULL && above < f->focus.radius)
-            f->prefilter_above[i] = (int)above;
-    }
-}
-
 /* Sets up the thin structures of a photo of R, G and B, where the renderer has memory for them. */
 static void set_up_thin(struct rf_frame *f)
 {
@@ -138,16 +117,6 @@ static void run_tiles(struct rf_frame *f)
     set_tiles(f);
     begin_look(f);
     rf_pool_run(&rf_renderer_of(f)->pool, tile_item, f, f->count_tx * f->count_ty);
-}
-
-/* The largest blur that there can be, in pixels. With a plain lens the end that is farther from the
- * focus has it. */
-static float largest_blur(const struct rf_frame *f)
-{
-    const int df = f->focus.disparity, farther = rf_larger(df, UINT16_MAX - df);
-
-    return f->plan.plain ? ((float)farther * f->focus.radius / 65536 + 1) / 256
-                         : f->params->max_blur_radius;
 }
 
 static void run(struct rf_frame *f, struct rf_rect region)
@@ -238,6 +207,7 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
     struct refocus_image own_out;
     struct rf_exact exact;
     struct rf_rect region;
+    float largest;
     int status;
 
     if (!r)
@@ -253,7 +223,8 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
     rf_focus_plan_make(&f.plan, params, f.focus, r->photo.width, r->photo.height);
     if (f.plan.surface || f.plan.sharp || f.plan.picture)
         f.plan.number = ++r->renders;
-    f.scale = rf_bin_scale_of(largest_blur(&f));
+    largest = rf_focus_largest(&f.plan, params->max_blur_radius);
+    f.scale = rf_bin_scale_of(largest);
     f.look = (struct rf_look){
         .has_stars = params->star_spikes > 0 && params->star_strength > 0 &&
                      params->star_length > 0 && params->method == REFOCUS_METHOD_SWEEP &&
@@ -271,9 +242,11 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
         f.method->exact(&exact, params->blend, params->sigma);
         f.exact = &exact;
     }
-    rf_reach_init(&f.reach, f.scale, largest_blur(&f), r->photo.pad,
-                  rf_aperture_fills_square(f.aperture));
-    set_prefilter(&f);
+    rf_reach_init(&f.reach, f.scale, largest, r->photo.pad, rf_aperture_fills_square(f.aperture));
+    /* The steps of live frames set in gradually; those of stills, which do not move, at once, as
+     * highlights keep more of their light then. */
+    f.prefilter_fades = params->rays <= RF_LIVE_RAYS;
+    rf_prefilter_bounds(f.prefilter_above, params->rays, params->prefilter ? f.focus.radius : 0);
     r->blurred = false;
     r->last_plan = f.plan;
     rf_run_begin(r);

@@ -93,8 +93,7 @@ struct rf_in_place {
     int block, margin;           /* pixels of a block that is rendered, and around it */
     int mark_block, mark_margin; /* a block whose background is marked */
     struct rf_rect beyond;       /* part of the margin in use that lies beyond the photo */
-    uint8_t *known;              /* known_stride bytes a row, bit x % 8 of byte x / 8 */
-    ptrdiff_t known_stride;
+    struct rf_known known;
     struct rf_pyramid kept; /* levels from RF_KEPT on */
 };
 

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "background/inpaint.h"
+#include "background/mark.h"
 #include "depth/dequantise.h"
 #include "image/format.h"
 #include "image/viewport.h"
@@ -124,26 +125,6 @@ static void make_window(struct rf_frame *f, struct rf_rect block, int margin, en
     rf_pass_smooth(f);
 }
 
-/* Stores which pixels of a block the mark of the background knows. */
-static void keep_known(struct refocus_renderer *r, struct rf_rect block)
-{
-    const struct rf_in_place *in_place = &r->in_place;
-
-    for (int y = block.y0; y < block.y1; y++) {
-        const int16_t *blur =
-            r->background.blur.at + (y - r->view.y0) * r->background.blur.stride - r->view.x0;
-        uint8_t *known = in_place->known + y * in_place->known_stride;
-
-        for (int x = block.x0; x < block.x1; x += 8) {
-            int bits = 0;
-
-            for (int i = 0; i < 8 && x + i < block.x1; i++)
-                bits |= (blur[x + i] != RF_NO_BLUR) << i;
-            known[x / 8] = (uint8_t)bits;
-        }
-    }
-}
-
 /* The number of pixels of level RF_KEPT that n pixels of the photo make, rounded up. */
 static int kept_pixels(int n)
 {
@@ -186,7 +167,7 @@ static void mark(struct rf_frame *f)
         if (rf_cancelled(&r->exec))
             break;
         rf_pass_mark_background(f, RF_KEPT);
-        keep_known(r, block);
+        rf_known_store(&in_place->known, &r->view, r->background.blur, block);
         if (!rf_cancelled(&r->exec))
             keep_level(r, block);
     }
@@ -197,25 +178,12 @@ static void mark(struct rf_frame *f)
 static void known_band(void *context, int band, int worker)
 {
     struct refocus_renderer *r = context;
-    const struct rf_in_place *in_place = &r->in_place;
+    const struct rf_mark pass = {
+        .planes = 3, .blur = r->blur, .smooth = r->smooth, .background = r->background};
 
     (void)worker;
-    for (int y = rf_band_start(band); y < rf_band_end(&r->view, band); y++) {
-        const ptrdiff_t at = y * r->blur.stride;
-        const uint8_t *known = in_place->known + (y + r->view.y0) * in_place->known_stride;
-        const int16_t *blur = r->blur.at + at;
-        int16_t *out = r->background.blur.at + at;
-
-        for (int x = 0; x < r->view.width; x++) {
-            const int q = x + r->view.x0;
-
-            out[x] = known[q / 8] >> q % 8 & 1 ? blur[x] : RF_NO_BLUR;
-        }
-        out[r->view.width] = RF_NO_BLUR; /* there is one more column if the width is odd */
-        for (int c = 0; c < 3; c++)
-            memcpy(r->background.light.channel[c] + at, r->smooth.channel[c] + at,
-                   (size_t)r->view.width * 2);
-    }
+    rf_known_mark_rows(&r->in_place.known, &r->view, &pass, rf_band_start(band),
+                       rf_band_end(&r->view, band));
     rf_background_push_band(&r->exec, &r->pyramid, band, RF_KEPT - 1);
 }
 
