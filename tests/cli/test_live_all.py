@@ -17,7 +17,7 @@ import sys
 import tempfile
 import threading
 
-from methods import method_names, methods_with_rays
+from names import method_names, methods_with_rays
 
 REFOCUS = os.path.abspath(sys.argv[1])
 SLOW = float(os.environ.get('REFOCUS_SLOW', '1'))
