@@ -75,6 +75,7 @@ enum refocus_cpu {
     REFOCUS_CPU_AVX2 = 4,
     REFOCUS_CPU_AVX512 = 5, /**< 256-bit vectors with the masks of AVX-512 (BW, VL, VNNI) */
 };
+enum { REFOCUS_CPU_COUNT = 6 };
 
 /** The limits of a renderer. Start from refocus_renderer_params_default(). */
 struct refocus_renderer_params {

@@ -23,23 +23,21 @@ static const struct set {
     const char *name;
     const struct rf_kernels *kernels; /* NULL: this build does not have it */
     bool (*has)(void);
-} sets[] = {
+} sets[REFOCUS_CPU_COUNT] = {
     [REFOCUS_CPU_AUTO] = {"auto", NULL, NULL},
 #define SET(name, NAME, test) [REFOCUS_CPU_##NAME] = {#name, &rf_kernels_##name, has_##name},
 #define NO_SET(name, NAME)    [REFOCUS_CPU_##NAME] = {#name, NULL, NULL},
 #include "kernels/sets.def"
 };
 
-enum { SETS = sizeof sets / sizeof sets[0] };
-
 static bool has(uint32_t cpu)
 {
-    return cpu < SETS && sets[cpu].kernels && sets[cpu].has();
+    return cpu < REFOCUS_CPU_COUNT && sets[cpu].kernels && sets[cpu].has();
 }
 
 bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
 {
-    for (uint32_t best = SETS - 1; *cpu == REFOCUS_CPU_AUTO; best--)
+    for (uint32_t best = REFOCUS_CPU_COUNT - 1; *cpu == REFOCUS_CPU_AUTO; best--)
         if (has(best))
             *cpu = best;
     if (!has(*cpu))
@@ -50,5 +48,5 @@ bool rf_kernels_select(struct rf_kernels *kernels, uint32_t *cpu)
 
 const char *refocus_cpu_name(uint32_t cpu)
 {
-    return cpu < SETS ? sets[cpu].name : NULL;
+    return cpu < REFOCUS_CPU_COUNT ? sets[cpu].name : NULL;
 }

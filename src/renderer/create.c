@@ -30,7 +30,7 @@ static const struct rf_rule rules[] = {
     RULE(RF_SIGNED, max_height, 1, REFOCUS_MAX_SIDE),
     RULE(RF_REAL, max_blur_radius, 0, REFOCUS_MAX_BLUR_RADIUS),
     RULE(RF_SIGNED, threads, 0, RF_MAX_THREADS),
-    RULE(RF_UNSIGNED, cpu, 0, REFOCUS_CPU_AVX512),
+    RULE(RF_UNSIGNED, cpu, 0, REFOCUS_CPU_COUNT - 1),
     RULE(RF_UNSIGNED, methods, 0, REFOCUS_METHODS_ALL),
     RULE(RF_UNSIGNED, reserved, 0, 0),
     RULE(RF_UNSIGNED, in_place, 0, 1),

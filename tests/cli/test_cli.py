@@ -413,8 +413,9 @@ class Failures(Case):
         os.remove('out.ppm')
 
     def test_outputs(self):
-        self.fails(2, 'out.tif: no such format is written; end the name in .jpg, .jpeg, .png or '
-                      '.ppm', 'render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.tif')
+        self.fails(2, re.compile('^refocus: out.tif: no such format is written; end the name in '
+                                 r'\.jpg, \.jpeg, \.png(, \.\w+)* or \.\w+$'),
+                   'render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.tif')
         self.fails(1, re.compile('^refocus: none/out.ppm: the folder none cannot be written to '
                                  r'\(No such file or directory\); give another place'), 'render',
                    'photo.ppm', '--depth', 'depth.pgm', '-o', 'none/out.ppm')
