@@ -112,7 +112,7 @@ static struct rf_core_sums look(const struct settle *settle, int x, int y)
         .core = settle->core + place.first,
         .stride = e->stride,
         .nearness = place.nearness,
-        .nearness_stride = sizeof settle->shape.nearness[0] * settle->shape.step,
+        .nearness_stride = (ptrdiff_t)sizeof settle->shape.nearness[0] * settle->shape.step,
         .columns = settle->shape.columns,
         .rows = place.rows,
         .step = settle->shape.step,

@@ -103,13 +103,14 @@ static void mark_blocks(struct rf_edges *e, int reach)
     for (int y = 0; y < e->height; y++)
         for (int x = 0; x < e->width; x++) {
             const int u = x / RF_EDGE_BLOCK, v = y / RF_EDGE_BLOCK;
-            const int last = rf_smaller(v + blocks, down - 1), left = rf_larger(u - blocks, 0);
+            const int bottom = rf_smaller(v + blocks, down - 1);
+            const int left = rf_larger(u - blocks, 0), right = rf_smaller(u + blocks, across - 1);
 
             if (e->is_wide[y * e->stride + x])
                 continue;
-            for (int row = rf_larger(v - blocks, 0); row <= last; row++)
-                memset(e->rough + row * across + left, 1,
-                       (size_t)(rf_smaller(u + blocks, across - 1) - left + 1));
+            for (int row = rf_larger(v - blocks, 0); row <= bottom; row++)
+                for (int column = left; column <= right; column++)
+                    e->rough[row * across + column] = 1;
         }
 }
 

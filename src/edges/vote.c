@@ -50,7 +50,7 @@ static struct rf_votes ask(const struct vote *vote, int x, int y)
         .voter = vote->voter + place.first,
         .stride = e->stride,
         .nearness = place.nearness,
-        .nearness_stride = sizeof vote->shape.nearness[0] * vote->shape.step,
+        .nearness_stride = (ptrdiff_t)sizeof vote->shape.nearness[0] * vote->shape.step,
         .columns = vote->shape.columns,
         .rows = place.rows,
         .step = vote->shape.step,
