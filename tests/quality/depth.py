@@ -46,6 +46,16 @@ the depth that is known of the photo.'''
 SNAPPING = '''`refocus-depth-quality --snap SCENE...`: the exact disparities, 3 px to the right and down, and
 what `refocus_depth_snap()` with a reach of 3 makes of them. Columns as above.'''
 
+FAULTY = '''`refocus-depth-quality --faults SCENE...`: the exact disparities of the reference scenes,
+spoilt as those of phones, sensors and networks are, and what is left of it after
+`refocus_depth_edges()` (*edges put right*). *Soft* is a Gaussian blur. *Quarter size* is the means
+of 4x4 pixels, which `refocus_prepare()` upsamples by itself. *Grown* and *shrunk* are the greatest
+and the least of a disc of radius 4. *Shifted* is to the right. *Displaced* is by a random field of
+vectors, 2 px long as a root mean square, smoothed by a Gaussian of sigma 12; the nearest sample is
+taken. PSNR: sweep, 64 rays, no light given back to highlights, mean of all views without blades,
+against the path-traced references; *to exact* is the difference to rendering with the exact
+disparities.'''
+
 DECIMATED = '''`refocus-depth-quality --truth NAME PHOTO TRUTH...`: every fourth row and column of the
 disparities of a Middlebury pair's left picture (2014 and 2006), brought back to all pixels; the
 samples lie half a pixel off the middle of the 4x4 pixels that they stand for. No noise is added.
@@ -184,6 +194,8 @@ def scene_sections(tools, folders):
 
     yield 'Upsampling', lambda name: section(name, UPSAMPLING, by('refocus-depth-quality'))
     yield 'Snapping', lambda name: section(name, SNAPPING, by('refocus-depth-quality', '--snap'))
+    yield 'Faulty maps', lambda name: section(name, FAULTY, by('refocus-depth-quality',
+                                                              '--faults'))
     yield 'Time of upsampling', lambda name: section(name, TIME, by('refocus-depth-quality',
                                                                    '--time'))
     yield 'Flicker', lambda name: section(name, FLICKER, by('refocus-depth-flicker', '--scenes'))

@@ -3,6 +3,7 @@
  *     refocus-depth-quality SCENE_FOLDER...   quality against the exact disparities
  *     refocus-depth-quality --time SCENE_FOLDER...   CPU time of refocus_upsample()
  *     refocus-depth-quality --snap SCENE_FOLDER...   exact disparities 3 px off, moved back
+ *     refocus-depth-quality --faults SCENE_FOLDER...   exact disparities spoilt, edges put right
  *     refocus-depth-quality --truth NAME PHOTO.png TRUTH.png...
  *         every 4th row and column of known disparities, 0 = unknown, brought back
  *
@@ -17,6 +18,7 @@
 
 #include "depth_fit.h"
 #include "depth_ways.h"
+#include "faults.h"
 #include "metrics.h"
 #include "png_io.h"
 #include "scene.h"
@@ -24,15 +26,24 @@
 #include <refocus/platform/opencv.h>
 #endif
 
+static struct refocus_image photo_of(const struct quality_scene *scene)
+{
+    return refocus_image_packed(REFOCUS_FORMAT_RGB8, scene->photo, scene->width, scene->height,
+                                3 * scene->width);
+}
+
+static struct refocus_disparity whole_map(const struct quality_scene *scene, const uint16_t *d)
+{
+    return refocus_disparity16(d, scene->width, scene->height, 2 * scene->width);
+}
+
 /* Mean PSNR and edge PSNR of all views without blades against the traced references. */
-static int refocused(const struct quality_scene *scene, uint16_t *d, double *psnr,
+static int refocused(const struct quality_scene *scene, struct refocus_disparity map, double *psnr,
                      double *edge_psnr)
 {
     const int w = scene->width, h = scene->height;
     struct refocus_renderer_params limits = refocus_renderer_params_default(w, h, 64);
-    const struct refocus_image photo =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, scene->photo, w, h, 3 * w);
-    const struct refocus_disparity map = refocus_disparity16(d, w, h, 2 * w);
+    const struct refocus_image photo = photo_of(scene);
     struct refocus_renderer *renderer = NULL;
     uint8_t *pixels = malloc(3 * (size_t)w * (size_t)h), *mask = malloc((size_t)w * (size_t)h);
     int views = 0, result = -1;
@@ -132,7 +143,8 @@ static int score_scene(const char *folder, unsigned table, const char *pictures)
 
         if (status == REFOCUS_ERR_UNSUPPORTED)
             continue; /* the module of contrib filters is not there */
-        if (status || depth_fit(&scene, NULL, d, &fit) || refocused(&scene, d, &psnr, &edge))
+        if (status || depth_fit(&scene, NULL, d, &fit) ||
+            refocused(&scene, whole_map(&scene, d), &psnr, &edge))
             goto done;
         if (i == 0) {
             exact_psnr = psnr;
@@ -163,6 +175,64 @@ done:
     free(coarse.confidence);
     quality_scene_free(&scene);
     return result;
+}
+
+static int score_faults(const char *folder)
+{
+    struct quality_scene scene;
+    uint16_t *faulty, *d;
+    double exact[2] = {0, 0};
+    int result = -1;
+
+    if (quality_scene_read(&scene, folder))
+        return -1;
+
+    const int w = scene.width, h = scene.height;
+    const struct refocus_image photo = photo_of(&scene);
+    const struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
+
+    faulty = malloc((size_t)w * (size_t)h * sizeof *faulty);
+    d = malloc((size_t)w * (size_t)h * sizeof *d);
+    if (!faulty || !d)
+        goto done;
+    for (const struct fault *fault = faults; fault->name; fault++) {
+        const int columns = w / fault->divisor, rows = h / fault->divisor;
+        const struct refocus_disparity map =
+            refocus_disparity16(faulty, columns, rows, 2 * columns);
+        double before[2], after[2];
+
+        if (fault->make(scene.disparity, w, h, faulty) ||
+            refocused(&scene, map, &before[0], &before[1]) ||
+            refocus_depth_edges(&photo, &map, &params, d, 2 * w, NULL) ||
+            refocused(&scene, whole_map(&scene, d), &after[0], &after[1]))
+            goto done;
+        if (fault == faults)
+            memcpy(exact, before, sizeof exact);
+        printf("| %s | %s |", scene.name, fault->name);
+        for (int i = 0; i < 2; i++)
+            printf(" %.2f | %+.2f | %.2f | %+.2f |", before[i], before[i] - exact[i], after[i],
+                   after[i] - exact[i]);
+        puts("");
+        fflush(stdout);
+    }
+    result = 0;
+done:
+    free(faulty);
+    free(d);
+    quality_scene_free(&scene);
+    return result;
+}
+
+static int score_all_faults(int scenes, char **folder)
+{
+    int failed = 0;
+
+    puts("| scene | map | PSNR, dB | to exact | edges put right | to exact | edge PSNR, dB | "
+         "to exact | edges put right | to exact |\n"
+         "| --- | --- | --: | --: | --: | --: | --: | --: | --: | --: |");
+    for (int i = 0; i < scenes && !failed; i++)
+        failed = score_faults(folder[i]);
+    return failed ? 1 : 0;
 }
 
 /* The samples that are there as disparities over the whole range, the others inpainted. */
@@ -397,13 +467,16 @@ int main(int argc, char **argv)
     int failed = 0;
 
     if (argc < 2) {
-        fputs("usage: refocus-depth-quality [--time | --snap | --out FOLDER] SCENE_FOLDER...\n"
+        fputs("usage: refocus-depth-quality [--time | --snap | --faults | --out FOLDER] "
+              "SCENE_FOLDER...\n"
               "       refocus-depth-quality --truth NAME PHOTO.png TRUTH.png...\n",
               stderr);
         return 2;
     }
     if (!strcmp(argv[1], "--truth"))
         return score_truths(argc - 2, argv + 2);
+    if (!strcmp(argv[1], "--faults"))
+        return score_all_faults(argc - 2, argv + 2);
     puts(timing ? "| scene | instructions | threads | CPU ms, least | median | wall ms, least | "
                   "median |\n| --- | --- | --: | --: | --: | --: | --: |"
                 : "| scene | depth | true edges found within 1 px, % | found edges that are "
