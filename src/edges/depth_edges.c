@@ -60,7 +60,7 @@ static void lay_out(struct rf_edges *e, struct rf_arena *arena)
     e->is_wide = take_plane(arena, e, 1);
     e->range = rf_arena_take(arena, blocks, sizeof *e->range);
     e->rough = rf_arena_take(arena, blocks, 1);
-    e->most_edges = e->width * (int64_t)e->height / 8 < INT32_MAX ? e->width * e->height / 8 : 0;
+    e->most_edges = (int)((int64_t)e->width * e->height / 8);
     e->edge = rf_arena_take(arena, (uint64_t)e->most_edges, sizeof *e->edge);
     rf_align_lay_out(e, arena);
     if (arena->base)
@@ -73,7 +73,7 @@ static void lay_out(struct rf_edges *e, struct rf_arena *arena)
 static uint8_t mean_code(const uint8_t *in, ptrdiff_t stride, int bytes, int width, int height)
 {
     const int n = width * height;
-    int sum = n / 2;
+    int64_t sum = n / 2;
 
     for (int v = 0; v < height; v++)
         for (int u = 0; u < width; u++)

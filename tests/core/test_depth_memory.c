@@ -67,6 +67,48 @@ static int snap(void)
     return refocus_depth_snap(&image, &map, &params, out, 2 * W);
 }
 
+enum edges { SHARP, SOFT, COARSE };
+
+/* A map this coarse is worked on at a size between it and the photo's. */
+static int place_edges(enum edges kind, int threads)
+{
+    static uint16_t samples[W * H];
+    struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
+    struct refocus_depth_edges_report report = refocus_depth_edges_report_default();
+    const struct refocus_depth_edges_report before = report;
+    const struct refocus_disparity map = kind == COARSE
+                                             ? refocus_disparity16(coarse, CW - 2, CH - 1, 2 * CW)
+                                             : refocus_disparity16(samples, W, H, 2 * W);
+    const struct refocus_image image = photo();
+    int status;
+
+    for (int i = 0; i < W * H; i++) {
+        const int x = i % W - 16, ramp = x < 0 ? 0 : x < 8 ? x : 8;
+
+        samples[i] = (uint16_t)(12000 + 4000 * (kind == SOFT ? ramp : ramp / 4 * 4));
+    }
+    params.threads = threads;
+    status = refocus_depth_edges(&image, &map, &params, out, 2 * W, &report);
+    if (status != REFOCUS_OK)
+        assert_memory_equal(&report, &before, sizeof report);
+    return status;
+}
+
+static int place_sharp_edges(void)
+{
+    return place_edges(SHARP, 1);
+}
+
+static int place_soft_edges(void)
+{
+    return place_edges(SOFT, 3);
+}
+
+static int place_coarse_edges(void)
+{
+    return place_edges(COARSE, 2);
+}
+
 static int repair(void)
 {
     struct refocus_repair_params params = refocus_repair_params_default();
@@ -181,6 +223,36 @@ static void failing_snap(void **state)
     fail_each(snap, 5, 0); /* four of its own, one of the upsampler */
 }
 
+static void failing_edges(void **state)
+{
+    (void)state;
+    fail_each(place_sharp_edges, 1, 0);
+    fail_each(place_soft_edges, 1, 0);
+    fail_each(place_coarse_edges, 2, 0); /* one of the upsampler */
+}
+
+/* The memory for the largest picture that there can be is counted in 64 bits, and nothing is read
+ * before it is there. */
+static void largest_edges(void **state)
+{
+    const struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
+    const int64_t side = REFOCUS_MAX_SIDE;
+    const int32_t n = (int32_t)side;
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, n, n, (ptrdiff_t)(3 * side));
+    const struct refocus_disparity map = refocus_disparity16(fine, n, n, (ptrdiff_t)(2 * side));
+
+    (void)state;
+    memset(out, UNTOUCHED & 255, sizeof out);
+    failing.calls = failing.live = 0;
+    failing.fail_at = 1;
+    assert_int_equal(refocus_depth_edges(&image, &map, &params, out, (ptrdiff_t)(2 * side), NULL),
+                     3 * side * side > PTRDIFF_MAX ? REFOCUS_ERR_ARGUMENT : REFOCUS_ERR_MEMORY);
+    failing.fail_at = 0;
+    assert_int_equal(failing.live, 0);
+    assert_true(is_untouched());
+}
+
 static void failing_repair(void **state)
 {
     (void)state;
@@ -198,7 +270,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(failing_upsample), cmocka_unit_test(failing_snap),
-        cmocka_unit_test(failing_repair), cmocka_unit_test(failing_filter)};
+        cmocka_unit_test(failing_edges),    cmocka_unit_test(largest_edges),
+        cmocka_unit_test(failing_repair),   cmocka_unit_test(failing_filter)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
