@@ -1,4 +1,5 @@
-/* misuse_depth.c: misuse of depth maps: reading, repair, upsampling, and the filter over video. */
+/* misuse_depth.c: misuse of depth maps: reading, repair, upsampling, edges, and the filter over
+ * video. */
 #include "misuse.h"
 
 static uint16_t out[W * H];
@@ -191,6 +192,109 @@ static void upsampling(void)
     misuse_spoil(NULL, NULL);
 }
 
+static struct refocus_depth_edges_report findings;
+
+static void edges_photo(const struct refocus_image *photo)
+{
+    const struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
+    const struct refocus_disparity map = misuse_map();
+
+    REFUSED(refocus_depth_edges, photo, &map, &params, out, 2 * W, &findings);
+}
+
+static void edges_map(const struct refocus_disparity *map)
+{
+    const struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
+    const struct refocus_image photo = misuse_photo();
+
+    REFUSED(refocus_depth_edges, &photo, map, &params, out, 2 * W, &findings);
+}
+
+static void edges_stride(ptrdiff_t stride)
+{
+    const struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
+    const struct refocus_image photo = misuse_photo();
+    const struct refocus_disparity map = misuse_map();
+
+    REFUSED(refocus_depth_edges, &photo, &map, &params, out, stride, &findings);
+}
+
+/* A field that this library does not know has to be 0. */
+static void edges_later_params(void)
+{
+    struct {
+        struct refocus_depth_edges_params params;
+        uint32_t later;
+    } larger = {.params = refocus_depth_edges_params_default(), .later = 1};
+    const struct refocus_image photo = misuse_photo();
+    const struct refocus_disparity map = misuse_map();
+
+    larger.params.struct_size = sizeof larger;
+    ANSWERS(REFOCUS_ERR_UNSUPPORTED, refocus_depth_edges, &photo, &map, &larger.params, out, 2 * W,
+            &findings);
+}
+
+static void edges_arguments(void)
+{
+    const struct refocus_depth_edges_params params =
+        TAKES_NOTHING(refocus_depth_edges_params_default);
+    uint16_t *const odd = (uint16_t *)(void *)((uint8_t *)out + 1);
+    const struct refocus_image photo = misuse_photo();
+    const struct refocus_disparity map = misuse_map();
+    struct refocus_image no_rgb = photo;
+
+    misuse_images(edges_photo);
+    misuse_maps(edges_map);
+    misuse_strides(edges_stride, 2 * W);
+    edges_later_params();
+    no_rgb.format = REFOCUS_FORMAT_YUYV; /* packed, but not of R, G and B */
+    REFUSED(refocus_depth_edges, &no_rgb, &map, &params, out, 2 * W, &findings);
+    REFUSED(refocus_depth_edges, &photo, &map, NULL, out, 2 * W, &findings);
+    REFUSED(refocus_depth_edges, &photo, &map, &params, NULL, 2 * W, &findings);
+    REFUSED(refocus_depth_edges, &photo, &map, &params, odd, 2 * W, &findings);
+    REFUSED(refocus_depth_edges, &photo, &map, &params, out, 2 * W + 1, &findings);
+}
+
+static void placing_edges(void)
+{
+    static const uint32_t no_sizes[] = {0, 4, sizeof findings - 4, REFOCUS_MAX_STRUCT_SIZE + 1,
+                                        UINT32_MAX};
+    const struct misuse bad[] = {
+        BAD(refocus_depth_edges_params, struct_size, 0),
+        BAD(refocus_depth_edges_params, struct_size, sizeof(struct refocus_depth_edges_params) - 4),
+        BAD(refocus_depth_edges_params, struct_size, REFOCUS_MAX_STRUCT_SIZE + 1),
+        BAD(refocus_depth_edges_params, threads, -1),
+        BAD(refocus_depth_edges_params, threads, 65),
+        BAD(refocus_depth_edges_params, threads, INT32_MIN),
+        BAD(refocus_depth_edges_params, threads, INT32_MAX),
+        BAD(refocus_depth_edges_params, cpu, 99),
+        BAD(refocus_depth_edges_params, cpu, UINT32_MAX),
+        BAD(refocus_depth_edges_params, reserved, 1),
+        BAD(refocus_depth_edges_params, reserved, UINT32_MAX)};
+    const struct refocus_depth_edges_params good = refocus_depth_edges_params_default();
+    const struct refocus_image photo = misuse_photo();
+    const struct refocus_disparity map = misuse_map();
+    struct refocus_depth_edges_report before;
+
+    findings = TAKES_NOTHING(refocus_depth_edges_report_default);
+    findings.softness = findings.changed = 77;
+    before = findings;
+    edges_arguments();
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        struct refocus_depth_edges_params params = good;
+
+        misuse_spoil(&params, &bad[i]);
+        REFUSED(refocus_depth_edges, &photo, &map, &params, out, 2 * W, &findings);
+    }
+    misuse_spoil(NULL, NULL);
+    assert_memory_equal(&findings, &before, sizeof before);
+    for (size_t i = 0; i < COUNT(no_sizes); i++) {
+        findings.struct_size = before.struct_size = no_sizes[i];
+        REFUSED(refocus_depth_edges, &photo, &map, &good, out, 2 * W, &findings);
+        assert_memory_equal(&findings, &before, sizeof before);
+    }
+}
+
 static struct refocus_temporal *filter;
 
 static void filter_photo(const struct refocus_image *photo)
@@ -261,6 +365,7 @@ void misuse_depth(void **state)
     memset(out, 0x5a, sizeof out);
     repairing();
     upsampling();
+    placing_edges();
     filtering();
     for (size_t i = 0; i < COUNT(out); i++)
         assert_int_equal(out[i], 0x5a5a);
