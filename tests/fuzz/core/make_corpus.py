@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Writes the seeds of fuzz_core into corpus/core/; the order is that of take() in fuzz_core.c."""
+"""Writes the seeds of fuzz_core and fuzz_edges into corpus/core/ and corpus/edges/; the order is
+that of take() in fuzz_core.c and fuzz_edges.c."""
 import random
 import struct
 from pathlib import Path
 
-FOLDER = Path(__file__).resolve().parent / "corpus" / "core"
+CORPUS = Path(__file__).resolve().parent / "corpus"
 
 
 def u16(value, low=0):
@@ -35,6 +36,45 @@ def lens(focus, blur, most, method, rays, blend=0, sigma=128, gain=1, iterations
 IRIS = b"\4" + u16(0) + u16(6, 2) + share(15, 360) + share(.4, 1) + share(.8, 1) + share(.3, 1.5) \
     + share(.3, .9) + share(.4, 2) + b"\0"
 DISC, POLYGON, MASK = b"\1", b"\2" + u16(6, 3) + share(15, 360), b"\3" + bytes(range(0, 256, 16))
+
+
+def edges(width, height, depth=None, bits=16, form=1, reach=0, noise=20, cell=32, moved=(0, 0),
+          wild=b""):
+    columns, rows = depth or (width, height)
+    flags = (depth is None) | (bits == 16) << 1 | form - 1 << 2 | bool(wild) << 4
+    return bytes([flags, width - 1, height - 1, columns - 1, rows - 1, reach, noise, cell - 1,
+                  *moved]) + wild
+
+
+def seeds_of_edges():
+    """Pictures of cells, whose map is exact, soft, coarse, moved ..."""
+    two = bytes([20, 200, 20, 20, 200, 200, 90])
+    return {
+        "exact": edges(120, 120) + two,
+        "exact_codes": edges(120, 90, bits=8) + two,
+        "soft": edges(120, 120, reach=6) + two,
+        "soft_codes": edges(120, 120, bits=8, reach=9, form=4) + two,
+        "very_soft": edges(120, 120, reach=12, cell=128) + two,
+        "shifted": edges(120, 120, cell=16, moved=(7, 4)) + two,
+        "far_off": edges(120, 120, cell=40, moved=(30, 30)) + two,
+        "coarse": edges(120, 110, depth=(30, 28), form=2) + two,
+        "very_coarse": edges(120, 110, depth=(12, 11), form=3) + two,
+        "one_sample": edges(50, 40, depth=(1, 1)) + two,
+        "larger": edges(60, 50, depth=(120, 100), reach=2) + two,
+        "pixel": edges(1, 1) + two,
+        "row": edges(120, 1, reach=3) + two,
+        "column": edges(1, 120, depth=(1, 30)) + two,
+        "noise": edges(90, 90, cell=1) + bytes(range(0, 256, 7)),
+        "wild": edges(20, 20, wild=bytes([15]) + b"\xff" * 13) + two,
+        "empty": b"",
+    }
+
+
+def write(name, seeds):
+    folder = CORPUS / name
+    folder.mkdir(parents=True, exist_ok=True)
+    for seed, data in seeds.items():
+        (folder / seed).write_bytes(data)
 
 
 def main():
@@ -81,9 +121,8 @@ def main():
             extras = bytes(bits.randrange(256) for _ in range(120))
             seeds["%s%d" % (name, seed)] = (limits(40, 30, 8, 2) + picture(40, 30, 1, 1, 16)
                                             + lens(.4, 7, 8, 0, 64, gain=8) + aperture + extras)
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    for name, seed in seeds.items():
-        (FOLDER / name).write_bytes(seed + pixels)
+    write("core", {name: seed + pixels for name, seed in seeds.items()})
+    write("edges", seeds_of_edges())
 
 
 if __name__ == "__main__":
