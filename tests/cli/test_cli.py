@@ -37,39 +37,39 @@ class Usage(Case):
         options = {
             'render': self.PAPERS + self.CONTROLS +
                       '-o --output --depth --depth-unit --near --far --invalid --speckle '
-                      '--focus --focus-at --focus-rectangle '
+                      '--depth-edges --focus --focus-at --focus-rectangle '
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
                       '--highlights --mirror --background --no-thin --threads --cpu --repeat --json --view '
                       '--parallax --region --settings --save-settings -h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
-                     '--snap --upsample --estimate --preset --input-size --input-mean --input-scale '
+                     '--depth-edges --snap --upsample --estimate --preset --input-size --input-mean --input-scale '
                      '--far-is-large --match --strokes --stereo-file --side-by-side --view '
                      '--focus-at --blur --json -h --help',
             'sheet': self.PAPERS + self.CONTROLS +
                      '-o --output --depth --depth-unit --near --far --invalid --speckle '
-                     '--kind --focuses --blurs --f-numbers --apertures --sigmas '
+                     '--depth-edges --kind --focuses --blurs --f-numbers --apertures --sigmas '
                      '--cell-width --region --focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --f-number --focal-length --sensor-width --method --rays --iterations '
                      '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin '
                      '--threads --cpu --json --settings --save-settings -h --help',
             'pull': self.PAPERS + self.CONTROLS +
                     '-o --output --depth --depth-unit --near --far --invalid --speckle '
-                    '--from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
+                    '--depth-edges --from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
                     '--wiggle '
                     '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality --aperture --blend '
                     '--sigma --highlights --mirror --background --no-thin --threads --cpu --json '
                     '--settings --save-settings -h --help',
             'view': self.PAPERS + self.CONTROLS +
-                    '-o --output --depth --depth-unit --near --far --invalid --speckle --strokes '
-                    '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
+                    '-o --output --depth --depth-unit --near --far --invalid --speckle '
+                    '--depth-edges --strokes --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality '
                     '--aperture --blend --sigma --highlights --mirror --background --no-thin --threads '
                     '--cpu --json --settings --size --fullscreen --seconds -h --help',
             'info': '--json -h --help',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
-                       '--depth-unit --near --far --focus --focus-at --focus-rectangle '
+                       '--depth-unit --near --far --depth-edges --focus --focus-at --focus-rectangle '
                        '--focus-distance --blur --f-number --focal-length --sensor-width --rays --iterations '
                        '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin '
                        '--threads --cpu --repeat --json -h --help',
@@ -285,6 +285,10 @@ class Limits(Case):
                        option, value, '--kind', 'sigma')
         self.fails(2, '--upsample: it goes with --full; give that too', *depth, '--depth',
                    'depth.pgm', '--upsample', 'core')
+        self.fails(2, '--depth-edges: it goes with --full; give that too', *depth, '--depth',
+                   'depth.pgm', '--depth-edges', 'auto')
+        self.fails(2, "--depth-edges: 'sharp' cannot be used; give one of auto, as-given",
+                   *self.render('--depth-edges', 'sharp'))
         for option, value in (('--snap', '2'), ('--depth-unit', 'mm'), ('--speckle', '4'),
                               ('--invalid', 'zero'), ('--upsample', 'core')):
             self.fails(2, option + ': --strokes alone paint over nothing; give --depth, or leave '

@@ -41,6 +41,46 @@ class Results(Case):
         self.assertRegex(text, r'^prepare [\d.]+ ms, render [\d.]+ ms \(median of 2; ')
         self.assertEqual(self.succeeds(*self.render()), '')
 
+    def test_depth_edges(self):
+        """A soft map is parted where the photo's edge is; an exact one stays, to the byte."""
+        width, height, edge = 96, 64, 45
+        pictures.ppm('edged.ppm', width, height, lambda x, y: (
+            (180, 140 + (x * 7 ^ y * 5) % 23, 60) if x < edge else (40, 70, 90 + x * y % 19)))
+        pictures.pgm('exact.pgm', width, height, lambda x, y: 200 if x < edge else 40)
+        pictures.pgm('soft.pgm', width, height,
+                     lambda x, y: 40 + 16 * min(max(edge + 5 - x, 0), 10))
+        for depth, parted in ('exact.pgm', False), ('soft.pgm', True):
+            command = ('render', 'edged.ppm', '--depth', depth, '--focus', '1', '--blur', '6')
+            given = self.reports(*command, '-o', 'given.ppm', '--depth-edges', 'as-given')
+            edges = self.reports(*command, '-o', 'auto.ppm', '--depth-edges', 'auto')['edges']
+            self.succeeds(*command, '-o', 'default.ppm')
+            picture = pictures.read_bytes('auto.ppm')
+            self.same(picture, pictures.read_bytes('default.ppm'))
+            (self.differs if parted else self.same)(picture, pictures.read_bytes('given.ppm'))
+            self.assertIsNone(given['edges'])
+            self.assertEqual(set(edges), {'softness_px', 'on_photo', 'grown_px', 'shift_x_px',
+                                          'shift_y_px', 'bent', 'parted', 'changed'})
+            self.assertEqual((edges['grown_px'], edges['shift_x_px'], edges['shift_y_px'],
+                              edges['bent'], edges['parted']), (0, 0, 0, False, parted))
+            self.assertEqual((edges['softness_px'] > 1.25, edges['changed'] > 0.05),
+                             (parted, parted))
+
+    def test_depth_edges_in_full(self):
+        """`depth` looks at the photo with --full alone."""
+        width, height, edge = 96, 64, 45
+        pictures.ppm('edged.ppm', width, height,
+                     lambda x, y: (180, 140, 60) if x < edge else (40, 70, 90))
+        pictures.pgm('soft.pgm', width, height,
+                     lambda x, y: 40 + 16 * min(max(edge + 5 - x, 0), 10))
+        command = ('depth', 'edged.ppm', '--depth', 'soft.pgm', '-o', 'made.pgm')
+        soft = tuple(v * 257 for v in pictures.read_pnm('soft.pgm')[2])
+        for more in (), ('--full', '--depth-edges', 'as-given'):
+            self.assertIsNone(self.reports(*command, *more)['edges'])
+            self.same(pictures.read_pnm('made.pgm')[2], soft)
+        self.assertTrue(self.reports(*command, '--full')['edges']['parted'])
+        for i, value in enumerate(pictures.read_pnm('made.pgm')[2]):
+            self.assertLess(abs(value / 65535 - (200 if i % width < edge else 40) / 255), 0.02)
+
     def test_nothing_to_blur(self):
         photo = pictures.read_pnm('photo.ppm')
         self.succeeds(*self.render('--blur', '0'))
