@@ -6,7 +6,7 @@
  *   1. For each block the shift with the most of it is looked for. The map is on the photo where
  *      most blocks want none: nothing is done.
  *   2. Else one shift of the whole map, or one number of pixels by which near surfaces are too
- * large or too small, is undone if it is clearly better than none.
+ *      large or too small, is undone if it is clearly better than none.
  *   3. Else each block's edges go where they fit best, and then once more in blocks half as large,
  *      if they fit clearly better there.
  *
