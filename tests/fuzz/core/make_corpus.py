@@ -39,9 +39,9 @@ DISC, POLYGON, MASK = b"\1", b"\2" + u16(6, 3) + share(15, 360), b"\3" + bytes(r
 
 
 def edges(width, height, depth=None, bits=16, form=1, reach=0, noise=20, cell=32, moved=(0, 0),
-          wild=b""):
+          threads=False, wild=b""):
     columns, rows = depth or (width, height)
-    flags = (depth is None) | (bits == 16) << 1 | form - 1 << 2 | bool(wild) << 4
+    flags = (depth is None) | (bits == 16) << 1 | form - 1 << 2 | bool(wild) << 4 | threads << 5
     return bytes([flags, width - 1, height - 1, columns - 1, rows - 1, reach, noise, cell - 1,
                   *moved]) + wild
 
@@ -50,21 +50,23 @@ def seeds_of_edges():
     """Pictures of cells, whose map is exact, soft, coarse, moved ..."""
     two = bytes([20, 200, 20, 20, 200, 200, 90])
     return {
-        "exact": edges(120, 120) + two,
-        "exact_codes": edges(120, 90, bits=8) + two,
-        "soft": edges(120, 120, reach=6) + two,
-        "soft_codes": edges(120, 120, bits=8, reach=9, form=4) + two,
-        "very_soft": edges(120, 120, reach=12, cell=128) + two,
-        "shifted": edges(120, 120, cell=16, moved=(7, 4)) + two,
-        "far_off": edges(120, 120, cell=40, moved=(30, 30)) + two,
-        "coarse": edges(120, 110, depth=(30, 28), form=2) + two,
-        "very_coarse": edges(120, 110, depth=(12, 11), form=3) + two,
+        "exact": edges(72, 72) + two,
+        "exact_codes": edges(72, 60, bits=8) + two,
+        "soft": edges(72, 72, reach=6, threads=True) + two,
+        "soft_codes": edges(72, 72, bits=8, reach=9, form=4) + two,
+        "very_soft": edges(72, 72, reach=12, cell=128) + two,
+        "shifted": edges(72, 72, cell=16, moved=(7, 4), threads=True) + two,
+        "far_off": edges(72, 72, cell=40, moved=(30, 30)) + two,
+        "coarse": edges(72, 70, depth=(24, 23), form=2) + two,
+        "very_coarse": edges(72, 70, depth=(12, 11), form=3) + two,
+        "reduced": edges(72, 72, depth=(17, 17), reach=1, cell=50, threads=True) + two,
+        "enlarged": edges(72, 72, depth=(36, 34), reach=1, cell=50, moved=(9, 0)) + two,
         "one_sample": edges(50, 40, depth=(1, 1)) + two,
-        "larger": edges(60, 50, depth=(120, 100), reach=2) + two,
+        "larger": edges(40, 30, depth=(72, 60), reach=2) + two,
         "pixel": edges(1, 1) + two,
-        "row": edges(120, 1, reach=3) + two,
-        "column": edges(1, 120, depth=(1, 30)) + two,
-        "noise": edges(90, 90, cell=1) + bytes(range(0, 256, 7)),
+        "row": edges(72, 1, reach=3) + two,
+        "column": edges(1, 72, depth=(1, 30)) + two,
+        "noise": edges(60, 60, cell=1) + bytes(range(0, 256, 7)),
         "wild": edges(20, 20, wild=bytes([15]) + b"\xff" * 13) + two,
         "empty": b"",
     }
