@@ -380,23 +380,35 @@ static void soft_is_parted(void **state)
     end(&p);
 }
 
-/* Where the photo shows nothing the map itself decides: at the middle of each ramp. */
+/* A strip at the side, where few vote for what is near. */
+static struct seen strip(double x, double y)
+{
+    (void)y;
+    return x < 6 ? (struct seen){0.8, 1} : (struct seen){0.2, 0};
+}
+
+/* Where the photo shows nothing the map itself decides: at the middle of each ramp. Of the disc
+ * 99.94 % of the pixels are right, of the strip all; by votes alone its edge would be a pixel off.
+ */
 static void soft_before_grey(void **state)
 {
+    scene_fn *const scene[] = {disc, strip};
     struct picture p = make(WIDTH, HEIGHT);
 
     (void)state;
-    draw(&p, disc, 1);
-    memset(p.rgb, 128, 3 * WIDTH * HEIGHT);
-    soften(&p, 2, 0);
-    assert_true(share_within(&p, p.map, 0.02) < 0.96);
-    assert_true(place(&p).parted == 1);
-    assert_true(share_within(&p, p.out, 0.02) >= 0.995);
+    for (int i = 0; i < 2; i++) {
+        draw(&p, scene[i], 1);
+        memset(p.rgb, 128, 3 * WIDTH * HEIGHT);
+        soften(&p, 2, 0);
+        assert_true(share_within(&p, p.map, 0.02) < 0.97);
+        assert_true(place(&p).parted == 1);
+        assert_true(share_within(&p, p.out, 0.02) >= 0.999);
+    }
     end(&p);
 }
 
-/* One pixel of twenty has a colour of the other surface: those of them that would be given to it,
- * 1.3 in 1000 more, are put right by their neighbours. 99.9 % of the pixels are right. */
+/* One pixel of ten has a colour of the other surface. Those beside the edge that are given to it
+ * are put right by their neighbours: 99.87 % of the pixels are right, without that 99.74 %. */
 static void specks_of_photo(void **state)
 {
     struct picture p = make(WIDTH, HEIGHT);
@@ -404,11 +416,11 @@ static void specks_of_photo(void **state)
     (void)state;
     draw(&p, disc, 1);
     for (int i = 0; i < WIDTH * HEIGHT; i++)
-        if (random_bits() % 20 == 0)
-            paint(p.rgb + 3 * i, p.exact[i] < 32768 ? 1 : 0, i % WIDTH, i / WIDTH);
+        if (random_bits() % 10 == 0)
+            paint(p.rgb + (ptrdiff_t)3 * i, p.exact[i] < 32768 ? 1 : 0, i % WIDTH, i / WIDTH);
     soften(&p, 2, 0);
     place(&p);
-    assert_true(share_within(&p, p.out, 0.02) >= 0.995);
+    assert_true(share_within(&p, p.out, 0.02) >= 0.998);
     end(&p);
 }
 
