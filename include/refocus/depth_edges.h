@@ -60,14 +60,16 @@ static inline struct refocus_depth_edges_report refocus_depth_edges_report_defau
  * grown, shrunk, shifted or displaced by up to 5 pixels: those of phones, sensors and networks.
  *
  *   - Where the edges of the map do not lie on the photo's, what is common to all of them is
- *     undone, and then what is common to those of a block of 16 pixels.
+ *     undone, and then what is common to those of a block of 16 pixels; either only if they fit the
+ *     photo clearly better then. A photo of something else can mislead it.
  *   - Each pixel of a ramp between two surfaces is given to the one that looks like it in the
  *     photo. Slopes and rounded things, which are longer ramps, stay.
  *   - Wires and hair get back the disparity that a soft map mixed with what is behind them.
  *
  * A map of the photo's size that is sharp and lies on the photo comes out as it is, to the code.
  * A small map whose samples were taken at points, as sensors do, is brought to the photo's size by
- * refocus_upsample(): its edges are not looked for in the photo, and on_photo is 0.
+ * refocus_upsample(): whether its edges lie on the photo's is not looked at, and on_photo and
+ * changed are 0.
  * Of large photos with small maps the work is done at up to four times the map's size, and the
  * rest by refocus_upsample(). The result does not depend on threads or processor.
  *

@@ -33,8 +33,8 @@ enum {
 /*
  * tally: how much those around a pixel that look like it are near, and how much far: sums of
  *
- *     weight = nearness (1 - (difference / 73)^2)^8 / 32,   difference = |R - r| + |G - g| + |B -
- * b|
+ *     weight = nearness 255 (1 - (difference / 73)^2)^8 / 32
+ *     difference = |R - r| + |G - g| + |B - b|
  *
  * (a Gaussian, nearly, of 18 codes) over the pixels of a window whose disparity is from `least`,
  * not 0, to `most`; above `middle` they are near. *_value are sums of weight x (disparity - least)
