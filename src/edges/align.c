@@ -12,7 +12,8 @@
  *
  * A worked example: 'grown by 4 pixels' has 0.65 of the median support in place, 2.3 with near
  * surfaces smaller by 4: step 2. A map of a network has 1.2 in place, no shift is better, and 1.6
- * after step 3. An exact map by night, where blocks are unsure, has 1.5 in place: it stays.
+ * after step 3. An exact map by night, where blocks are unsure, has 1.5 in place: it stays. With
+ * the photo of another scene it is 0.96 to 1.03: there is nothing to go by, and it stays too.
  */
 #include "edges/edges.h"
 
@@ -32,10 +33,11 @@ enum {
     SMALL_REACH = 3,
     MOST_LOOKED_AT = 1 << 15, /* edges; of more every second, third ... */
 };
-static const double ON_PHOTO = 0.75; /* share of edges: the map needs nothing */
-static const double FITS = 1.4;      /* support in place: blocks are unsure, not wrong */
-static const double CLEARLY = 1.15;  /* times better */
-static const double SOFTEST = 3.2;   /* pixels: softer edges say little of their place */
+static const double ON_PHOTO = 0.75;  /* share of edges: the map needs nothing */
+static const double FITS = 1.4;       /* support in place: blocks are unsure, not wrong */
+static const double UNRELATED = 1.06; /* less support in place: it is the photo of something else */
+static const double CLEARLY = 1.15;   /* times better */
+static const double SOFTEST = 3.2;    /* pixels: softer edges say little of their place */
 
 struct shift {
     int x, y;
@@ -499,6 +501,7 @@ struct rf_alignment rf_align(struct rf_edges *e, double softness, struct rf_ramp
     struct rf_alignment found = {.on_photo = 1};
     struct blocks large = blocks_of(e, LARGE_BLOCK, REACH);
     struct whole whole;
+    bool is_related;
 
     rf_find_photo_gradient(e);
     rf_find_map_edges(e, e->label);
@@ -519,7 +522,8 @@ struct rf_alignment rf_align(struct rf_edges *e, double softness, struct rf_ramp
         }
         found.on_photo = ask_blocks(&large, 0.1);
     }
-    if (found.on_photo < ON_PHOTO && softness < SOFTEST && whole.zero < FITS)
+    is_related = whole.zero > UNRELATED || found.grown || found.shift_x || found.shift_y;
+    if (found.on_photo < ON_PHOTO && softness < SOFTEST && whole.zero < FITS && is_related)
         found.bent = bend(e, &large, limits);
     return found;
 }
