@@ -20,7 +20,7 @@ enum {
  * silhouettes 1; straight lines between samples two pixels apart make 1.2. */
 static const double SOFT = 1.25;
 /* Samples of a small map that were taken at points, as sensors do, have 0.4 at their own size;
- * means over areas mix two surfaces along edges and have 0.7 and more. */
+ * means over areas mix two surfaces along edges and have 0.64 and more. */
 static const double MIXED = 0.6;
 
 struct job {

@@ -62,7 +62,14 @@ struct rf_edge_range {
 };
 
 /* Everything that the passes work on: planes of width x height, all of the same stride. The map has
- * a border of one pixel, which repeats its sides. */
+ * a border of one pixel, which repeats its sides. Results that are never needed at once share
+ * memory, in this order of their lives:
+ *
+ *     near, far  samples as they came | ends of ramps | shares and mixtures of thin surfaces
+ *     largest    steps of ramps | slope of the map | voters | contrast along rows | cores
+ *     spare      smoothed photo or map | what replaces map or label
+ *     kept       the map before a change | contrast beside ramps
+ */
 struct rf_edges {
     const struct rf_kernels *kernels;
     struct rf_pool *pool;
@@ -108,7 +115,7 @@ void rf_find_rough_blocks(struct rf_edges *e, const uint16_t *plane);
 struct rf_ramp_limits {
     int steps;    /* a longer one is a slope: it is left as it is */
     int contrast; /* Q16 */
-    bool part;    /* whether label is one of the ends; else it is the map */
+    bool part;    /* label is one of the ends; false: label is the map */
 };
 
 /* Writes near, far and label. */

@@ -284,7 +284,8 @@ static const struct rf_occlusion *occlusion_of(struct rf_visibility *tile,
 {
     const struct rf_look_at wanted = {*run, job->first, job->end, slab};
     const int centre = tile->slab[slab].centre;
-    const bool kept = 4 * abs(centre) <= run->radius; /* else it is of no use for other rows */
+    /* The result for a slab farther out serves no other row. */
+    const bool kept = 4 * abs(centre) <= run->radius;
     struct rf_occlusion *occlusion = &tile->other;
 
     for (int i = 0; kept && i < RF_KEPT_OCCLUSIONS && i < tile->count; i++)

@@ -49,7 +49,7 @@ struct option {
     const char *of;                         /* name of the choice, or NULL */
     uint32_t of_words;                      /* bit i: word i of the choice, or, where it is not
                                                known before: */
-    bool (*of_takes)(uint32_t index);       /* whether word i is meant, or NULL */
+    bool (*of_takes)(uint32_t index);       /* tells whether word i is meant; or NULL */
     const char *(*of_word)(uint32_t index); /* words of the choice */
     size_t of_offset; /* where the choice's value lies, an int; below 0: several */
 };

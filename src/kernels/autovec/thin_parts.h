@@ -16,7 +16,7 @@ enum {
     THIN = 2 * AROUND + 1,
     WIDE = 2 * THIN,     /* more pixels across than any thin structure has */
     FAR = RF_THIN_REACH, /* how far the hidden background is looked for */
-    CLEAN = 4,           /* how near it must be for its light not to be that of the edge itself */
+    CLEAN = 4,           /* pixels: nearer light may be that of the edge itself */
     BEFORE = 2,          /* how far N is looked for */
     ACROSS = 2 * BEFORE + 1,
     FAINT = 12 * 12, /* squared distance of light that is none */
