@@ -12,6 +12,7 @@
 #include <refocus/methods.h>
 #include <refocus/params.h>
 #include <refocus/render.h>
+#include <refocus/scene.h>
 #include <refocus/settings.h>
 #include <refocus/sized.h>
 #include <refocus/status.h>

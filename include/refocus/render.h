@@ -1,7 +1,8 @@
 /** @file render.h  Refocusing: create once, prepare a photo, render as often as wanted.
  *
  *     refocus_renderer_create    once: threads are started, all memory is taken
- *     refocus_prepare            once a photo or frame
+ *     refocus_prepare            once a photo or frame (refocus_prepare_scene: with all that
+ *                                is known of its depth)
  *     refocus_render             once a lens setting
  *
  * A renderer is reentrant: one thread at a time may call into one renderer,
@@ -19,6 +20,7 @@
 #include <refocus/methods.h>
 #include <refocus/papers.h>
 #include <refocus/params.h>
+#include <refocus/scene.h>
 #include <refocus/sized.h>
 #include <refocus/status.h>
 
@@ -164,19 +166,19 @@ REFOCUS_API int refocus_renderer_create(struct refocus_renderer **renderer,
 REFOCUS_API void refocus_renderer_destroy(struct refocus_renderer **renderer);
 
 /**
- * Take a photo and its disparities in. Both are copied in the form the renderer needs; the
- * caller's memory is not used after the return. In strip mode (params.in_place) they are not
- * copied, and stay with the renderer until the next refocus_prepare() or its end.
+ * Take a photo and what is known of its depth in. All is copied in the form the renderer needs; the
+ * caller's memory is not used after the return. In strip mode (params.in_place) photo and
+ * disparities are not copied, and stay with the renderer until the next scene or its end.
  *
- * @param photo      all in focus; at most max_width x max_height; any enum refocus_format.
- *                   Each byte is read once, each plane in order: camera memory may be
- *                   uncached
- * @param disparity  of any size; covers the same view as the photo. Another size than
- *                   the photo's is brought to it by following the photo's edges.
+ * @param scene  see struct refocus_scene
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED (in_place:
  *         a map of another size, or a photo of Y, U and V), REFOCUS_ERR_CANCELLED.
  *         After an error nothing is prepared.
  */
+REFOCUS_API int refocus_prepare_scene(struct refocus_renderer *renderer,
+                                      const struct refocus_scene *scene);
+
+/** refocus_prepare_scene() of a photo and its disparities alone: refocus_scene_default(). */
 REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,
                                 const struct refocus_image *photo,
                                 const struct refocus_disparity *disparity);

@@ -70,52 +70,92 @@ static void take_in(struct refocus_renderer *r, const struct refocus_image *phot
                             rf_whole(r), &r->photo.silhouettes);
 }
 
-int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *photo,
-                    const struct refocus_disparity *disparity)
+/* A scene as it was read: its structs are copies of the caller's. */
+struct scene {
+    struct refocus_image photo;
+    struct refocus_disparity disparity;
+};
+
+static int read_scene(const struct refocus_renderer *r, const struct rf_log *log,
+                      struct scene *scene, const struct refocus_scene *given)
 {
-    struct rf_log log = {.function = "refocus_prepare"};
-    struct refocus_image own_photo;
-    struct refocus_disparity own_disparity;
-    struct rf_photo *own;
     int status;
 
-    if (!r)
-        return REFOCUS_ERR_ARGUMENT;
-    log.to = r->log;
+    if ((status = rf_read_image(log, "photo", &scene->photo, given->photo)) ||
+        (status = rf_read_map(log, "disparity", &scene->disparity, given->disparity)))
+        return status;
+    if (scene->photo.width > r->max_width || scene->photo.height > r->max_height)
+        return rf_refuse(log, REFOCUS_ERR_SIZE, "photo is %d x %d, may be up to %d x %d",
+                         (int)scene->photo.width, (int)scene->photo.height, r->max_width,
+                         r->max_height);
+    if (r->in_place.on && (scene->disparity.width != scene->photo.width ||
+                           scene->disparity.height != scene->photo.height ||
+                           refocus_format_is_yuv(scene->photo.format)))
+        return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
+                         "with in_place the photo may be R, G, B, and disparity of its size");
+    return REFOCUS_OK;
+}
+
+static int prepare(struct refocus_renderer *r, const struct rf_log *log,
+                   const struct refocus_scene *given)
+{
+    struct rf_photo *own = &r->photo;
+    struct scene scene;
+    int status;
+
     r->prepared = r->blurred = false;
     memset(&r->cache, 0, sizeof r->cache);
-    if ((status = rf_read_image(&log, "photo", &own_photo, photo)) ||
-        (status = rf_read_map(&log, "disparity", &own_disparity, disparity)))
+    if ((status = read_scene(r, log, &scene, given)))
         return status;
-    photo = &own_photo;
-    disparity = &own_disparity;
-    if (photo->width > r->max_width || photo->height > r->max_height)
-        return rf_refuse(&log, REFOCUS_ERR_SIZE, "photo is %d x %d, may be up to %d x %d",
-                         (int)photo->width, (int)photo->height, r->max_width, r->max_height);
-    if (r->in_place.on && (disparity->width != photo->width || disparity->height != photo->height ||
-                           refocus_format_is_yuv(photo->format)))
-        return rf_refuse(&log, REFOCUS_ERR_UNSUPPORTED,
-                         "with in_place the photo may be R, G, B, and disparity of its size");
-    own = &r->photo;
-    own->width = photo->width;
-    own->height = photo->height;
+    own->width = scene.photo.width;
+    own->height = scene.photo.height;
     own->highlights_blend = own->thin.blend = RF_NO_BLEND;
     own->silhouettes.count = 0;
     r->blend = REFOCUS_BLEND_LINEAR; /* silhouettes are always found in linear light */
-    rf_yuv_begin(&r->yuv, photo, r->blend);
+    rf_yuv_begin(&r->yuv, &scene.photo, r->blend);
     rf_run_begin(r);
     if (r->in_place.on) {
-        r->in_place.photo = *photo;
-        r->in_place.map = *disparity;
-        r->in_place.code_step = rf_code_step(disparity);
+        r->in_place.photo = scene.photo;
+        r->in_place.map = scene.disparity;
+        r->in_place.code_step = rf_code_step(&scene.disparity);
         rf_find_silhouettes_in_blocks(r);
     } else {
         rf_use(r, rf_whole(r));
         memset(own->band_blend, REFOCUS_BLEND_LINEAR, (size_t)rf_bands(&r->view));
-        take_in(r, photo, disparity);
+        take_in(r, &scene.photo, &scene.disparity);
     }
     if (rf_run_end(r))
         return REFOCUS_ERR_CANCELLED;
     r->prepared = true;
     return REFOCUS_OK;
+}
+
+int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *photo,
+                    const struct refocus_disparity *disparity)
+{
+    const struct refocus_scene scene = refocus_scene_default(photo, disparity);
+
+    if (!r)
+        return REFOCUS_ERR_ARGUMENT;
+    return prepare(r, &(struct rf_log){.function = "refocus_prepare", .to = r->log}, &scene);
+}
+
+int refocus_prepare_scene(struct refocus_renderer *r, const struct refocus_scene *given)
+{
+    struct refocus_scene scene;
+    struct rf_log log = {.function = "refocus_prepare_scene"};
+    int status;
+
+    if (!r)
+        return REFOCUS_ERR_ARGUMENT;
+    log.to = r->log;
+    r->prepared = false;
+    status = rf_read_struct(&log, "scene", &scene, sizeof scene,
+                            REFOCUS_SIZE_TO(struct refocus_scene, disparity), given);
+    if (status)
+        return status;
+    if (scene.reserved)
+        return rf_refuse(&log, REFOCUS_ERR_ARGUMENT, "scene->reserved is %u, may be 0",
+                         (unsigned)scene.reserved);
+    return prepare(r, &log, &scene);
 }

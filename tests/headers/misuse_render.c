@@ -8,14 +8,43 @@ static void prepare_photo(const struct refocus_image *photo)
 {
     const struct refocus_disparity map = misuse_map();
 
+    const struct refocus_scene scene = refocus_scene_default(photo, &map);
+
     REFUSED(refocus_prepare, renderer, photo, &map);
+    REFUSED(refocus_prepare_scene, renderer, &scene);
 }
 
 static void prepare_map(const struct refocus_disparity *map)
 {
     const struct refocus_image photo = misuse_photo();
 
+    const struct refocus_scene scene = refocus_scene_default(&photo, map);
+
     REFUSED(refocus_prepare, renderer, &photo, map);
+    REFUSED(refocus_prepare_scene, renderer, &scene);
+}
+
+static void prepare_scene(void)
+{
+    const struct refocus_image photo = misuse_photo();
+    const struct refocus_disparity map = misuse_map();
+    const struct misuse bad[] = {BAD(refocus_scene, struct_size, 0),
+                                 BAD(refocus_scene, struct_size, UINT32_MAX),
+                                 BAD(refocus_scene, reserved, 1)};
+    const struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+    const struct refocus_scene good = RETURNS(refocus_scene_default, &photo, &map);
+
+    REFUSED(refocus_prepare_scene, NULL, &good);
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        struct refocus_scene scene = good;
+
+        ANSWERS(REFOCUS_OK, refocus_prepare_scene, renderer, &good);
+        misuse_spoil(&scene, &bad[i]);
+        REFUSED(refocus_prepare_scene, renderer, &scene);
+        ANSWERS(REFOCUS_ERR_STATE, refocus_render, renderer, &params, &photo);
+    }
+    misuse_spoil(NULL, NULL);
+    REFUSED(refocus_prepare_scene, renderer, NULL);
 }
 
 static void render_out(const struct refocus_image *out)
@@ -185,6 +214,7 @@ void misuse_render(void **state)
     ANSWERS(REFOCUS_ERR_STATE, refocus_get_view, renderer, REFOCUS_VIEW_DISPARITY, view, 2 * W);
     misuse_images(prepare_photo);
     misuse_maps(prepare_map);
+    prepare_scene();
     bad_planes();
     one_row();
     ANSWERS(REFOCUS_OK, refocus_prepare, renderer, &photo, &map);

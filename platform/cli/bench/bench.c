@@ -158,6 +158,7 @@ static int measure(struct engine *engine, const struct settings *settings, struc
     const int width = scene->photo.width, height = scene->photo.height;
     const struct refocus_disparity disparity = refocus_disparity16(
         scene->disparity, scene->map_width, scene->map_height, (ptrdiff_t)scene->map_width * 2);
+    const struct refocus_scene taken = refocus_scene_default(&scene->photo, &disparity);
     const size_t pixels = (size_t)width * (size_t)height;
     struct refocus_image out =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, (ptrdiff_t)width * 3);
@@ -172,7 +173,7 @@ static int measure(struct engine *engine, const struct settings *settings, struc
         status = engine_create(engine, &settings->engine, width, height, blur);
     report_progress("preparing", 0.15);
     if (status == EXIT_DONE)
-        status = engine_prepare(engine, &scene->photo, &disparity);
+        status = engine_prepare(engine, &taken);
     if (status == EXIT_DONE) {
         refocus_get_view(engine->renderer, REFOCUS_VIEW_DISPARITY, prepared, (ptrdiff_t)width * 2);
         status = input_focus(input, &settings->lens, prepared, &focus);

@@ -90,6 +90,7 @@ static int measure(struct engine *engine, const struct scene *scene, const struc
     const size_t bytes = 3 * (size_t)width * (size_t)height;
     const struct refocus_disparity disparity = refocus_disparity16(
         scene->disparity, scene->map_width, scene->map_height, (ptrdiff_t)scene->map_width * 2);
+    const struct refocus_scene taken = refocus_scene_default(&scene->photo, &disparity);
     const struct refocus_image out =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, b->out, width, height, (ptrdiff_t)width * 3);
 
@@ -104,7 +105,7 @@ static int measure(struct engine *engine, const struct scene *scene, const struc
         box_rows(b->rows, b->out, width, height, (int)place->blur);
         box_columns(b->out, b->rows, b->sum, width, height, (int)place->blur);
         keep(&best->box, start);
-        status = engine_prepare(engine, &scene->photo, &disparity);
+        status = engine_prepare(engine, &taken);
         if (status == EXIT_DONE)
             status = engine_render(engine, &out, 1);
         if (status != EXIT_DONE)

@@ -249,6 +249,7 @@ static int compare(struct engine *engine, struct input *input, struct comparison
     const struct refocus_depth_map *map = input->depth_from->depth;
     const struct refocus_disparity disparity =
         refocus_disparity16(input->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
+    const struct refocus_scene scene = refocus_scene_default(photo, &disparity);
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
     uint16_t *prepared = malloc(pixels * 2);
     uint8_t *mask = malloc(pixels);
@@ -260,7 +261,7 @@ static int compare(struct engine *engine, struct input *input, struct comparison
     if (status == EXIT_DONE)
         status = engine_create(engine, &settings->engine, photo->width, photo->height, blur);
     if (status == EXIT_DONE)
-        status = engine_prepare(engine, photo, &disparity);
+        status = engine_prepare(engine, &scene);
     if (status == EXIT_DONE) {
         refocus_get_view(engine->renderer, REFOCUS_VIEW_DISPARITY, prepared,
                          (ptrdiff_t)photo->width * 2);

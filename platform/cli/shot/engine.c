@@ -137,12 +137,11 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
     return papers_place(&settings->papers, &engine->params, width, height);
 }
 
-int engine_prepare(struct engine *engine, const struct refocus_image *photo,
-                   const struct refocus_disparity *disparity)
+int engine_prepare(struct engine *engine, const struct refocus_scene *scene)
 {
     const double start = report_clock_ms();
-    const int status = interrupt_came() ? REFOCUS_ERR_CANCELLED
-                                        : refocus_prepare(engine->renderer, photo, disparity);
+    const int status =
+        interrupt_came() ? REFOCUS_ERR_CANCELLED : refocus_prepare_scene(engine->renderer, scene);
 
     engine->prepare_ms = report_clock_ms() - start;
     if (status == REFOCUS_ERR_CANCELLED)

@@ -172,8 +172,7 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings);
 /* Renderer for photos of this size and blur; prepare; render settings->repeat times. */
 int engine_create(struct engine *engine, const struct engine_settings *settings, int width,
                   int height, double blur);
-int engine_prepare(struct engine *engine, const struct refocus_image *photo,
-                   const struct refocus_disparity *disparity);
+int engine_prepare(struct engine *engine, const struct refocus_scene *scene);
 int engine_render(struct engine *engine, const struct refocus_image *out, int repeat);
 
 /* Called after engine_begin(), whatever it returned. */

@@ -74,6 +74,7 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
               double most_blur)
 {
     struct refocus_disparity disparity;
+    struct refocus_scene scene;
     const struct refocus_image *image;
     double blur = 0;
     int status;
@@ -96,8 +97,9 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     status = engine_create(&shot->engine, &settings->engine, image->width, image->height,
                            fmax(blur, most_blur));
     shot->engine.params.render.max_blur_radius = (float)blur;
+    scene = refocus_scene_default(image, &disparity);
     if (status == EXIT_DONE)
-        status = engine_prepare(&shot->engine, image, &disparity);
+        status = engine_prepare(&shot->engine, &scene);
     return status == EXIT_DONE ? choose_focus(shot, &settings->lens) : status;
 }
 

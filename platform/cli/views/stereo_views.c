@@ -169,11 +169,12 @@ int stereo_render(const struct stereo *stereo, struct shot *shot, double paralla
     const struct refocus_image *photo = shot->input.photo->image;
     const struct refocus_disparity seen =
         refocus_disparity16(stereo->seen, photo->width, photo->height, (ptrdiff_t)photo->width * 2);
+    const struct refocus_scene scene = refocus_scene_default(&stereo->view, &seen);
     int status;
 
     stereo_warp(photo, stereo->disparity, (double)shot->engine.params.render.focus_disparity,
                 parallax, &stereo->view, stereo->seen, stereo->nearest);
-    status = engine_prepare(&shot->engine, &stereo->view, &seen);
+    status = engine_prepare(&shot->engine, &scene);
     return status == EXIT_DONE ? engine_render(&shot->engine, out, 1) : status;
 }
 
