@@ -205,46 +205,6 @@ REFOCUS_API int refocus_upsample(const struct refocus_image *photo,
                                  const struct refocus_upsample_params *params, uint16_t *out,
                                  ptrdiff_t stride);
 
-/** Farthest that an edge is looked for, in pixels. */
-enum { REFOCUS_MAX_SNAP = 16 };
-
-/** How to snap edges. Start from refocus_snap_params_default(). */
-struct refocus_snap_params {
-    uint32_t struct_size; /**< sizeof(struct refocus_snap_params) */
-    int32_t reach;        /**< pixels that edges may be off, 1 to REFOCUS_MAX_SNAP */
-    int32_t threads;      /**< 1 to 64; 0 = one for each processor */
-    uint32_t cpu;         /**< enum refocus_cpu of render.h; 0 = the best there is */
-};
-
-static inline struct refocus_snap_params refocus_snap_params_default(int32_t reach)
-{
-    struct refocus_snap_params params;
-
-    memset(&params, 0, sizeof params);
-    params.struct_size = sizeof params;
-    params.reach = reach;
-    return params;
-}
-
-/**
- * Move the edges of a map of the photo's own size onto the photo's, where they are off
- * by a few pixels: what lies within reach of a step of 1/24 of the range is worked out
- * anew, as refocus_upsample() does it, from what lies farther away. Surfaces that are
- * nowhere wider than twice the reach stay as they are.
- *
- * @param photo  any packed format
- * @param map    of the photo's size
- * @param out    as for refocus_upsample()
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (about 11 bytes a pixel
- *         are needed), REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED, REFOCUS_ERR_THREAD;
- *         on an error
- *         @p out holds nothing of use. Thread-safe.
- */
-REFOCUS_API int refocus_depth_snap(const struct refocus_image *photo,
-                                   const struct refocus_disparity *map,
-                                   const struct refocus_snap_params *params, uint16_t *out,
-                                   ptrdiff_t stride);
-
 #ifdef __cplusplus
 }
 #endif

@@ -43,7 +43,7 @@ class Usage(Case):
                       '--highlights --mirror --background --no-thin --threads --cpu --repeat --json --view '
                       '--parallax --region --settings --save-settings -h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
-                     '--depth-edges --snap --upsample --estimate --preset --input-size --input-mean --input-scale '
+                     '--depth-edges --upsample --estimate --preset --input-size --input-mean --input-scale '
                      '--far-is-large --match --strokes --stereo-file --side-by-side --view '
                      '--focus-at --blur --json -h --help',
             'sheet': self.PAPERS + self.CONTROLS +
@@ -289,7 +289,7 @@ class Limits(Case):
                    'depth.pgm', '--depth-edges', 'auto')
         self.fails(2, "--depth-edges: 'sharp' cannot be used; give one of auto, as-given",
                    *self.render('--depth-edges', 'sharp'))
-        for option, value in (('--snap', '2'), ('--depth-unit', 'mm'), ('--speckle', '4'),
+        for option, value in (('--depth-unit', 'mm'), ('--speckle', '4'),
                               ('--invalid', 'zero'), ('--upsample', 'core')):
             self.fails(2, option + ': --strokes alone paint over nothing; give --depth, or leave '
                        'it out', *depth, '--strokes', 's.json', option, value)

@@ -121,15 +121,6 @@ class DepthInputs(Case):
         for arguments in ('cut.heic',), ('cut.heic', '--full'), ('photo.ppm', '--depth', 'cut.heic'):
             self.refused('cut.heic', why, *arguments)
 
-    def test_snap(self):
-        for name, why in PICTURES.items():
-            self.refused(name, why, 'photo.ppm', '--depth', name, '--snap', '2')
-            self.refused(name, why, name, '--depth', 'depth.pgm', '--snap', '2')
-        self.refused('depth.pgm', "its depth has 48x32 samples, the photo 20x20 pixels; --snap "
-                     "takes depth of the photo's size", 'other.ppm', '--depth', 'depth.pgm',
-                     '--snap', '2')
-        self.refused('metres.pfm', '(it|a PFM file) is a depth map, not a photo', 'metres.pfm', '--snap', '2')
-
     def test_upsample(self):
         self.need_opencv()
         for name, why in PICTURES.items():

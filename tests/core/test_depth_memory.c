@@ -57,16 +57,6 @@ static int upsample_in_threads(void)
     return upsample(3, 1);
 }
 
-static int snap(void)
-{
-    struct refocus_snap_params params = refocus_snap_params_default(3);
-    const struct refocus_disparity map = refocus_disparity16(fine, W, H, 2 * W);
-    const struct refocus_image image = photo();
-
-    params.threads = 2;
-    return refocus_depth_snap(&image, &map, &params, out, 2 * W);
-}
-
 enum edges { SHARP, SOFT, COARSE };
 
 /* A map this coarse is worked on at a size between it and the photo's. */
@@ -217,12 +207,6 @@ static void failing_upsample(void **state)
     fail_each(upsample_in_threads, 1, 1);
 }
 
-static void failing_snap(void **state)
-{
-    (void)state;
-    fail_each(snap, 5, 0); /* four of its own, one of the upsampler */
-}
-
 static void failing_edges(void **state)
 {
     (void)state;
@@ -269,9 +253,9 @@ static void failing_filter(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(failing_upsample), cmocka_unit_test(failing_snap),
-        cmocka_unit_test(failing_edges),    cmocka_unit_test(largest_edges),
-        cmocka_unit_test(failing_repair),   cmocka_unit_test(failing_filter)};
+        cmocka_unit_test(failing_upsample), cmocka_unit_test(failing_edges),
+        cmocka_unit_test(largest_edges), cmocka_unit_test(failing_repair),
+        cmocka_unit_test(failing_filter)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -252,42 +252,6 @@ static void same_by_other_ways(void **state)
     end(&s);
 }
 
-/* Edges up to 4 pixels beside the photo's come to lie on them; a thin line stays. */
-static void snaps(void **state)
-{
-    enum { W = 120, H = 90, EDGE = 60 };
-    struct refocus_snap_params params = refocus_snap_params_default(4);
-    struct scene s = make(W, H, W, H);
-    const struct refocus_image photo =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, s.rgb, W, H, 3 * W);
-    const struct refocus_disparity map = refocus_disparity16(s.map, W, H, 2 * W);
-
-    (void)state;
-    for (int off = -4; off <= 4; off++) {
-        for (int i = 0; i < W * H; i++) {
-            const int x = i % W;
-
-            memset(s.rgb + 3 * i, x < EDGE ? 200 : 40, 3);
-            s.map[i] = (uint16_t)(x == 20 ? 30000 : x < EDGE + off ? 60000 : 8000);
-        }
-        assert_int_equal(refocus_depth_snap(&photo, &map, &params, s.out, 2 * W), REFOCUS_OK);
-        for (int i = 0; i < W * H; i++)
-            assert_int_equal(s.out[i], i % W == 20 ? 30000 : i % W < EDGE ? 60000 : 8000);
-    }
-    params.reach = REFOCUS_MAX_SNAP + 1;
-    assert_int_equal(refocus_depth_snap(&photo, &map, &params, s.out, 2 * W), REFOCUS_ERR_ARGUMENT);
-    params.reach = 0;
-    assert_int_equal(refocus_depth_snap(&photo, &map, &params, s.out, 2 * W), REFOCUS_ERR_ARGUMENT);
-    end(&s);
-    s = make(1, 1, 1, 1);
-    params.reach = 16;
-    const struct refocus_image one = refocus_image_packed(REFOCUS_FORMAT_RGB8, s.rgb, 1, 1, 3);
-    const struct refocus_disparity sample = refocus_disparity16(s.map, 1, 1, 2);
-    assert_int_equal(refocus_depth_snap(&one, &sample, &params, s.out, 2), REFOCUS_OK);
-    assert_int_equal(s.out[0], s.map[0]);
-    end(&s);
-}
-
 static void bad_arguments(void **state)
 {
     struct scene s = make(20, 20, 5, 5);
@@ -374,15 +338,10 @@ static void repair(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_everywhere),
-        cmocka_unit_test(invents_nothing),
-        cmocka_unit_test(keeps_planes),
-        cmocka_unit_test(follows_the_photo),
-        cmocka_unit_test(weighs_confidence),
-        cmocka_unit_test(same_by_other_ways),
-        cmocka_unit_test(bad_arguments),
-        cmocka_unit_test(repair),
-        cmocka_unit_test(snaps),
+        cmocka_unit_test(same_everywhere),   cmocka_unit_test(invents_nothing),
+        cmocka_unit_test(keeps_planes),      cmocka_unit_test(follows_the_photo),
+        cmocka_unit_test(weighs_confidence), cmocka_unit_test(same_by_other_ways),
+        cmocka_unit_test(bad_arguments),     cmocka_unit_test(repair),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

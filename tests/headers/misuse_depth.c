@@ -127,32 +127,26 @@ static void repairing(void)
 static void use_photo(const struct refocus_image *photo)
 {
     const struct refocus_upsample_params upsample = refocus_upsample_params_default();
-    const struct refocus_snap_params snap = refocus_snap_params_default(2);
     const struct refocus_disparity map = misuse_map();
 
     REFUSED(refocus_upsample, photo, &map, &upsample, out, 2 * W);
-    REFUSED(refocus_depth_snap, photo, &map, &snap, out, 2 * W);
 }
 
 static void use_map(const struct refocus_disparity *map)
 {
     const struct refocus_upsample_params upsample = refocus_upsample_params_default();
-    const struct refocus_snap_params snap = refocus_snap_params_default(2);
     const struct refocus_image photo = misuse_photo();
 
     REFUSED(refocus_upsample, &photo, map, &upsample, out, 2 * W);
-    REFUSED(refocus_depth_snap, &photo, map, &snap, out, 2 * W);
 }
 
 static void use_stride(ptrdiff_t stride)
 {
     const struct refocus_upsample_params upsample = refocus_upsample_params_default();
-    const struct refocus_snap_params snap = refocus_snap_params_default(2);
     const struct refocus_image photo = misuse_photo();
     const struct refocus_disparity map = misuse_map();
 
     REFUSED(refocus_upsample, &photo, &map, &upsample, out, stride);
-    REFUSED(refocus_depth_snap, &photo, &map, &snap, out, stride);
 }
 
 static void upsampling(void)
@@ -161,12 +155,7 @@ static void upsampling(void)
                                           BAD(refocus_upsample_params, threads, -1),
                                           BAD(refocus_upsample_params, threads, INT32_MAX),
                                           BAD(refocus_upsample_params, cpu, UINT32_MAX)};
-    const struct misuse bad_snap[] = {
-        BAD(refocus_snap_params, struct_size, 0),     BAD(refocus_snap_params, reach, 0),
-        BAD(refocus_snap_params, reach, INT32_MIN),   BAD(refocus_snap_params, reach, INT32_MAX),
-        BAD(refocus_snap_params, threads, INT32_MIN), BAD(refocus_snap_params, cpu, UINT32_MAX)};
     const struct refocus_upsample_params upsample = TAKES_NOTHING(refocus_upsample_params_default);
-    const struct refocus_snap_params snap = RETURNS(refocus_snap_params_default, 2);
     const struct refocus_image photo = misuse_photo();
     const struct refocus_disparity map = misuse_map();
 
@@ -175,19 +164,11 @@ static void upsampling(void)
     misuse_strides(use_stride, 2 * W);
     REFUSED(refocus_upsample, &photo, &map, NULL, out, 2 * W);
     REFUSED(refocus_upsample, &photo, &map, &upsample, NULL, 2 * W);
-    REFUSED(refocus_depth_snap, &photo, &map, NULL, out, 2 * W);
-    REFUSED(refocus_depth_snap, &photo, &map, &snap, NULL, 2 * W);
     for (size_t i = 0; i < COUNT(bad_upsample); i++) {
         struct refocus_upsample_params params = upsample;
 
         misuse_spoil(&params, &bad_upsample[i]);
         REFUSED(refocus_upsample, &photo, &map, &params, out, 2 * W);
-    }
-    for (size_t i = 0; i < COUNT(bad_snap); i++) {
-        struct refocus_snap_params params = snap;
-
-        misuse_spoil(&params, &bad_snap[i]);
-        REFUSED(refocus_depth_snap, &photo, &map, &params, out, 2 * W);
     }
     misuse_spoil(NULL, NULL);
 }

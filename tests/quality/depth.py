@@ -43,9 +43,6 @@ default.'''
 ONE_PICTURE = '''`refocus depth PHOTO --estimate` with the small TCMonoDepth network: Pearson's correlation with
 the depth that is known of the photo.'''
 
-SNAPPING = '''`refocus-depth-quality --snap SCENE...`: the exact disparities, 3 px to the right and down, and
-what `refocus_depth_snap()` with a reach of 3 makes of them. Columns as above.'''
-
 FAULTY = '''`refocus-depth-quality --faults SCENE...`: the exact disparities of the reference scenes,
 spoilt as those of phones, sensors and networks are, and what is left of it after
 `refocus_depth_edges()` (*edges put right*). *Soft* is a Gaussian blur. *Quarter size* is the means
@@ -193,7 +190,6 @@ def scene_sections(tools, folders):
         return run(os.path.join(tools, tool), *options, *folders)
 
     yield 'Upsampling', lambda name: section(name, UPSAMPLING, by('refocus-depth-quality'))
-    yield 'Snapping', lambda name: section(name, SNAPPING, by('refocus-depth-quality', '--snap'))
     yield 'Faulty maps', lambda name: section(name, FAULTY, by('refocus-depth-quality',
                                                               '--faults'))
     yield 'Time of upsampling', lambda name: section(name, TIME, by('refocus-depth-quality',

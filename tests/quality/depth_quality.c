@@ -2,7 +2,6 @@
  *
  *     refocus-depth-quality SCENE_FOLDER...   quality against the exact disparities
  *     refocus-depth-quality --time SCENE_FOLDER...   CPU time of refocus_upsample()
- *     refocus-depth-quality --snap SCENE_FOLDER...   exact disparities 3 px off, moved back
  *     refocus-depth-quality --faults SCENE_FOLDER...   exact disparities spoilt, edges put right
  *     refocus-depth-quality --truth NAME PHOTO.png TRUTH.png...
  *         every 4th row and column of known disparities, 0 = unknown, brought back
@@ -462,12 +461,11 @@ done:
 int main(int argc, char **argv)
 {
     const bool timing = argc > 1 && !strcmp(argv[1], "--time");
-    const bool snap = argc > 1 && !strcmp(argv[1], "--snap");
     const char *pictures = argc > 2 && !strcmp(argv[1], "--out") ? argv[2] : NULL;
     int failed = 0;
 
     if (argc < 2) {
-        fputs("usage: refocus-depth-quality [--time | --snap | --faults | --out FOLDER] "
+        fputs("usage: refocus-depth-quality [--time | --faults | --out FOLDER] "
               "SCENE_FOLDER...\n"
               "       refocus-depth-quality --truth NAME PHOTO.png TRUTH.png...\n",
               stderr);
@@ -483,8 +481,7 @@ int main(int argc, char **argv)
                   "true, % | error in smooth parts, 1/1000 | within 4 px of edges, 1/1000 | "
                   "PSNR, dB | to exact | edge PSNR, dB | to exact |\n"
                   "| --- | --- | --: | --: | --: | --: | --: | --: | --: | --: |");
-    for (int i = timing || snap ? 2 : pictures ? 3 : 1; i < argc && !failed; i++)
-        failed = timing ? time_scene(argv[i])
-                        : score_scene(argv[i], snap ? IN_SNAP : IN_SCENES, pictures);
+    for (int i = timing ? 2 : pictures ? 3 : 1; i < argc && !failed; i++)
+        failed = timing ? time_scene(argv[i]) : score_scene(argv[i], IN_SCENES, pictures);
     return failed ? 1 : 0;
 }

@@ -153,40 +153,8 @@ static int cv_joint_full(const struct quality_scene *scene, const struct depth_c
 }
 #endif
 
-/* The exact disparities, three pixels to the right and down. */
-static int moved(const struct quality_scene *scene, const struct depth_coarse *c, uint16_t *out)
-{
-    enum { OFF = 3 };
-
-    (void)c;
-    for (int y = 0; y < scene->height; y++)
-        for (int x = 0; x < scene->width; x++)
-            *out++ = scene->disparity[(size_t)(y < OFF ? 0 : y - OFF) * (size_t)scene->width +
-                                      (size_t)(x < OFF ? 0 : x - OFF)];
-    return 0;
-}
-
-static int snapped(const struct quality_scene *scene, const struct depth_coarse *c, uint16_t *out)
-{
-    const struct refocus_image photo = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, scene->photo, scene->width, scene->height, 3 * scene->width);
-    const ptrdiff_t stride = 2 * (ptrdiff_t)scene->width;
-    const struct refocus_snap_params params = refocus_snap_params_default(3);
-    uint16_t *map = malloc((size_t)stride * (size_t)scene->height);
-    int status = map ? moved(scene, c, map) : -1;
-
-    if (!status) {
-        const struct refocus_disparity d =
-            refocus_disparity16(map, scene->width, scene->height, stride);
-
-        status = refocus_depth_snap(&photo, &d, &params, out, stride);
-    }
-    free(map);
-    return status;
-}
-
 const struct depth_way depth_ways[] = {
-    {"exact disparity", exact, IN_SCENES | IN_SNAP},
+    {"exact disparity", exact, IN_SCENES},
     {"nearest", nearest, IN_SCENES | IN_TRUTH},
     {"bilinear", bilinear, IN_SCENES | IN_TRUTH},
     {"joint bilateral mean", joint_bilateral, IN_SCENES | IN_TRUTH},
@@ -199,7 +167,5 @@ const struct depth_way depth_ways[] = {
 #endif
     {"refocus_upsample, holes filled", cluster, IN_SCENES | IN_TRUTH},
     {"refocus_upsample, holes as confidence", trusting, IN_SCENES | IN_TRUTH},
-    {"exact, 3 px off", moved, IN_SNAP},
-    {"the same, refocus_depth_snap", snapped, IN_SNAP},
     {NULL, NULL, 0},
 };

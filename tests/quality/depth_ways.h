@@ -13,7 +13,7 @@ struct depth_coarse {
 };
 
 /* The tables that a way is in: of scenes, of decimated ground truth, of maps that are off. */
-enum { IN_SCENES = 1, IN_TRUTH = 2, IN_SNAP = 4 };
+enum { IN_SCENES = 1, IN_TRUTH = 2 };
 
 /* Makes disparities of the scene's size; 0 or a status of refocus. */
 struct depth_way {

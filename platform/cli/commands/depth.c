@@ -77,14 +77,6 @@ static const struct option options[] = {
      .summary = edges_summary,
      .help = "the edges of the depth map",
      .needs = "--full"},
-    {.kind = OPTION_INTEGER,
-     .name = "--snap",
-     .argument = "N",
-     .offset = offsetof(struct settings, depth.snap),
-     .least = 0,
-     .greatest = REFOCUS_MAX_SNAP,
-     .help = "move edges of depth of the photo's size onto the photo's, where they are "
-             "off by up to N pixels; default 0: leave them"},
     {.kind = OPTION_CHOICE,
      .name = "--upsample",
      .argument = "HOW",
@@ -366,8 +358,8 @@ static bool is_made(const struct settings *settings, const char *const *files)
 static int check_ways(const struct settings *settings, const char *const *files, int argc,
                       char **argv)
 {
-    static const char *const of_read[] = {"--depth-unit", "--invalid",  "--speckle",
-                                          "--snap",       "--upsample", NULL};
+    static const char *const of_read[] = {"--depth-unit", "--invalid", "--speckle", "--upsample",
+                                          NULL};
     const bool pair = is_made(settings, files) && !settings->model;
     const bool nothing = settings->strokes && !settings->depth.file && !is_made(settings, files);
 
@@ -436,7 +428,7 @@ static int read_input(const struct settings *settings, const char *const *files,
         return input_read_stereo(input, files[0], files[1], &settings->stereo, &settings->depth);
     if (settings->strokes && !settings->depth.file)
         return painted_read(input, files[0], &settings->depth);
-    if (settings->depth.file || settings->depth.full || settings->depth.snap > 0 ||
+    if (settings->depth.file || settings->depth.full ||
         (is_jpeg(settings->output) && settings->view == VIEW_NONE))
         return input_read(input, files[0], &settings->depth);
     return input_read_depth(input, files[0], &settings->depth);

@@ -122,40 +122,11 @@ static int enlarge(struct input *input, const struct depth_settings *settings)
     return EXIT_DONE;
 }
 
-/* Move the edges of a map of the photo's size onto the photo's. */
-static int snap(struct input *input, const struct depth_settings *settings)
-{
-    const struct refocus_snap_params params = refocus_snap_params_default((int32_t)settings->snap);
-    const ptrdiff_t stride = (ptrdiff_t)input->width * 2;
-    const struct refocus_disparity map =
-        refocus_disparity16(input->disparity, input->width, input->height, stride);
-    uint16_t *out = malloc((size_t)stride * (size_t)input->height);
-    int status = REFOCUS_ERR_MEMORY;
-
-    if (out)
-        status = refocus_depth_snap(input->photo->image, &map, &params, out, stride);
-    if (status != REFOCUS_OK) {
-        free(out);
-        return report_failure(EXIT_FAILED, input->depth_name, "the depth map: %s",
-                              refocus_strerror(status));
-    }
-    free(input->disparity);
-    input->disparity = out;
-    return EXIT_DONE;
-}
-
-static bool worth_snapping(const struct input *input, const struct depth_settings *settings)
-{
-    return settings->snap > 0 && input->photo && input->photo->image->plane[0] &&
-           input->photo->image->width == input->width &&
-           input->photo->image->height == input->height;
-}
-
-/* An explicit filter or --snap says how edges are to be. */
+/* An explicit filter says how edges are to be. */
 static bool worth_placing(const struct input *input, const struct depth_settings *settings)
 {
-    return settings->edges == EDGES_AUTO && settings->upsample == 0 && settings->snap == 0 &&
-           input->photo && input->photo->image->plane[0];
+    return settings->edges == EDGES_AUTO && settings->upsample == 0 && input->photo &&
+           input->photo->image->plane[0];
 }
 
 static bool worth_enlarging(const struct input *input, const struct depth_settings *settings)
@@ -219,15 +190,6 @@ int input_convert(struct input *input, const struct depth_settings *settings)
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, input->depth_name, "the depth map: %s",
                               refocus_strerror(status));
-    if (worth_snapping(input, settings))
-        return snap(input, settings);
-    if (settings->snap > 0 && input->photo)
-        return report_failure(EXIT_FAILED, input->depth_name,
-                              "its depth has %dx%d samples, the photo %dx%d pixels; "
-                              "--snap takes depth of the photo's size, give --full "
-                              "instead",
-                              input->width, input->height, input->photo->image->width,
-                              input->photo->image->height);
     return fit(input, settings);
 }
 

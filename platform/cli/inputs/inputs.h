@@ -18,8 +18,6 @@ struct depth_settings {
     bool full;            /* bring the depth to the photo's size */
     bool optional;        /* a photo without any will do: its disparities are NULL
                              then */
-    double snap;          /* edges of a map of the photo's size may be off by so much;
-                             0: as they are */
     int edges;            /* enum edges */
     int upsample;         /* how; 0: as the core does, else 1 + enum
                              refocus_cv_filter */
@@ -108,7 +106,7 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
 
 /* Read a depth file, or the depth of a photo; input->photo is NULL afterwards. */
 int input_read_depth(struct input *input, const char *file, const struct depth_settings *settings);
-/* Make the disparities from input->depth_from: repair, snap or enlarge it as the settings say. */
+/* Make the disparities from input->depth_from: repaired and enlarged as the settings say. */
 int input_convert(struct input *input, const struct depth_settings *settings);
 void input_free(struct input *input);
 

@@ -103,25 +103,6 @@ REFOCUS_API int refocus_upsample(const struct refocus_image *photo,
                                  const struct refocus_disparity *map,
                                  const struct refocus_upsample_params *params, uint16_t *out,
                                  ptrdiff_t stride);
-enum { REFOCUS_MAX_SNAP = 16 };
-struct refocus_snap_params {
-    uint32_t struct_size;
-    int32_t reach;
-    int32_t threads;
-    uint32_t cpu;
-};
-static inline struct refocus_snap_params refocus_snap_params_default(int32_t reach)
-{
-    struct refocus_snap_params params;
-    memset(&params, 0, sizeof params);
-    params.struct_size = sizeof params;
-    params.reach = reach;
-    return params;
-}
-REFOCUS_API int refocus_depth_snap(const struct refocus_image *photo,
-                                   const struct refocus_disparity *map,
-                                   const struct refocus_snap_params *params, uint16_t *out,
-                                   ptrdiff_t stride);
 #ifdef __cplusplus
 }
 #endif
