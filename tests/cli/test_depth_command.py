@@ -137,6 +137,16 @@ class DepthAndInfo(Case):
         self.assertEqual(rest, photo)
         info = self.reports('info', 'd10.jpg')
         self.assertEqual(info['depth']['near_m'], 0.5)
+        self.assertEqual((info['depth']['edges']['parted'], info['depth']['edges']['changed']),
+                         (False, 0))
+        self.assertRegex(self.succeeds('info', 'd10.jpg'), r"(?m)^depth edges +.*on the photo's$")
+        pictures.ppm('step.ppm', 96, 64, lambda x, y: (40,) * 3 if x < 48 else (200,) * 3)
+        pictures.pgm('ramp.pgm', 96, 64, lambda x, y: 50 + 15 * min(max(x - 42, 0), 12))
+        self.succeeds('render', 'step.ppm', '--depth', 'ramp.pgm', '-o', 's.jpg', '--blur', '0')
+        self.succeeds('depth', 's.jpg', '--depth', 'ramp.pgm', '-o', 'soft.jpg')
+        edges = self.reports('info', 'soft.jpg')['depth']['edges']
+        self.assertTrue(edges['parted'] and 2 < edges['softness_px'] < 6 and edges['changed'] > 0.05)
+        self.assertRegex(self.succeeds('info', 'soft.jpg'), r'(?m)^placed +1?\d\.\d % of the pixels')
 
     def test_info(self):
         info = self.reports('info', 'photo.ppm')

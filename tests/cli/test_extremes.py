@@ -28,7 +28,7 @@ class Extremes(Case):
                               'out.ppm', '--method', method)
                 self.same(pictures.read_pnm('out.ppm'), pictures.read_pnm('one.ppm'))
             self.succeeds(*self.render('--depth', 'one.pgm', '--method', method))
-        for view in ('depth', 'blur', 'overlay', 'peaking', 'anaglyph'):
+        for view in ('depth', 'blur', 'overlay', 'peaking', 'anaglyph', 'edges'):
             self.succeeds('render', 'one.ppm', '--depth', 'one.pgm', '-o', 'out.ppm', '--view',
                           view)
 

@@ -59,6 +59,23 @@ class Picture(Case):
             left = sum(p == (32, 255, 64) for row in marks for p in row[:EDGE - 2])
             self.assertEqual(left > 0, same, blur)
 
+    def test_moved_edges(self):
+        photo = self.pixels('photo.ppm')
+        grey = [[(luma(pixel),) * 3 for pixel in row] for row in photo]
+        self.same(self.view('edges'), grey)  # sharp, and where the photo has them
+        self.same(self.view('edges', '--depth-edges', 'as-given'), grey)
+        # An edge of the photo in the middle of a ramp of 12 pixels: the left half of the ramp goes
+        # farther, the right half nearer.
+        pictures.ppm('step.ppm', 96, 64, lambda x, y: (40,) * 3 if x < 48 else (200,) * 3)
+        pictures.pgm('ramp.pgm', 96, 64, lambda x, y: 50 + 15 * min(max(x - 42, 0), 12))
+        self.succeeds('render', 'step.ppm', '--depth', 'ramp.pgm', '-o', 'e.ppm', '--view', 'edges')
+        for row in self.pixels('e.ppm')[8:-8]:
+            self.assertEqual(row[:40] + row[58:], [(40,) * 3] * 40 + [(200,) * 3] * 38)
+            for pixel in row[44:48]:
+                self.assertGreater(pixel[2], pixel[0])
+            for pixel in row[49:53]:
+                self.assertGreater(pixel[0], pixel[2])
+
     def test_lines_of_the_limits(self):
         for focus, line, where in ('1', FAR_LINE, EDGE), ('0.2', NEAR_LINE, EDGE - 1):
             rows = self.view('blur', '--focus', focus, '--blur', '9')[:H]

@@ -1,13 +1,21 @@
 /* info.c: the command `refocus info` tells what depth, lens and orientation data a file carries. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <refocus/refocus.h>
 #include "commands/commands.h"
+#include "inputs/edges.h"
 #include "line/report.h"
 
 struct settings {
     bool json;
+};
+
+/* Findings from the pictures of a file. */
+struct findings {
+    struct refocus_depth_report depth;
+    struct refocus_depth_edges_report edges; /* struct_size 0: there is no photo, or no depth */
 };
 
 static const struct option options[] = {
@@ -81,8 +89,32 @@ static void print_depth(const struct refocus_photo *photo,
            100.0 * (double)report->unknown / ((double)map->width * map->height));
 }
 
+/* How the edges of the depth lie on the photo's, and what rendering does about it. */
+static void print_edges(const struct refocus_depth_edges_report *edges)
+{
+    if (!edges->struct_size)
+        return;
+    printf("depth edges   ");
+    if (edges->softness > 0)
+        printf("%.1f pixels soft, ", (double)edges->softness);
+    if (edges->parted && !(edges->on_photo > 0) && !(edges->changed > 0)) /* samples of a sensor */
+        puts("put on the photo's while the map is enlarged");
+    else
+        printf("%.0f %% on the photo's\n", 100 * (double)edges->on_photo);
+    if (!(edges->changed > 0))
+        return;
+    printf("placed        %.1f %% of the pixels change%s", 100 * (double)edges->changed,
+           edges->bent ? ", block by block" : "");
+    if (edges->shift_x != 0 || edges->shift_y != 0)
+        printf(", shifted by %+.0f,%+.0f", (double)edges->shift_x, (double)edges->shift_y);
+    if (edges->grown != 0)
+        printf(", near things %s by %.0f pixels", edges->grown > 0 ? "shrunk" : "grown",
+               fabs((double)edges->grown));
+    putchar('\n');
+}
+
 static void print_text(const char *file, const struct refocus_photo *photo,
-                       const struct refocus_depth_report *report)
+                       const struct findings *found)
 {
     const struct refocus_photo_info *info = photo->info;
     char clean[REFOCUS_INFO_LENGTH];
@@ -117,7 +149,8 @@ static void print_text(const char *file, const struct refocus_photo *photo,
         (info->focus_x > 0 || info->focus_y > 0))
         printf("focus point   %.0f,%.0f\n", info->focus_x * photo->image->width,
                info->focus_y * photo->image->height);
-    print_depth(photo, report);
+    print_depth(photo, &found->depth);
+    print_edges(&found->edges);
     for (int i = 0; i < info->evidence_count && i < REFOCUS_INFO_LINES; i++) {
         report_clean(clean, sizeof clean, info->evidence[i]);
         printf("%s %s\n", i == 0 ? "because      " : "             ", clean);
@@ -144,18 +177,19 @@ static json_t *evidence_json(const struct refocus_photo_info *info)
 }
 
 static json_t *make_json(const char *file, const struct refocus_photo *photo,
-                         const struct refocus_depth_report *report)
+                         const struct findings *found)
 {
     const struct refocus_photo_info *info = photo->info;
     const bool focus =
         info->focus_x >= 0 && info->focus_y >= 0 && (info->focus_x > 0 || info->focus_y > 0);
-    json_t *depth = photo->depth->samples ? report_depth_json(photo, report) : json_null();
+    json_t *depth = photo->depth->samples ? report_depth_json(photo, &found->depth) : json_null();
     char text[160];
 
     if (photo->depth->samples && depth) {
         describe_meaning(text, sizeof text, photo->depth);
         json_object_set_new(depth, "unit", report_text_json(text));
         json_object_set_new(depth, "sample", json_string(sample_name(photo->depth->sample)));
+        json_object_set_new(depth, "edges", edges_json(&found->edges));
     }
     return json_pack(
         "{s:o, s:s, s:o, s:o, s:i, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, "
@@ -195,17 +229,35 @@ static int read_any(struct refocus_photo **photo, const char *file)
     return EXIT_DONE;
 }
 
-/* The range of the depth map and its holes; a map of nothing but holes is worth
- * telling. */
-static int measure_depth(const char *file, const struct refocus_depth_map *map,
-                         struct refocus_depth_report *report)
+static int find_edges(const char *file, const struct refocus_image *photo,
+                      const uint16_t *disparity, const struct refocus_depth_map *map,
+                      struct refocus_depth_edges_report *edges)
 {
+    const struct refocus_disparity given =
+        refocus_disparity16(disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
+    uint16_t *placed = NULL;
+    const int status = edges_place(photo, &given, &placed, edges, file);
+
+    free(placed);
+    return status;
+}
+
+/* The range of the depth map, its holes and its edges; a map of nothing but holes is worth
+ * telling. */
+static int measure_depth(const char *file, const struct refocus_photo *photo,
+                         struct findings *found)
+{
+    const struct refocus_depth_map *map = photo->depth;
+    struct refocus_depth_report *report = &found->depth;
     const uint64_t samples = (uint64_t)map->width * (uint64_t)map->height;
     uint16_t *disparity = samples <= SIZE_MAX / 2 ? malloc((size_t)samples * 2) : NULL;
     int status = disparity
                      ? refocus_depth_to_disparity(map, disparity, (ptrdiff_t)map->width * 2, report)
                      : REFOCUS_ERR_MEMORY;
+    int code = EXIT_DONE;
 
+    if (status == REFOCUS_OK && photo->image->plane[0])
+        code = find_edges(file, photo->image, disparity, map, &found->edges);
     free(disparity);
     if (status == REFOCUS_ERR_NO_DEPTH) {
         report->unknown = samples;
@@ -213,14 +265,14 @@ static int measure_depth(const char *file, const struct refocus_depth_map *map,
     }
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, file, "the depth map: %s", refocus_strerror(status));
-    return EXIT_DONE;
+    return code;
 }
 
 static int run(int argc, char **argv)
 {
     struct settings settings = {false};
     struct refocus_photo *photo = NULL;
-    struct refocus_depth_report report = refocus_depth_report_default();
+    struct findings found = {.depth = refocus_depth_report_default()};
     const char *files[2];
     int status;
 
@@ -229,11 +281,11 @@ static int run(int argc, char **argv)
         return status;
     status = read_any(&photo, files[0]);
     if (status == EXIT_DONE && photo->depth->samples)
-        status = measure_depth(files[0], photo->depth, &report);
+        status = measure_depth(files[0], photo, &found);
     if (status == EXIT_DONE && settings.json) {
-        status = report_print_json(make_json(files[0], photo, &report));
+        status = report_print_json(make_json(files[0], photo, &found));
     } else if (status == EXIT_DONE) {
-        print_text(files[0], photo, &report);
+        print_text(files[0], photo, &found);
         status = report_end_output();
     }
     refocus_photo_free(&photo);

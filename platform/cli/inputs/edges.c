@@ -19,27 +19,23 @@ const char *edges_summary(uint32_t index)
     return index < sizeof words / sizeof *words ? words[index] : NULL;
 }
 
-int edges_place(const struct refocus_image *photo, uint16_t **disparity, int width, int height,
-                struct refocus_depth_edges_report *report, const char *name)
+int edges_place(const struct refocus_image *photo, const struct refocus_disparity *map,
+                uint16_t **placed, struct refocus_depth_edges_report *report, const char *name)
 {
     const struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
-    const struct refocus_disparity map =
-        refocus_disparity16(*disparity, width, height, (ptrdiff_t)width * 2);
     const uint64_t bytes = (uint64_t)photo->width * (uint64_t)photo->height * 2;
     uint16_t *out = bytes <= SIZE_MAX ? malloc((size_t)bytes) : NULL;
     int status = REFOCUS_ERR_MEMORY;
 
     *report = refocus_depth_edges_report_default();
     if (out)
-        status =
-            refocus_depth_edges(photo, &map, &params, out, (ptrdiff_t)photo->width * 2, report);
+        status = refocus_depth_edges(photo, map, &params, out, (ptrdiff_t)photo->width * 2, report);
     if (status != REFOCUS_OK) {
         free(out);
         return report_failure(EXIT_FAILED, name, "the edges of the depth map: %s",
                               refocus_strerror(status));
     }
-    free(*disparity);
-    *disparity = out;
+    *placed = out;
     return EXIT_DONE;
 }
 

@@ -12,10 +12,10 @@ enum edges { EDGES_AUTO, EDGES_AS_GIVEN };
 const char *edges_name(uint32_t index);
 const char *edges_summary(uint32_t index);
 
-/* Make packed disparities of the photo's size in place of *disparity, of width x height; an exit
- * code, and prints why. */
-int edges_place(const struct refocus_image *photo, uint16_t **disparity, int width, int height,
-                struct refocus_depth_edges_report *report, const char *name);
+/* Make packed disparities of the photo's size, which the caller frees, of a map; an exit code, and
+ * prints why. */
+int edges_place(const struct refocus_image *photo, const struct refocus_disparity *map,
+                uint16_t **placed, struct refocus_depth_edges_report *report, const char *name);
 
 /* The report as JSON; null where edges were left as given. */
 json_t *edges_json(const struct refocus_depth_edges_report *report);

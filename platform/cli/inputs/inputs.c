@@ -138,20 +138,31 @@ static bool worth_enlarging(const struct input *input, const struct depth_settin
             input->report.unknown + input->report.specks > 0);
 }
 
+/* Put the edges of the disparities on the photo's; input->given keeps them as they were. */
+static int place(struct input *input)
+{
+    const struct refocus_disparity map = refocus_disparity16(
+        input->disparity, input->width, input->height, (ptrdiff_t)input->width * 2);
+    uint16_t *placed = NULL;
+    int status = edges_place(input->photo->image, &map, &placed, &input->edges, input->depth_name);
+
+    if (status != EXIT_DONE)
+        return status;
+    input->given.disparity = input->disparity;
+    input->given.width = input->width;
+    input->given.height = input->height;
+    input->disparity = placed;
+    input->width = input->photo->image->width;
+    input->height = input->photo->image->height;
+    return EXIT_DONE;
+}
+
 /* Filled samples count least when the map is enlarged, which the edges are then looked for in. */
 static int fit(struct input *input, const struct depth_settings *settings)
 {
-    int status = worth_enlarging(input, settings) ? enlarge(input, settings) : EXIT_DONE;
+    const int status = worth_enlarging(input, settings) ? enlarge(input, settings) : EXIT_DONE;
 
-    if (status != EXIT_DONE || !worth_placing(input, settings))
-        return status;
-    status = edges_place(input->photo->image, &input->disparity, input->width, input->height,
-                         &input->edges, input->depth_name);
-    if (status == EXIT_DONE) {
-        input->width = input->photo->image->width;
-        input->height = input->photo->image->height;
-    }
-    return status;
+    return status == EXIT_DONE && worth_placing(input, settings) ? place(input) : status;
 }
 
 int input_convert(struct input *input, const struct depth_settings *settings)
@@ -302,6 +313,7 @@ int input_read_depth(struct input *input, const char *file, const struct depth_s
 void input_free(struct input *input)
 {
     free(input->disparity);
+    free(input->given.disparity);
     free(input->confidence);
     free(input->made_samples);
     refocus_photo_free(&input->side);

@@ -89,6 +89,10 @@ struct input {
     int width, height;   /* size of the disparities: the map's, or the photo's */
     struct refocus_depth_report report;
     struct refocus_depth_edges_report edges; /* struct_size 0: as given */
+    struct {
+        uint16_t *disparity; /* packed; NULL: as given */
+        int width, height;
+    } given; /* the disparities before their edges were placed */
 };
 
 /* These return exit codes and print why it is not EXIT_DONE. */

@@ -1,14 +1,16 @@
 /* views.c: the picture of `refocus render --view` is made. */
 #include <stdlib.h>
 #include "views/falsecolour.h"
+#include "views/moved.h"
 #include "views/peaking.h"
 #include "views/stereo_views.h"
 #include "views/views.h"
 
 const char *view_name(uint32_t index)
 {
-    static const char *const names[] = {"none", "depth", "blur", "overlay", "peaking", "anaglyph"};
-    return index < 6 ? names[index] : NULL;
+    static const char *const names[] = {"none",    "depth",    "blur", "overlay",
+                                        "peaking", "anaglyph", "edges"};
+    return index < sizeof names / sizeof *names ? names[index] : NULL;
 }
 
 const char *view_summary(uint32_t index)
@@ -19,8 +21,11 @@ const char *view_summary(uint32_t index)
         "the blur radii, with lines where they are half a pixel",
         "the disparities over the photo",
         "the photo in grey, its edges in focus in green",
-        "what two eyes see, for glasses of red and cyan"};
-    return index < 6 ? summaries[index] : NULL;
+        "what two eyes see, for glasses of red and cyan",
+        "the photo in grey, where edges of the depth map were moved in orange (nearer than the "
+        "map's) "
+        "and blue (farther)"};
+    return index < sizeof summaries / sizeof *summaries ? summaries[index] : NULL;
 }
 
 static int lost(int status)
@@ -51,6 +56,17 @@ static bool find_limits(const struct shot *shot, const uint16_t *blur, const uin
     return true;
 }
 
+static void draw_edges(const struct shot *shot, const uint16_t *disparity,
+                       const struct refocus_image *out)
+{
+    const struct input *input = &shot->input;
+    const struct refocus_disparity given =
+        refocus_disparity16(input->given.disparity, input->given.width, input->given.height,
+                            2 * (ptrdiff_t)input->given.width);
+
+    moved_draw(input->photo->image, disparity, input->given.disparity ? &given : NULL, out);
+}
+
 static int make_view(const struct shot *shot, struct refocus_image *out, int view)
 {
     const struct refocus_image *photo = shot->input.photo->image;
@@ -73,6 +89,8 @@ static int make_view(const struct shot *shot, struct refocus_image *out, int vie
             refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_BLUR, blur, (ptrdiff_t)width * 2);
     if (status == REFOCUS_OK && view == VIEW_PEAKING) {
         peaking_draw(photo, blur, out);
+    } else if (status == REFOCUS_OK && view == VIEW_EDGES) {
+        draw_edges(shot, disparity, out);
     } else if (status == REFOCUS_OK) {
         if (view == VIEW_BLUR)
             made = falsecolour_blur(blur, disparity, width, height,

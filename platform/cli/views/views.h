@@ -4,7 +4,15 @@
 
 #include "shot/shot.h"
 
-enum view { VIEW_NONE, VIEW_DEPTH, VIEW_BLUR, VIEW_OVERLAY, VIEW_PEAKING, VIEW_ANAGLYPH };
+enum view {
+    VIEW_NONE,
+    VIEW_DEPTH,
+    VIEW_BLUR,
+    VIEW_OVERLAY,
+    VIEW_PEAKING,
+    VIEW_ANAGLYPH,
+    VIEW_EDGES
+};
 
 const char *view_name(uint32_t index);
 const char *view_summary(uint32_t index);
