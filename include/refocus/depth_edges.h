@@ -73,7 +73,7 @@ static inline struct refocus_depth_edges_report refocus_depth_edges_report_defau
  * Of large photos with small maps the work is done at up to four times the map's size, and the
  * rest by refocus_upsample(). The result does not depend on threads or processor.
  *
- * @param photo   any packed format, upright as the map is
+ * @param photo   any format, upright as the map is
  * @param map     covers the same view as the photo; see struct refocus_disparity
  * @param params  see struct refocus_depth_edges_params
  * @param out     receives 16-bit disparities of the photo's size, 65535 nearest; may not overlap
@@ -81,9 +81,9 @@ static inline struct refocus_depth_edges_report refocus_depth_edges_report_defau
  * @param stride  bytes from a row of @p out to the next; even; may be negative
  * @param report  receives what was found; may be NULL
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (about 30 bytes a pixel of the
- *         size that the work is done at are needed), REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED,
- *         REFOCUS_ERR_THREAD. On an error @p out holds nothing of use, and the report is
- *         untouched.
+ *         size that the work is done at are needed, and 3 of the photo if it is Y, U, V),
+ * REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED, REFOCUS_ERR_THREAD. On an error @p out holds nothing
+ * of use, and the report is untouched.
  *
  * Thread-safe.
  */

@@ -14,6 +14,38 @@ enum {
     QUARTER = 2, /* shift of colours: sums of three differences then fit */
 };
 
+void rf_upsampler_lay_out(struct rf_upsampler *up, struct rf_arena *arena)
+{
+    const uint64_t width = (uint64_t)up->photo->width, height = (uint64_t)up->photo->height;
+    const uint64_t columns = (uint64_t)up->columns, rows = (uint64_t)up->rows;
+
+    up->coarse.stride = up->columns + 4;
+    up->coarse.at = rf_arena_take(arena, (columns + 4) * (rows + 4), 2);
+    up->wide.stride = up->photo->width;
+    up->wide.at = rf_arena_take(arena, width * rows, 2);
+    up->settled.stride = up->photo->width;
+    up->settled.at = rf_arena_take(arena, width * height, 2);
+    up->across = rf_arena_take(arena, width, sizeof *up->across);
+    up->down = rf_arena_take(arena, height, sizeof *up->down);
+    up->span = rf_arena_take(arena, columns + 2, sizeof *up->span);
+    up->colour.stride = up->trust.stride = up->coarse.stride;
+    for (int c = 0; c < 3; c++)
+        up->colour.channel[c] = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
+    if (up->confidence)
+        up->trust.at = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
+    up->sure.stride = up->photo->width;
+    up->sure.at = rf_arena_take(arena, width * height, 1);
+    up->unsure.stride = rf_upsample_blocks(up->photo->width) + 1;
+    up->unsure.at = rf_arena_take(arena, (uint64_t)up->unsure.stride * height, 2);
+    if (arena->base) {
+        up->coarse.at += 2 * up->coarse.stride + 2;
+        for (int c = 0; c < 3; c++)
+            up->colour.channel[c] += 2 * up->colour.stride + 2;
+        if (up->confidence)
+            up->trust.at += 2 * up->trust.stride + 2;
+    }
+}
+
 /* Cubic B-spline, for means: it smooths noise, and keeps slopes. t in Q8, result in Q24
  * / 6: four of them, one apart, add up to 6 << 24. */
 static int mean_weight(int t)

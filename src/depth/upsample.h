@@ -6,6 +6,7 @@
 
 #include "image/planes.h"
 #include "kernels/kernels.h"
+#include "support/arena.h"
 #include "support/pool.h"
 
 enum {
@@ -83,6 +84,10 @@ static inline int rf_upsample_samples(int samples, int size)
 {
     return samples < size ? samples : size;
 }
+
+/* Sets the pointers to memory for the size of up->photo and for `columns` and `rows`, or with
+ * arena->base == NULL only counts. The memory of trust is only for a map with confidence. */
+void rf_upsampler_lay_out(struct rf_upsampler *up, struct rf_arena *arena);
 
 /* Writes the map at the photo's size to up->out. */
 void rf_upsample(struct rf_upsampler *up, struct rf_pool *pool);

@@ -6,40 +6,6 @@
 #include "depth/upsample.h"
 #include "image/format.h"
 #include "image/read.h"
-#include "support/arena.h"
-
-/* Sets the pointers, or with arena->base == NULL only counts. */
-static void lay_out(struct rf_upsampler *up, struct rf_arena *arena)
-{
-    const uint64_t width = (uint64_t)up->photo->width, height = (uint64_t)up->photo->height;
-    const uint64_t columns = (uint64_t)up->columns, rows = (uint64_t)up->rows;
-
-    up->coarse.stride = up->columns + 4;
-    up->coarse.at = rf_arena_take(arena, (columns + 4) * (rows + 4), 2);
-    up->wide.stride = up->photo->width;
-    up->wide.at = rf_arena_take(arena, width * rows, 2);
-    up->settled.stride = up->photo->width;
-    up->settled.at = rf_arena_take(arena, width * height, 2);
-    up->across = rf_arena_take(arena, width, sizeof *up->across);
-    up->down = rf_arena_take(arena, height, sizeof *up->down);
-    up->span = rf_arena_take(arena, columns + 2, sizeof *up->span);
-    up->colour.stride = up->trust.stride = up->coarse.stride;
-    for (int c = 0; c < 3; c++)
-        up->colour.channel[c] = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
-    if (up->confidence)
-        up->trust.at = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
-    up->sure.stride = up->photo->width;
-    up->sure.at = rf_arena_take(arena, width * height, 1);
-    up->unsure.stride = rf_upsample_blocks(up->photo->width) + 1;
-    up->unsure.at = rf_arena_take(arena, (uint64_t)up->unsure.stride * height, 2);
-    if (arena->base) {
-        up->coarse.at += 2 * up->coarse.stride + 2;
-        for (int c = 0; c < 3; c++)
-            up->colour.channel[c] += 2 * up->colour.stride + 2;
-        if (up->confidence)
-            up->trust.at += 2 * up->trust.stride + 2;
-    }
-}
 
 static void copy_map(const struct refocus_disparity *map, uint16_t *out, ptrdiff_t stride)
 {
@@ -105,7 +71,7 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
         .rows = rf_upsample_samples(map->height, photo->height),
         .out = {out, stride / 2},
     };
-    lay_out(&up, &arena);
+    rf_upsampler_lay_out(&up, &arena);
     if (arena.used > PTRDIFF_MAX)
         return REFOCUS_ERR_SIZE;
     block = malloc((size_t)arena.used);
@@ -113,7 +79,7 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
         return REFOCUS_ERR_MEMORY;
     arena.base = (uint8_t *)block + (-(uintptr_t)block & (RF_ARENA_ALIGN - 1));
     arena.used = 0;
-    lay_out(&up, &arena);
+    rf_upsampler_lay_out(&up, &arena);
     atomic_init(&run.state, RF_RUN_RUNNING);
     status = rf_pool_start(&pool, rf_thread_count(params->threads), NULL, &run);
     if (status == REFOCUS_OK) {

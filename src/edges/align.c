@@ -505,10 +505,10 @@ struct rf_alignment rf_align(struct rf_edges *e, double softness, struct rf_ramp
 
     rf_find_photo_gradient(e);
     rf_find_map_edges(e, e->label);
-    if (e->edges < FEWEST)
+    if (e->edges < FEWEST || rf_run_cancelled(e->pool->run))
         return found;
     found.on_photo = ask_blocks(&large, 0.1);
-    if (found.on_photo >= ON_PHOTO)
+    if (found.on_photo >= ON_PHOTO || rf_run_cancelled(e->pool->run))
         return found;
     whole = ask_whole(&large);
     if (whole.worth > CLEARLY * whole.zero) {

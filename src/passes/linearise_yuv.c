@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "colour/guide.h"
 #include "image/border.h"
 #include "image/format.h"
 #include "kernels/kernels.h"
@@ -32,25 +33,13 @@ static void convert_codes(const struct rf_executor *exec, const struct rf_viewpo
                           codes.uv + cy * codes.uv_stride, pass->curve, pass->size.width);
 }
 
-static uint8_t code_of(int tone)
-{
-    return (uint8_t)((rf_clip_tone(tone) + 2) / 4);
-}
-
 /* The colours of a row, as far as they tell one thing from another. */
 static void guide_row(const struct rf_linearise_yuv *pass, uint8_t *out, int y, int width)
 {
-    const struct rf_yuv_curve *const curve = pass->curve;
-    const uint8_t *luma = pass->codes.y + y * pass->codes.y_stride;
     const uint8_t *uv = pass->codes.uv + (y >> pass->size.down) * pass->codes.uv_stride;
+    const struct rf_yuv_row row = {pass->codes.y + y * pass->codes.y_stride, uv, uv + 1, 1, 2};
 
-    for (int x = 0; x < width; x++, out += 3) {
-        const int tone = curve->luma[luma[x]], at = x & ~1;
-
-        out[0] = code_of(tone + rf_more(curve, 1, uv[at + 1]));
-        out[1] = code_of(tone - rf_less_green(curve, uv[at], uv[at + 1]));
-        out[2] = code_of(tone + rf_more(curve, 0, uv[at]));
-    }
+    rf_guide_row(pass->curve, out, &row, width);
 }
 
 static void swap_pairs(uint8_t *restrict to, const uint8_t *restrict from, int n)

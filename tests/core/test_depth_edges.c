@@ -820,6 +820,87 @@ static void same_by_other_ways(void **state)
     }
 }
 
+/* ----- photos of Y, U and V ----- */
+
+/* Y of each pixel, and U and V of the even ones. Full range, BT.601. */
+static struct refocus_image codes_of(const struct picture *p, uint32_t format, uint8_t *codes)
+{
+    struct refocus_image photo = refocus_image_planar(format, codes, p->width, p->height);
+    const int down = format == REFOCUS_FORMAT_YUYV ? 0 : 1;
+
+    photo.range = REFOCUS_RANGE_FULL;
+    for (int i = 0; i < p->width * p->height; i++) {
+        const int x = i % p->width, y = i / p->width, pair = x / 2;
+        const uint8_t *rgb = p->rgb + (ptrdiff_t)3 * ((y & ~down) * p->width + (x & ~1));
+        const double luma = 0.299 * rgb[0] + 0.587 * rgb[1] + 0.114 * rgb[2];
+        const double u = 128 + (rgb[2] - luma) / 1.772, v = 128 + (rgb[0] - luma) / 1.402;
+        const uint8_t code[2] = {(uint8_t)lrint(u), (uint8_t)lrint(v)};
+        uint8_t *row[3];
+
+        for (int k = 0; k < 3; k++)
+            row[k] = photo.plane[k] ? photo.plane[k] + (k ? y >> down : y) * photo.stride[k] : NULL;
+        row[0][format == REFOCUS_FORMAT_YUYV ? 2 * x : x] = (uint8_t)lrint(
+            0.299 * p->rgb[3 * i] + 0.587 * p->rgb[3 * i + 1] + 0.114 * p->rgb[3 * i + 2]);
+        for (int k = 0; k < 2; k++) {
+            if (format == REFOCUS_FORMAT_YUYV)
+                row[0][4 * pair + 1 + 2 * k] = code[k];
+            else if (format == REFOCUS_FORMAT_I420)
+                row[1 + k][pair] = code[k];
+            else
+                row[1][2 * pair + (format == REFOCUS_FORMAT_NV12 ? k : 1 - k)] = code[k];
+        }
+    }
+    return photo;
+}
+
+static void place_by_codes(const struct picture *p, uint32_t format, uint16_t *out)
+{
+    const struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
+    uint8_t *codes = calloc((size_t)p->width + 1, (size_t)p->height * 3);
+    struct refocus_disparity map =
+        refocus_disparity16(p->map, p->width, p->height, 2 * (ptrdiff_t)p->width);
+    struct refocus_image photo;
+
+    assert_non_null(codes);
+    photo = codes_of(p, format, codes);
+    assert_int_equal(refocus_depth_edges(&photo, &map, &params, out, 2 * (ptrdiff_t)p->width, NULL),
+                     REFOCUS_OK);
+    free(codes);
+}
+
+/* Formats that share chroma alike come to the same; grey ones to that of R, G and B. */
+static void luma_and_chroma(void **state)
+{
+    for (int i = 0; i < 2; i++) {
+        struct picture p = make(WIDTH - i, HEIGHT - i);
+        const size_t bytes = 2 * (size_t)p.width * (size_t)p.height;
+        uint16_t *first = malloc(bytes);
+
+        (void)state;
+        assert_non_null(first);
+        draw(&p, disc, 1);
+        soften(&p, 2, 0);
+        place_by_codes(&p, REFOCUS_FORMAT_NV12, first);
+        assert_true(share_within(&p, first, 0.02) >= 0.995);
+        place_by_codes(&p, REFOCUS_FORMAT_NV21, p.out);
+        assert_memory_equal(p.out, first, bytes);
+        place_by_codes(&p, REFOCUS_FORMAT_I420, p.out);
+        assert_memory_equal(p.out, first, bytes);
+        place_by_codes(&p, REFOCUS_FORMAT_YUYV, p.out);
+        assert_true(share_within(&p, p.out, 0.02) >= 0.995);
+        for (int k = 0; k < p.width * p.height; k++)
+            p.rgb[3 * k] = p.rgb[3 * k + 2] = p.rgb[3 * k + 1];
+        place(&p);
+        memcpy(first, p.out, bytes);
+        for (uint32_t format = REFOCUS_FORMAT_NV12; format <= REFOCUS_FORMAT_YUYV; format++) {
+            place_by_codes(&p, format, p.out);
+            assert_memory_equal(p.out, first, bytes);
+        }
+        free(first);
+        end(&p);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -831,6 +912,7 @@ int main(void)
         cmocka_unit_test(small_points),     cmocka_unit_test(displaced_returns),
         cmocka_unit_test(bent_returns),     cmocka_unit_test(reports_by_size),
         cmocka_unit_test(same_everywhere),  cmocka_unit_test(same_by_other_ways),
+        cmocka_unit_test(luma_and_chroma),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

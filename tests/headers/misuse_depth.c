@@ -222,14 +222,11 @@ static void edges_arguments(void)
     uint16_t *const odd = (uint16_t *)(void *)((uint8_t *)out + 1);
     const struct refocus_image photo = misuse_photo();
     const struct refocus_disparity map = misuse_map();
-    struct refocus_image no_rgb = photo;
 
     misuse_images(edges_photo);
     misuse_maps(edges_map);
     misuse_strides(edges_stride, 2 * W);
     edges_later_params();
-    no_rgb.format = REFOCUS_FORMAT_YUYV; /* packed, but not of R, G and B */
-    REFUSED(refocus_depth_edges, &no_rgb, &map, &params, out, 2 * W, &findings);
     REFUSED(refocus_depth_edges, &photo, &map, NULL, out, 2 * W, &findings);
     REFUSED(refocus_depth_edges, &photo, &map, &params, NULL, 2 * W, &findings);
     REFUSED(refocus_depth_edges, &photo, &map, &params, odd, 2 * W, &findings);

@@ -151,20 +151,23 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const int is_16 = flags >> 1 & 1, reach = take_in(&in, 0, 12), noise = take_in(&in, 0, 40);
     const struct cells surfaces = {&in, take_in(&in, 1, 128), 0, 0};
     const struct cells moved = {&in, surfaces.side, take_in(&in, 0, 32), take_in(&in, 0, 32)};
-    const uint32_t format = 1 + (flags >> 2 & 3);
-    const int bytes = refocus_format_bytes(format);
+    const uint32_t format = 1 + (flags >> 2 & 3) + (flags >> 6 & 1) * 4;
+    const int bytes = (int)refocus_image_bytes(format, width, height);
+    const int per_pixel = refocus_format_is_yuv(format) ? 1 : refocus_format_bytes(format);
     struct refocus_depth_edges_report report[2];
     struct job job = {.params = refocus_depth_edges_params_default()};
 
-    job.photo = refocus_image_packed(format, pixels, width, height, (ptrdiff_t)width * bytes);
+    job.photo = refocus_image_planar(format, pixels, width, height);
+    job.photo.matrix = flags >> 7 & 1;
+    job.photo.range = flags >> 1 & 1;
     job.map = refocus_disparity16(map, columns, rows, (ptrdiff_t)columns * 2);
     if (flags >> 4 & 1)
         run_wild(&job, &in, out[0]);
-    for (int i = 0; i < width * height * bytes; i++) {
-        const int at = i / bytes;
+    for (int i = 0; i < bytes; i++) {
+        const int at = i / per_pixel % (width * height);
         const uint8_t cell = cell_at(&surfaces, at % width, at / width, width, height);
 
-        pixels[i] = (uint8_t)(cell * (3 + 2 * (i % bytes)) + i * 29 % (noise + 1));
+        pixels[i] = (uint8_t)(cell * (3 + 2 * (i % per_pixel)) + i * 29 % (noise + 1));
     }
     for (int i = 0; i < columns * rows; i++)
         map[i] = (uint16_t)(cell_at(&moved, i % columns, i / columns, columns, rows) * 257);

@@ -1,0 +1,209 @@
+/* place.c: memory for the edges of a disparity map, and the order of the passes over them. */
+#include "edges/place.h"
+
+#include <string.h>
+
+#include "depth/upsample.h"
+#include "edges/input.h"
+#include "support/compare.h"
+
+enum { MOST_ENLARGED = 4 }; /* the map is brought to at most so many times its size */
+/* Softer edges are ramps of several pixels, which show. An exact map has 0.4, with smooth
+ * silhouettes 1; straight lines between samples two pixels apart make 1.2. */
+static const double SOFT = 1.25;
+/* Samples of a small map that were taken at points, as sensors do, have 0.4 at their own size;
+ * means over areas mix two surfaces along edges and have 0.64 and more. */
+static const double MIXED = 0.6;
+
+/* ----- sizes and memory ----- */
+
+/* The photo is reduced by a power of two until the map need not be enlarged by more than
+ * MOST_ENLARGED. */
+static void choose_size(struct rf_edge_job *job, int width, int height, int columns, int rows)
+{
+    struct rf_edges *e = &job->edges;
+
+    job->reduced = 1;
+    do {
+        e->width = (width + job->reduced - 1) / job->reduced;
+        e->height = (height + job->reduced - 1) / job->reduced;
+        job->reduced *= 2;
+    } while ((int64_t)columns * MOST_ENLARGED < e->width &&
+             (int64_t)rows * MOST_ENLARGED < e->height);
+    job->reduced /= 2;
+    e->stride = rf_larger(e->width, RF_MOST_VOTE_COLUMNS) + 2;
+    job->columns = rf_smaller(columns, e->width);
+    job->rows = rf_smaller(rows, e->height);
+    job->enlarged = columns != width || rows != height;
+}
+
+static void *take_plane(struct rf_arena *arena, const struct rf_edges *e, uint64_t size)
+{
+    return rf_arena_take(arena, (uint64_t)e->stride * ((uint64_t)e->height + 2), size);
+}
+
+/* Sets the pointers, or with arena->base == NULL only counts. Each plane has a border of a pixel,
+ * so that all have the same stride. The map comes first: the others are not needed to bring it to
+ * the photo's size. */
+static void lay_out(struct rf_edges *e, struct rf_arena *arena)
+{
+    const uint64_t across = (uint64_t)rf_edge_blocks_across(e);
+    const uint64_t blocks = across * (uint64_t)((e->height + RF_EDGE_BLOCK - 1) / RF_EDGE_BLOCK);
+    uint16_t **const planes[] = {&e->map,     &e->near,  &e->far, &e->label,
+                                 &e->largest, &e->spare, &e->kept};
+    int16_t **const slopes[] = {&e->gradient.x, &e->gradient.y};
+
+    for (size_t i = 0; i < sizeof planes / sizeof *planes; i++)
+        *planes[i] = take_plane(arena, e, sizeof **planes[i]);
+    for (size_t i = 0; i < sizeof slopes / sizeof *slopes; i++)
+        *slopes[i] = take_plane(arena, e, sizeof **slopes[i]);
+    for (int c = 0; c < 3; c++)
+        e->colour[c] = take_plane(arena, e, 1);
+    e->steepest = take_plane(arena, e, 1);
+    e->is_wide = take_plane(arena, e, 1);
+    e->range = rf_arena_take(arena, blocks, sizeof *e->range);
+    e->rough = rf_arena_take(arena, blocks, 1);
+    e->most_edges = (int)((int64_t)e->width * e->height / 8);
+    e->edge = rf_arena_take(arena, (uint64_t)e->most_edges, sizeof *e->edge);
+    rf_align_lay_out(e, arena);
+    if (arena->base)
+        e->map += e->stride + 1;
+}
+
+/* A map that is brought to the photo's size, in memory that begins with it if it is the result of
+ * the passes. */
+static struct rf_arena behind_map(const struct rf_edges *e, uint8_t *memory)
+{
+    struct rf_arena arena = {memory, 0};
+
+    take_plane(&arena, e, sizeof *e->map);
+    return arena;
+}
+
+uint64_t rf_place_edges_bytes(int width, int height, int columns, int rows)
+{
+    const struct refocus_image photo = {.width = width, .height = height};
+    struct rf_edge_job job;
+    struct rf_arena arena = {NULL, 0}, last;
+    struct rf_upsampler up = {.photo = &photo};
+
+    choose_size(&job, width, height, columns, rows);
+    last = behind_map(&job.edges, NULL);
+    lay_out(&job.edges, &arena);
+    if (!job.enlarged)
+        return arena.used;
+    /* The map that comes in may have more samples than the one that the passes make of it. */
+    up.columns = rf_larger(job.edges.width, rf_upsample_samples(columns, width));
+    up.rows = rf_larger(job.edges.height, rf_upsample_samples(rows, height));
+    rf_upsampler_lay_out(&up, &last);
+    return arena.used > last.used ? arena.used : last.used;
+}
+
+static void upsample(const struct rf_place_edges *place, const struct rf_edges *e,
+                     const struct refocus_disparity *map)
+{
+    struct rf_arena arena = behind_map(e, place->memory);
+    struct rf_upsampler up = {
+        .kernels = place->kernels,
+        .photo = place->photo,
+        .map = map,
+        .columns = rf_upsample_samples(map->width, place->photo->width),
+        .rows = rf_upsample_samples(map->height, place->photo->height),
+        .out = place->out,
+    };
+
+    rf_upsampler_lay_out(&up, &arena);
+    rf_upsample(&up, place->pool);
+}
+
+/* ----- order of the passes ----- */
+
+/* Works on job->edges and leaves the result in its map; says whether it differs from the samples.
+ */
+static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_report *report)
+{
+    struct rf_edges *e = &job->edges;
+    const double pixel = job->reduced;
+    struct rf_ramp_limits limits = {.steps = 16, .contrast = RF_EDGE_STEP};
+    struct rf_alignment found;
+    double softness;
+    bool soft;
+
+    rf_find_ramps(e, limits);
+    softness = rf_measure_softness(e);
+    if (job->enlarged && softness < SOFT) /* straight lines between samples are ramps */
+        softness = SOFT;
+    soft = softness >= SOFT;
+    /* A ramp of a Gaussian is 4 standard deviations long; one of a sharp map 2 or 3 pixels. */
+    limits.steps = soft ? (int)(4 * softness + 2.5) : 3;
+    limits.contrast = soft ? 2621 : 3932;
+    limits.part = soft; /* ramps of a sharp map are mixed pixels */
+    rf_find_ramps(e, limits);
+    found = rf_align(e, softness, limits);
+    if (soft && !rf_run_cancelled(e->pool->run)) {
+        rf_vote(e, softness);
+        rf_settle(e, softness);
+        rf_restore_thin(e, softness);
+        for (int y = 0; y < e->height; y++)
+            memcpy(e->map + y * e->stride, e->label + y * e->stride,
+                   (size_t)e->width * sizeof *e->map);
+    }
+    report->softness = (float)(softness * pixel);
+    report->on_photo = (float)found.on_photo;
+    report->grown = (float)(found.grown * pixel);
+    report->shift_x = (float)(found.shift_x * pixel);
+    report->shift_y = (float)(found.shift_y * pixel);
+    report->bent = found.bent;
+    report->parted = soft;
+    return soft || found.bent || found.grown || found.shift_x || found.shift_y;
+}
+
+/* Brings the result to the photo's size. */
+static void give_out(const struct rf_place_edges *place, const struct rf_edges *e)
+{
+    const struct refocus_disparity result =
+        refocus_disparity16(e->map, e->width, e->height, e->stride * (ptrdiff_t)sizeof *e->map);
+
+    if (e->width != place->photo->width || e->height != place->photo->height) {
+        upsample(place, e, &result);
+        return;
+    }
+    for (int y = 0; y < e->height; y++)
+        memcpy(place->out.at + y * place->out.stride, e->map + y * e->stride,
+               (size_t)e->width * sizeof *e->map);
+}
+
+bool rf_place_edges(const struct rf_place_edges *place, struct refocus_depth_edges_report *report)
+{
+    const struct refocus_image *photo = place->photo;
+    const struct refocus_disparity *map = place->map;
+    struct rf_arena arena = {place->memory, 0};
+    struct rf_edge_job job = {.photo = photo, .map = map};
+    struct rf_edges *e = &job.edges;
+    bool changed;
+
+    choose_size(&job, photo->width, photo->height, map->width, map->height);
+    lay_out(e, &arena);
+    e->kernels = place->kernels;
+    e->pool = place->pool;
+    job.sample = (struct rf_disparity_q16){e->near, e->stride};
+    if (job.enlarged) {
+        const double softness = rf_softness_of_samples(&job);
+
+        if (softness < MIXED) {
+            report->softness = (float)(softness * photo->width / job.columns);
+            report->parted = 1;
+            upsample(place, e, map);
+            return true;
+        }
+    }
+    rf_load_edge_photo(&job);
+    rf_load_edge_map(&job);
+    changed = run_passes(&job, report);
+    if (rf_run_cancelled(place->pool->run))
+        return false;
+    report->changed = changed ? rf_share_changed(&job) : 0;
+    if (changed || job.enlarged)
+        give_out(place, e);
+    return changed || job.enlarged;
+}
