@@ -15,6 +15,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+#include <refocus/depth_edges.h>
 #include <refocus/focus.h>
 #include <refocus/image.h>
 #include <refocus/methods.h>
@@ -98,16 +99,19 @@ struct refocus_renderer_params {
     const struct refocus_papers *papers; /**< NULL: the methods are sweep and search, or
                            refocus_papers() of papers.h: all of them. One of another build than this
                            library is refused with REFOCUS_ERR_ARGUMENT */
-    uint32_t in_place; /**< 1: strip mode, for little memory. The photo and its disparities,
-                            which are of its size, are not copied: they stay as they are and
-                            where they are until the next refocus_prepare() or the
-                            renderer's end. Rendering goes through them twice, block by
-                            block, and takes longer; the bytes are the same, but that
-                            tilts and fields whose K is more than half of max_blur_radius
-                            may change single pixels by a code. For sweep, search,
-                            raytrace, jittered and blur */
-    uint32_t thin;     /**< 1: with memory for struct refocus_thin_params, which other
-                            renderers, and strip mode, take as not enabled */
+    uint32_t in_place;    /**< 1: strip mode, for little memory. The photo and its disparities,
+                               which are of its size, are not copied: they stay as they are and
+                               where they are until the next refocus_prepare() or the
+                               renderer's end. Rendering goes through them twice, block by
+                               block, and takes longer; the bytes are the same, but that
+                               tilts and fields whose K is more than half of max_blur_radius
+                               may change single pixels by a code. For sweep, search,
+                               raytrace, jittered and blur */
+    uint32_t thin;        /**< 1: with memory for struct refocus_thin_params, which other
+                               renderers, and strip mode, take as not enabled */
+    uint32_t depth_edges; /**< 1: with memory for REFOCUS_DEPTH_EDGES_AUTO of scene.h; not in strip
+                               mode, which goes without: call refocus_depth_edges() before */
+    uint32_t reserved2;   /**< 0 */
 };
 
 static inline struct refocus_renderer_params
@@ -140,6 +144,8 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max
  *
  * params->thin takes up to 6 (W + 16) (H + 16) + 2^12 more, 4.4 bytes a pixel for large pictures.
  *
+ * params->depth_edges takes up to 16 (W + 128) (H + 64) + 64 (W + H) + 2^18 more.
+ *
  * Strip mode, params->in_place, takes no more than
  *
  *     28 (S + 63) (S + 16) + 0.78 (W + 16) (H + 64) + 4 T (W + 512) + 24 P^2 + 2^17
@@ -171,12 +177,22 @@ REFOCUS_API void refocus_renderer_destroy(struct refocus_renderer **renderer);
  * disparities are not copied, and stay with the renderer until the next scene or its end.
  *
  * @param scene  see struct refocus_scene
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED (in_place:
- *         a map of another size, or a photo of Y, U and V), REFOCUS_ERR_CANCELLED.
- *         After an error nothing is prepared.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (also depth_edges without memory for it),
+ *         REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED (in_place: a map of another size, or a photo of
+ *         Y, U and V), REFOCUS_ERR_CANCELLED. After an error nothing is prepared.
  */
 REFOCUS_API int refocus_prepare_scene(struct refocus_renderer *renderer,
                                       const struct refocus_scene *scene);
+
+/**
+ * The findings of the last refocus_prepare_scene() about the edges of its map.
+ *
+ * @param report  written as far as its struct_size goes; softness is 0 and parted 0 where edges
+ *                stayed as given
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (nothing prepared)
+ */
+REFOCUS_API int refocus_get_depth_edges(const struct refocus_renderer *renderer,
+                                        struct refocus_depth_edges_report *report);
 
 /** refocus_prepare_scene() of a photo and its disparities alone: refocus_scene_default(). */
 REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,

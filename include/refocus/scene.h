@@ -11,10 +11,19 @@
 extern "C" {
 #endif
 
+/** The edges of a map of disparities. */
+enum refocus_depth_edges {
+    REFOCUS_DEPTH_EDGES_AS_GIVEN = 0, /**< every disparity as the map has it */
+    REFOCUS_DEPTH_EDGES_AUTO = 1,     /**< refocus_depth_edges() of depth_edges.h: where the map is
+                                           soft, coarse or beside the photo, its edges go to the
+                                           photo's. Renderers whose parameters have depth_edges
+                                           alone have the memory for it */
+};
+
 /** A photo and what is known of the depth in it. Start from refocus_scene_default(). */
 struct refocus_scene {
     uint32_t struct_size;              /**< sizeof(struct refocus_scene) */
-    uint32_t reserved;                 /**< 0 */
+    uint32_t depth_edges;              /**< enum refocus_depth_edges; default as given */
     const struct refocus_image *photo; /**< all in focus; at most max_width x max_height of the
                                           renderer; any enum refocus_format. Each byte is read once,
                                           each plane in order: camera memory may be uncached */

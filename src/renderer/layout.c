@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "depth/upsample.h"
+#include "edges/place.h"
 #include "renderer/methods.h"
 #include "support/arena.h"
 #include "tiles/ranges.h"
@@ -76,12 +77,28 @@ static void lay_out_coverage(struct rf_arena *arena, struct rf_coverage *coverag
     coverage->swapped = rf_arena_take(arena, down, sizeof *coverage->swapped);
 }
 
-/* Lays out the photo, and the planes that depend on the lens setting. */
-static void lay_out_whole(struct refocus_renderer *r, const struct refocus_renderer_params *params,
-                          struct rf_arena *arena)
+/* The bytes that refocus_prepare_scene() works in. */
+static uint64_t prepare_bytes(const struct refocus_renderer_params *params)
+{
+    const int w = params->max_width, h = params->max_height;
+    const struct refocus_image photo = {.width = w, .height = h};
+    struct rf_upsampler up = {.photo = &photo, .columns = w, .rows = h};
+    struct rf_arena arena = {NULL, 0};
+    uint64_t edges;
+
+    rf_upsampler_lay_out(&up, &arena);
+    edges = params->depth_edges ? rf_place_edges_bytes(w, h, w + 1, h + 1) : 0;
+    return arena.used > edges ? arena.used : edges;
+}
+
+/* Lays out the photo, and the planes that depend on the lens setting. These share their memory with
+ * the work of preparing a scene, whose end in the arena is returned. */
+static uint64_t lay_out_whole(struct refocus_renderer *r,
+                              const struct refocus_renderer_params *params, struct rf_arena *arena)
 {
     struct rf_photo *photo = &r->photo;
     const int w = params->max_width, h = params->max_height;
+    struct rf_arena prepare;
     uint64_t size;
 
     photo->pad = rf_padding_for(params->max_blur_radius);
@@ -98,8 +115,12 @@ static void lay_out_whole(struct refocus_renderer *r, const struct refocus_rende
         photo->disparity = first + 3 * photo->pitch;
     }
     lay_out_lists(arena, photo, w, h);
+    prepare = *arena;
+    r->prepare_memory = rf_arena_take(&prepare, prepare_bytes(params), 1);
+    r->has_edges = params->depth_edges;
     r->smooth_group = rf_arena_take(arena, size, 2);
     r->background_group = rf_arena_take(arena, size, 2);
+    return prepare.used;
 }
 
 static int up_to_tiles(int v)
@@ -202,12 +223,12 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
         (uint64_t)((across + RF_TILE - 1) / RF_TILE) * (uint64_t)((down + RF_TILE - 1) / RF_TILE);
     const int threads = rf_thread_count(params->threads),
               pad = rf_padding_for(params->max_blur_radius);
-    uint64_t before, after;
+    uint64_t before, after, prepared = 0;
 
     if (params->in_place)
         lay_out_blocks(r, params, arena);
     else
-        lay_out_whole(r, params, arena);
+        prepared = lay_out_whole(r, params, arena);
     before = arena->used;
     rf_pyramid_shape(&r->pyramid, across, down);
     for (int i = 1; i <= r->pyramid.levels; i++)
@@ -228,7 +249,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
             rf_arena_take(arena, RF_COVERAGE_SOURCES * tiles, rf_coverage_source_bytes());
         after = arena->used > after ? arena->used : after;
     }
-    arena->used = after;
+    arena->used = prepared > after ? prepared : after;
     if (r->has_thin) {
         lay_out_coverage(arena, &r->coverage, w, h);
         lay_out_thin(arena, &r->photo.thin, w, h);
@@ -248,8 +269,6 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     r->light_weight = rf_arena_take(arena, RF_LIGHT_MAX + 1, 2);
     if (params->in_place)
         return;
-    r->taps = rf_arena_take(arena, (uint64_t)w + h, sizeof *r->taps);
-    r->spans = rf_arena_take(arena, (uint64_t)w + 2, sizeof *r->spans);
     r->work.at = rf_arena_take(arena, work_bytes(params), 1);
 }
 

@@ -6,11 +6,14 @@
  * program where a plane is read that does not live, and views of planes that do not live are empty.
  *
  *     slot             planes, in the order of their lives
- *     blur             upsampling (confidences) | circle of confusion
- *     smooth           upsampling (colours), dequantising (spare) | pre-filtered light
+ *     blur             circle of confusion
+ *     smooth           dequantising (spare) | pre-filtered light
  *     background blur  cells | blur of the hidden background | its weights
- *     background light upsampling | spare of the pre-filter | cone | light of the hidden background
+ *     background light spare of the pre-filter | cone | light of the hidden background
  *     pyramid          coverage sources | pyramid | foreground cells | weights
+ *
+ * All of it is also what a scene is prepared in: upsampling and edges work there before any plane
+ * lives (struct refocus_renderer, prepare_memory).
  *
  * Of a photo of Y, U and V the weights lie in the third plane of the hidden background's light,
  * which no other plane of such a photo uses: there they share nothing.
@@ -24,14 +27,12 @@
 
 enum rf_plane {
     RF_PLANE_NONE,
-    RF_PLANE_UPSAMPLE_CONFIDENCE,
     RF_PLANE_BLUR,
-    RF_PLANE_PREPARE_SPARE, /* scratch of upsampling and of dequantising */
+    RF_PLANE_PREPARE_SPARE, /* scratch of dequantising */
     RF_PLANE_SMOOTH,
     RF_PLANE_CELLS,
     RF_PLANE_BACKGROUND_BLUR,
     RF_PLANE_BACKGROUND_WEIGHT,
-    RF_PLANE_UPSAMPLE_WORK,
     RF_PLANE_PREFILTER_SPARE,
     RF_PLANE_CONE,
     RF_PLANE_BACKGROUND_LIGHT,
@@ -59,6 +60,9 @@ struct rf_lifetimes {
 
 /* Declares that a plane is about to be written: the plane that lay in its slot is gone. */
 void rf_plane_begin(struct rf_lifetimes *lifetimes, enum rf_plane plane);
+
+/* Declares that the memory of all slots is about to be written: no plane lives. */
+void rf_planes_end(struct rf_lifetimes *lifetimes);
 
 /* Whether a plane was begun and no other one of its slot since. */
 bool rf_plane_lives(const struct rf_lifetimes *lifetimes, enum rf_plane plane);

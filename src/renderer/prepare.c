@@ -5,6 +5,7 @@
 
 #include "depth/dequantise.h"
 #include "depth/upsample.h"
+#include "edges/place.h"
 #include "image/format.h"
 #include "image/read.h"
 #include "image/viewport.h"
@@ -12,36 +13,46 @@
 #include "renderer/layout.h"
 #include "renderer/load.h"
 
-/* Upsamples the map. The planes of blurs, of pre-filtered light and of the hidden background serve
- * as scratch: they are free until something is rendered. */
+/* A scene as it was read: its structs are copies of the caller's. */
+struct scene {
+    struct refocus_image photo;
+    struct refocus_disparity disparity;
+    uint32_t depth_edges; /* enum refocus_depth_edges */
+};
+
+/* Upsamples the map. */
 static void upsample(struct refocus_renderer *r, const struct refocus_image *photo,
                      const struct refocus_disparity *map)
 {
+    struct rf_arena arena = {r->prepare_memory, 0};
     struct rf_upsampler up = {
         .kernels = r->exec.kernels,
         .photo = photo,
         .map = map,
         .columns = rf_upsample_samples(map->width, r->view.width),
         .rows = rf_upsample_samples(map->height, r->view.height),
-        .coarse = {r->background.light.channel[0], r->background.light.stride},
-        .wide = {r->background.light.channel[1], r->background.light.stride},
-        .settled = {r->background.light.channel[2], r->background.light.stride},
-        .across = r->taps,
-        .down = r->taps + r->view.width,
-        .colour = {{(uint8_t *)r->smooth.channel[0], (uint8_t *)r->smooth.channel[1],
-                    (uint8_t *)r->smooth.channel[2]},
-                   r->smooth.stride * (ptrdiff_t)sizeof *r->smooth.channel[0]},
-        .sure = {(uint8_t *)r->blur.at, r->blur.stride * (ptrdiff_t)sizeof *r->blur.at},
-        /* This follows the bytes of `sure` in each row. */
-        .unsure = {(uint16_t *)r->blur.at + (r->view.width + 1) / 2, r->blur.stride},
-        .span = r->spans,
         .out = r->disparity,
     };
 
-    rf_plane_begin(&r->lifetimes, RF_PLANE_UPSAMPLE_WORK);
-    rf_plane_begin(&r->lifetimes, RF_PLANE_UPSAMPLE_CONFIDENCE);
-    rf_plane_begin(&r->lifetimes, RF_PLANE_PREPARE_SPARE);
+    rf_upsampler_lay_out(&up, &arena);
     rf_upsample(&up, &r->pool);
+}
+
+/* Puts the edges of the map on the photo's, if the scene asks for it. Says whether it wrote the
+ * disparities. */
+static bool place_edges(struct refocus_renderer *r, const struct scene *scene,
+                        const struct refocus_image *photo)
+{
+    const struct rf_place_edges place = {
+        .kernels = r->exec.kernels,
+        .pool = &r->pool,
+        .photo = photo,
+        .map = &scene->disparity,
+        .memory = r->prepare_memory,
+        .out = r->disparity,
+    };
+
+    return scene->depth_edges == REFOCUS_DEPTH_EDGES_AUTO && rf_place_edges(&place, &r->edges);
 }
 
 /* A picture in RGB8, in the memory of disparities and in the bytes beside the codes of U and V. */
@@ -53,34 +64,41 @@ static struct refocus_image yuv_guide(const struct refocus_renderer *r)
                                 r->view.width, r->view.height, codes->uv_stride);
 }
 
-static void take_in(struct refocus_renderer *r, const struct refocus_image *photo,
-                    const struct refocus_disparity *disparity)
+static void take_in(struct refocus_renderer *r, const struct scene *scene)
 {
-    const bool same_size = disparity->width == r->view.width && disparity->height == r->view.height;
+    const struct refocus_image *photo = &scene->photo;
+    const struct refocus_disparity *map = &scene->disparity;
+    const bool same_size = map->width == r->view.width && map->height == r->view.height;
+    const bool guided = !same_size || scene->depth_edges == REFOCUS_DEPTH_EDGES_AUTO;
     const struct refocus_image guide = r->yuv.on ? yuv_guide(r) : *photo;
 
-    rf_load_light(r, photo, same_size ? NULL : &guide);
-    if (same_size)
-        rf_load_disparity(r, disparity, rf_code_step(disparity), 0, 0);
-    else
-        upsample(r, &guide, disparity);
+    rf_planes_end(&r->lifetimes);
+    rf_load_light(r, photo, guided ? &guide : NULL);
+    if (!place_edges(r, scene, &guide) && !rf_cancelled(&r->exec)) {
+        if (same_size)
+            rf_load_disparity(r, map, rf_code_step(map), 0, 0);
+        else
+            upsample(r, &guide, map);
+    }
     if (!rf_cancelled(&r->exec))
         rf_find_silhouettes(&r->exec,
                             &(struct rf_silhouette_window){&r->view, r->light, r->disparity},
                             rf_whole(r), &r->photo.silhouettes);
 }
 
-/* A scene as it was read: its structs are copies of the caller's. */
-struct scene {
-    struct refocus_image photo;
-    struct refocus_disparity disparity;
-};
-
 static int read_scene(const struct refocus_renderer *r, const struct rf_log *log,
                       struct scene *scene, const struct refocus_scene *given)
 {
     int status;
 
+    scene->depth_edges = given->depth_edges;
+    if (given->depth_edges > REFOCUS_DEPTH_EDGES_AUTO)
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "depth_edges is %u, may be 0 to 1",
+                         (unsigned)given->depth_edges);
+    if (given->depth_edges && !r->has_edges)
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
+                         "depth_edges is %u, which the renderer was not made for",
+                         (unsigned)given->depth_edges);
     if ((status = rf_read_image(log, "photo", &scene->photo, given->photo)) ||
         (status = rf_read_map(log, "disparity", &scene->disparity, given->disparity)))
         return status;
@@ -111,6 +129,7 @@ static int prepare(struct refocus_renderer *r, const struct rf_log *log,
     own->height = scene.photo.height;
     own->highlights_blend = own->thin.blend = RF_NO_BLEND;
     own->silhouettes.count = 0;
+    r->edges = refocus_depth_edges_report_default();
     r->blend = REFOCUS_BLEND_LINEAR; /* silhouettes are always found in linear light */
     rf_yuv_begin(&r->yuv, &scene.photo, r->blend);
     rf_run_begin(r);
@@ -122,7 +141,7 @@ static int prepare(struct refocus_renderer *r, const struct rf_log *log,
     } else {
         rf_use(r, rf_whole(r));
         memset(own->band_blend, REFOCUS_BLEND_LINEAR, (size_t)rf_bands(&r->view));
-        take_in(r, &scene.photo, &scene.disparity);
+        take_in(r, &scene);
     }
     if (rf_run_end(r))
         return REFOCUS_ERR_CANCELLED;
@@ -154,8 +173,16 @@ int refocus_prepare_scene(struct refocus_renderer *r, const struct refocus_scene
                             REFOCUS_SIZE_TO(struct refocus_scene, disparity), given);
     if (status)
         return status;
-    if (scene.reserved)
-        return rf_refuse(&log, REFOCUS_ERR_ARGUMENT, "scene->reserved is %u, may be 0",
-                         (unsigned)scene.reserved);
     return prepare(r, &log, &scene);
+}
+
+int refocus_get_depth_edges(const struct refocus_renderer *r,
+                            struct refocus_depth_edges_report *report)
+{
+    if (!r || !report)
+        return REFOCUS_ERR_ARGUMENT;
+    if (!r->prepared)
+        return REFOCUS_ERR_STATE;
+    return refocus_struct_write(report, REFOCUS_SIZE_TO(struct refocus_depth_edges_report, changed),
+                                &r->edges, sizeof r->edges);
 }

@@ -146,8 +146,9 @@ struct refocus_renderer {
     struct rf_range_plane range;
     struct rf_bins *bins; /* one for each tile */
 
-    struct rf_taps *taps;  /* the depth upsampler's: of columns, then of rows */
-    struct rf_span *spans; /* the depth upsampler's */
+    void *prepare_memory; /* for upsampling and for edges; ends with the first render */
+    bool has_edges;       /* there is enough of it for edges */
+    struct refocus_depth_edges_report edges; /* about the prepared photo */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
     uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q15 */

@@ -449,6 +449,11 @@ class Papers(Case):
         photo, blur, sweep = report['methods']
         self.assertEqual((sweep['psnr'], sweep['rmse']), ('infinity', 0))
         self.assertGreater(blur['psnr'], photo['psnr'])
+        pictures.pgm('small.pgm', W // 2, H // 2, lambda x, y: 255 if x >= W // 4 else 51)
+        small = ('photo.ppm', '--depth', 'small.pgm', '--blur', '4', '--focus', '0.2')
+        self.succeeds('render', *small, '-o', 'small.ppm')
+        report = self.reports('compare', *small, '--reference', 'small.ppm', '--methods', 'sweep')
+        self.assertEqual(report['methods'][1]['rmse'], 0)
         self.fails(2, "--methods: 'swep' is no method; did you mean 'sweep'?", 'compare', *common,
                    '--reference', 'gt.ppm', '--methods', 'blur,swep')
         report = self.reports(

@@ -28,10 +28,11 @@ static void prepare_scene(void)
 {
     const struct refocus_image photo = misuse_photo();
     const struct refocus_disparity map = misuse_map();
-    const struct misuse bad[] = {BAD(refocus_scene, struct_size, 0),
-                                 BAD(refocus_scene, struct_size, UINT32_MAX),
-                                 BAD(refocus_scene, reserved, 1)};
+    const struct misuse bad[] = {
+        BAD(refocus_scene, struct_size, 0), BAD(refocus_scene, struct_size, UINT32_MAX),
+        BAD(refocus_scene, depth_edges, 1), BAD(refocus_scene, depth_edges, UINT32_MAX)};
     const struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
+    struct refocus_depth_edges_report report = refocus_depth_edges_report_default();
     const struct refocus_scene good = RETURNS(refocus_scene_default, &photo, &map);
 
     REFUSED(refocus_prepare_scene, NULL, &good);
@@ -45,6 +46,13 @@ static void prepare_scene(void)
     }
     misuse_spoil(NULL, NULL);
     REFUSED(refocus_prepare_scene, renderer, NULL);
+    ANSWERS(REFOCUS_ERR_STATE, refocus_get_depth_edges, renderer, &report);
+    ANSWERS(REFOCUS_OK, refocus_prepare_scene, renderer, &good);
+    ANSWERS(REFOCUS_OK, refocus_get_depth_edges, renderer, &report);
+    REFUSED(refocus_get_depth_edges, renderer, NULL);
+    REFUSED(refocus_get_depth_edges, NULL, &report);
+    report.struct_size = 0;
+    REFUSED(refocus_get_depth_edges, renderer, &report);
 }
 
 static void render_out(const struct refocus_image *out)
@@ -112,6 +120,8 @@ static void creating(void)
                                  BAD(refocus_renderer_params, threads, INT32_MIN),
                                  BAD(refocus_renderer_params, threads, INT32_MAX),
                                  BAD(refocus_renderer_params, cpu, UINT32_MAX),
+                                 BAD(refocus_renderer_params, depth_edges, 2),
+                                 BAD(refocus_renderer_params, reserved2, 1),
                                  BAD(refocus_renderer_params, methods, UINT32_MAX)};
     const struct refocus_renderer_params good = RETURNS(refocus_renderer_params_default, W, H, 5);
     struct refocus_renderer_params most = refocus_renderer_params_default(

@@ -246,16 +246,17 @@ static int compare(struct engine *engine, struct input *input, struct comparison
                    const struct settings *settings, const struct variants *variants)
 {
     const struct refocus_image *photo = input->photo->image;
-    const struct refocus_depth_map *map = input->depth_from->depth;
-    const struct refocus_disparity disparity =
-        refocus_disparity16(input->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
-    const struct refocus_scene scene = refocus_scene_default(photo, &disparity);
+    const struct refocus_disparity disparity = refocus_disparity16(
+        input->disparity, input->width, input->height, (ptrdiff_t)input->width * 2);
+    struct refocus_scene scene = refocus_scene_default(photo, &disparity);
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
     uint16_t *prepared = malloc(pixels * 2);
     uint8_t *mask = malloc(pixels);
     double blur = 0, focus = 0;
     int status, border = 0;
 
+    engine->places_edges = input_has_edges_placed(input, &settings->depth);
+    scene.depth_edges = engine->places_edges;
     status = prepared && mask ? input_blur(input, &settings->lens, &blur)
                               : report_failure(EXIT_FAILED, "compare", "not enough memory");
     if (status == EXIT_DONE)

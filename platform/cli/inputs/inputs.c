@@ -123,7 +123,7 @@ static int enlarge(struct input *input, const struct depth_settings *settings)
 }
 
 /* An explicit filter says how edges are to be. */
-static bool worth_placing(const struct input *input, const struct depth_settings *settings)
+bool input_has_edges_placed(const struct input *input, const struct depth_settings *settings)
 {
     return settings->edges == EDGES_AUTO && settings->upsample == 0 && input->photo &&
            input->photo->image->plane[0];
@@ -134,35 +134,37 @@ static bool worth_enlarging(const struct input *input, const struct depth_settin
     return input->photo && input->photo->image->plane[0] &&
            (input->photo->image->width != input->width ||
             input->photo->image->height != input->height) &&
-           ((settings->full && !worth_placing(input, settings)) ||
+           ((settings->full && !input_has_edges_placed(input, settings)) ||
             input->report.unknown + input->report.specks > 0);
 }
 
-/* Put the edges of the disparities on the photo's; input->given keeps them as they were. */
+/* Put the edges of the disparities on the photo's. */
 static int place(struct input *input)
 {
     const struct refocus_disparity map = refocus_disparity16(
         input->disparity, input->width, input->height, (ptrdiff_t)input->width * 2);
     uint16_t *placed = NULL;
-    int status = edges_place(input->photo->image, &map, &placed, &input->edges, input->depth_name);
+    const int status =
+        edges_place(input->photo->image, &map, &placed, &input->edges, input->depth_name);
 
     if (status != EXIT_DONE)
         return status;
-    input->given.disparity = input->disparity;
-    input->given.width = input->width;
-    input->given.height = input->height;
+    free(input->disparity);
     input->disparity = placed;
     input->width = input->photo->image->width;
     input->height = input->photo->image->height;
     return EXIT_DONE;
 }
 
-/* Filled samples count least when the map is enlarged, which the edges are then looked for in. */
+/* Filled samples count least when the map is enlarged, which the edges are then looked for in:
+ * here where disparities of the photo's size are asked for, else by the renderer. */
 static int fit(struct input *input, const struct depth_settings *settings)
 {
     const int status = worth_enlarging(input, settings) ? enlarge(input, settings) : EXIT_DONE;
 
-    return status == EXIT_DONE && worth_placing(input, settings) ? place(input) : status;
+    return status == EXIT_DONE && settings->full && input_has_edges_placed(input, settings)
+               ? place(input)
+               : status;
 }
 
 int input_convert(struct input *input, const struct depth_settings *settings)
@@ -313,7 +315,6 @@ int input_read_depth(struct input *input, const char *file, const struct depth_s
 void input_free(struct input *input)
 {
     free(input->disparity);
-    free(input->given.disparity);
     free(input->confidence);
     free(input->made_samples);
     refocus_photo_free(&input->side);

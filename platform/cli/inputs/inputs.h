@@ -88,11 +88,7 @@ struct input {
     uint8_t *confidence; /* one for each sample of the map: 0 = filled */
     int width, height;   /* size of the disparities: the map's, or the photo's */
     struct refocus_depth_report report;
-    struct refocus_depth_edges_report edges; /* struct_size 0: as given */
-    struct {
-        uint16_t *disparity; /* packed; NULL: as given */
-        int width, height;
-    } given; /* the disparities before their edges were placed */
+    struct refocus_depth_edges_report edges; /* by depth --full; struct_size 0: as given */
 };
 
 /* These return exit codes and print why it is not EXIT_DONE. */
@@ -110,6 +106,10 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
 
 /* Read a depth file, or the depth of a photo; input->photo is NULL afterwards. */
 int input_read_depth(struct input *input, const char *file, const struct depth_settings *settings);
+/* Whether edges of the disparities go to the photo's: where there is a photo, unless the settings
+ * say otherwise. */
+bool input_has_edges_placed(const struct input *input, const struct depth_settings *settings);
+
 /* Make the disparities from input->depth_from: repaired and enlarged as the settings say. */
 int input_convert(struct input *input, const struct depth_settings *settings);
 void input_free(struct input *input);

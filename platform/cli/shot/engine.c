@@ -117,6 +117,7 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
     params.papers = refocus_papers();
     params.methods = engine->methods;
     params.thin = engine->params.thin.enabled;
+    params.depth_edges = engine->places_edges;
     engine->params.render.max_blur_radius = (float)blur;
     status = refocus_renderer_create(&engine->renderer, &params);
     engine->create_ms = report_clock_ms() - start;
@@ -144,6 +145,10 @@ int engine_prepare(struct engine *engine, const struct refocus_scene *scene)
         interrupt_came() ? REFOCUS_ERR_CANCELLED : refocus_prepare_scene(engine->renderer, scene);
 
     engine->prepare_ms = report_clock_ms() - start;
+    if (status == REFOCUS_OK && scene->depth_edges) {
+        engine->edges = refocus_depth_edges_report_default();
+        refocus_get_depth_edges(engine->renderer, &engine->edges);
+    }
     if (status == REFOCUS_ERR_CANCELLED)
         return interrupted(engine);
     if (status != REFOCUS_OK)

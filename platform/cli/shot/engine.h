@@ -159,6 +159,9 @@ struct engine {
     bool has_sides;         /* the aperture's light differs before and behind the focus */
     double field_disparity; /* NAN: that in focus */
     uint32_t methods;       /* methods that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
+    bool places_edges; /* the renderer can put edges of a map on the photo's; before engine_create()
+                        */
+    struct refocus_depth_edges_report edges; /* by the last scene; struct_size 0: as given */
     struct refocus_settings params;
     double create_ms, prepare_ms;
     struct spread render_ms, cpu_ms; /* cpu_ms: of all threads, of a render */

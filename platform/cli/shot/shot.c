@@ -93,11 +93,13 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     image = shot->input.photo->image;
     disparity = refocus_disparity16(shot->input.disparity, shot->input.width, shot->input.height,
                                     (ptrdiff_t)shot->input.width * 2);
+    scene = refocus_scene_default(image, &disparity);
+    shot->engine.places_edges = input_has_edges_placed(&shot->input, &settings->depth);
+    scene.depth_edges = shot->engine.places_edges;
     report_progress("preparing", 0.15);
     status = engine_create(&shot->engine, &settings->engine, image->width, image->height,
                            fmax(blur, most_blur));
     shot->engine.params.render.max_blur_radius = (float)blur;
-    scene = refocus_scene_default(image, &disparity);
     if (status == EXIT_DONE)
         status = engine_prepare(&shot->engine, &scene);
     return status == EXIT_DONE ? choose_focus(shot, &settings->lens) : status;

@@ -60,11 +60,10 @@ static void draw_edges(const struct shot *shot, const uint16_t *disparity,
                        const struct refocus_image *out)
 {
     const struct input *input = &shot->input;
-    const struct refocus_disparity given =
-        refocus_disparity16(input->given.disparity, input->given.width, input->given.height,
-                            2 * (ptrdiff_t)input->given.width);
+    const struct refocus_disparity given = refocus_disparity16(
+        input->disparity, input->width, input->height, 2 * (ptrdiff_t)input->width);
 
-    moved_draw(input->photo->image, disparity, input->given.disparity ? &given : NULL, out);
+    moved_draw(input->photo->image, disparity, shot->engine.places_edges ? &given : NULL, out);
 }
 
 static int make_view(const struct shot *shot, struct refocus_image *out, int view)

@@ -223,7 +223,7 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     static uint16_t disparity[MAX_SIDE * MAX_SIDE], view[MAX_SIDE * MAX_SIDE];
     const int width = take_in(in, 0, 1, MAX_SIDE), height = take_in(in, 0, 1, MAX_SIDE);
     const uint32_t kind = take(in, 1), out_format = 1 + take(in, 1) % 8;
-    const uint32_t format = 1 + kind % 8; /* bits 3 and 4: matrix and range */
+    const uint32_t format = 1 + kind % 8; /* bits 3 and 4: matrix and range; 5: edges */
     const int bits = take(in, 1) & 1 ? 16 : 8;
     const int dw = take_in(in, 0, 1, MAX_SIDE), dh = take_in(in, 0, 1, MAX_SIDE);
     const int same = (int)take(in, 1) & 1;
@@ -231,6 +231,7 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     const struct refocus_disparity map = {
         sizeof map,         (uint32_t)bits, same ? width : dw,
         same ? height : dh, disparity,      (ptrdiff_t)(same ? width : dw) * bits / 8};
+    struct refocus_scene scene = refocus_scene_default(&image, &map);
     struct refocus_settings lens = take_lens(in, wild, most);
     struct refocus_aperture *aperture = take_aperture(in, wild);
     int status;
@@ -248,7 +249,8 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
         lens.field.shape = REFOCUS_FIELD_LENS;
     take_pixels(in, photo, sizeof photo);
     take_pixels(in, (uint8_t *)disparity, sizeof disparity);
-    status = refocus_prepare(renderer, &image, &map);
+    scene.depth_edges = kind >> 5 & 1;
+    status = refocus_prepare_scene(renderer, &scene);
     check(status == REFOCUS_OK || status == REFOCUS_ERR_SIZE);
     lens.render.aperture = aperture;
     status = render(renderer, &lens, width, height, out_format, out[0], CAPACITY);
@@ -275,6 +277,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     limits.threads = take_in(&in, wild_limits, 1, 3);
     limits.papers = refocus_papers();
+    limits.depth_edges = 1;
     limits.methods = wild_limits ? take(&in, 4) : REFOCUS_METHODS_ALL;
     limits.max_memory = 64 << 20;
     status = refocus_renderer_create(&renderer, &limits);

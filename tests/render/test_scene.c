@@ -1,0 +1,178 @@
+/* test_scene.c: what refocus_prepare_scene() makes of a scene beyond a photo and its map. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+#include <refocus/refocus.h>
+
+enum { WIDTH = 150, HEIGHT = 110, BLUR = 9 };
+
+/* A disc before a wall, and a map of it that is soft and lies `off` pixels beside it. */
+struct drawing {
+    uint8_t pixels[4 * WIDTH * HEIGHT];
+    uint16_t map[WIDTH * HEIGHT];
+    struct refocus_image photo;
+    struct refocus_disparity disparity;
+};
+
+static struct drawing drawing;
+
+static void draw(uint32_t format, int columns, int rows, int off, int softness)
+{
+    struct drawing *d = &drawing;
+
+    d->photo = refocus_image_planar(format, d->pixels, WIDTH, HEIGHT);
+    d->disparity = refocus_disparity16(d->map, columns, rows, 2 * (ptrdiff_t)columns);
+    for (int plane = 0; plane < refocus_format_planes(format); plane++) {
+        const ptrdiff_t bytes = d->photo.stride[plane];
+        const int rows_of = refocus_plane_rows(format, plane, HEIGHT);
+
+        for (int i = 0; i < bytes * rows_of; i++) {
+            const int x = (int)(i % bytes * WIDTH / bytes) - 75,
+                      y = (int)(i / bytes) * HEIGHT / rows_of - 55;
+            const int inside = x * x + y * y < 1200;
+
+            d->photo.plane[plane][i] = (uint8_t)((plane ? 100 : inside ? 180 : 60) + i * 31 % 17);
+        }
+    }
+    for (int i = 0; i < columns * rows; i++) {
+        const int x = i % columns * WIDTH / columns - 75 - off,
+                  y = i / columns * HEIGHT / rows - 55;
+        const int by = (x * x + y * y - 1200) / 70; /* pixels from the edge, about */
+        const int part = by < -softness ? -softness : by > softness ? softness : by;
+
+        d->map[i] = (uint16_t)(30000 - 20000 * part / softness);
+    }
+}
+
+static struct refocus_renderer *make(uint32_t edges, int threads)
+{
+    struct refocus_renderer_params params = refocus_renderer_params_default(WIDTH, HEIGHT, BLUR);
+    struct refocus_renderer *renderer;
+
+    params.depth_edges = edges;
+    params.threads = threads;
+    assert_int_equal(refocus_renderer_create(&renderer, &params), REFOCUS_OK);
+    return renderer;
+}
+
+static void take_view(struct refocus_renderer *renderer, uint16_t *view)
+{
+    assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, view, 2 * WIDTH),
+                     REFOCUS_OK);
+}
+
+/* The disparities of refocus_depth_edges(), by any renderer, and its report. */
+static void same_as_alone(void **state)
+{
+    static const uint32_t formats[] = {REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_BGRA8,
+                                       REFOCUS_FORMAT_NV12, REFOCUS_FORMAT_I420,
+                                       REFOCUS_FORMAT_YUYV};
+    static const int sizes[][2] = {{WIDTH, HEIGHT}, {WIDTH / 2, HEIGHT / 2}, {40, 30}};
+    static uint16_t alone[WIDTH * HEIGHT], view[WIDTH * HEIGHT], plain[WIDTH * HEIGHT];
+    const struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
+
+    (void)state;
+    for (size_t f = 0; f < sizeof formats / sizeof *formats; f++)
+        for (size_t s = 0; s < 3; s++)
+            for (int soft = 1; soft <= 5; soft += 4) {
+                struct refocus_depth_edges_report expected = refocus_depth_edges_report_default();
+                struct refocus_depth_edges_report got = refocus_depth_edges_report_default();
+                struct refocus_renderer *renderer = make(1, 1 + (int)s);
+                struct refocus_scene scene =
+                    refocus_scene_default(&drawing.photo, &drawing.disparity);
+
+                draw(formats[f], sizes[s][0], sizes[s][1], soft == 5 ? 3 : 0, soft);
+                assert_int_equal(refocus_depth_edges(&drawing.photo, &drawing.disparity, &params,
+                                                     alone, 2 * WIDTH, &expected),
+                                 REFOCUS_OK);
+                scene.depth_edges = REFOCUS_DEPTH_EDGES_AUTO;
+                assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_OK);
+                take_view(renderer, view);
+                assert_memory_equal(view, alone, sizeof view);
+                assert_int_equal(refocus_get_depth_edges(renderer, &got), REFOCUS_OK);
+                assert_memory_equal(&got, &expected, sizeof got);
+                scene.depth_edges = REFOCUS_DEPTH_EDGES_AS_GIVEN;
+                assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_OK);
+                take_view(renderer, view);
+                assert_int_equal(refocus_prepare(renderer, &drawing.photo, &drawing.disparity),
+                                 REFOCUS_OK);
+                take_view(renderer, plain);
+                assert_memory_equal(view, plain, sizeof view);
+                assert_int_equal(refocus_get_depth_edges(renderer, &got), REFOCUS_OK);
+                assert_true(got.parted == 0 && got.changed == 0 && got.softness == 0);
+                assert_true(soft == 1 || memcmp(view, alone, sizeof view) != 0);
+                refocus_renderer_destroy(&renderer);
+            }
+}
+
+/* A renderer is made for it, and strip mode never is. */
+static void memory_for_edges(void **state)
+{
+    static const int sides[][2] = {{1, 1},   {1, 65535}, {65535, 1},
+                                   {17, 33}, {720, 540}, {4000, 3000}};
+    static const float blurs[] = {0, 20, 127};
+    struct refocus_renderer *renderer = make(0, 1);
+    struct refocus_scene scene = refocus_scene_default(&drawing.photo, &drawing.disparity);
+
+    (void)state;
+    draw(REFOCUS_FORMAT_RGB8, WIDTH, HEIGHT, 0, 1);
+    scene.depth_edges = REFOCUS_DEPTH_EDGES_AUTO;
+    assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_ERR_ARGUMENT);
+    refocus_renderer_destroy(&renderer);
+    for (int i = 0; i < 6 * 3; i++) {
+        const double w = sides[i / 3][0], h = sides[i / 3][1];
+        struct refocus_renderer_params params =
+            refocus_renderer_params_default(sides[i / 3][0], sides[i / 3][1], blurs[i % 3]);
+        const double without = (double)refocus_renderer_memory(&params);
+        const double most = 16 * (w + 128) * (h + 64) + 64 * (w + h) + 262144;
+
+        params.depth_edges = 1;
+        const double with = (double)refocus_renderer_memory(&params);
+        if (with < without || with - without > most)
+            fail_msg("%.0f x %.0f: %.0f bytes more, header %.0f", w, h, with - without, most);
+        params.in_place = 1;
+        const uint64_t strips = refocus_renderer_memory(&params);
+        params.depth_edges = 0;
+        assert_true(refocus_renderer_memory(&params) == strips);
+    }
+}
+
+/* Pictures of all sizes through one renderer: nothing stays of the one before. */
+static void one_after_the_other(void **state)
+{
+    static uint8_t first[3 * WIDTH * HEIGHT], again[3 * WIDTH * HEIGHT];
+    const struct refocus_image out =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, first, WIDTH, HEIGHT, 3 * WIDTH);
+    const struct refocus_render_params lens = refocus_render_params_default(0.3f, BLUR);
+    struct refocus_renderer *renderer = make(1, 2);
+    struct refocus_scene scene = refocus_scene_default(&drawing.photo, &drawing.disparity);
+
+    (void)state;
+    for (int turn = 0; turn < 2; turn++) {
+        draw(REFOCUS_FORMAT_RGB8, 60, 44, 2, 4);
+        scene.depth_edges = REFOCUS_DEPTH_EDGES_AUTO;
+        assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_OK);
+        assert_int_equal(refocus_render(renderer, &lens, &out), REFOCUS_OK);
+        if (turn)
+            assert_memory_equal(first, again, sizeof first);
+        memcpy(again, first, sizeof first);
+        draw(REFOCUS_FORMAT_RGB8, WIDTH, HEIGHT, 0, 1);
+        scene.depth_edges = REFOCUS_DEPTH_EDGES_AS_GIVEN;
+        assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_OK);
+        assert_int_equal(refocus_render(renderer, &lens, &out), REFOCUS_OK);
+    }
+    refocus_renderer_destroy(&renderer);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_as_alone),
+                                       cmocka_unit_test(memory_for_edges),
+                                       cmocka_unit_test(one_after_the_other)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
