@@ -115,6 +115,32 @@ class Live(unittest.TestCase):
         self.fails(2, 'NV99', '--camera', 'replay::size 64x48', '--depth', DEPTH, '--out', 'raw:x,NV99')
         self.assertFalse(os.path.exists('x'))
 
+    def test_edges_of_the_depth(self):
+        # A wall, before it on the right another one, whose edge the depth has as a ramp.
+        with open('photo.raw', 'wb') as photo:
+            photo.write(bytes((200 if x < 48 else 60) + (x * 37 + y * 91) % 23 for y in range(48)
+                              for x in range(96) for _ in range(3)) * 2)
+        for name, off in ('ramp.raw', lambda x: min(max(x - 42, 0), 12)), ('step.raw',
+                                                                          lambda x: 12 * (x > 47)):
+            with open(name, 'wb') as depth:
+                depth.write(b''.join(struct.pack('<H', 3000 - 150 * off(x)) for _ in range(48)
+                                     for x in range(96)) * 2)
+
+        def run(depth, *more, form='RGB24', out='raw:out.rgb'):
+            r = self.report('--camera', 'raw:photo.raw,%s,96x48,30' % form, '--depth',
+                            'raw:%s,Z16,96x48,30' % depth, '--near', '1', '--far', '4', '--blur',
+                            '7', '--focus', '0', '--out', out, *more)
+            self.assertGreaterEqual(r['frames_out'], 2)
+            return content('out.rgb')
+        soft, exact = run('ramp.raw'), run('step.raw')
+        self.assertEqual(run('step.raw', '--depth-edges', 'auto'), exact)
+        self.assertEqual(run('ramp.raw', '--depth-edges', 'as-given'), soft)
+        placed = run('ramp.raw', '--depth-edges', 'auto')
+        off = [sum(abs(a - b) for a, b in zip(picture, exact)) for picture in (soft, placed)]
+        self.assertLess(off[1], off[0] / 4)
+        yuv = [run('ramp.raw', '--depth-edges', how, form='YUYV') for how in ('as-given', 'auto')]
+        self.assertNotEqual(yuv[0], yuv[1])
+
     def test_steady_depth(self):
         outs = []
         for more in [], ['--steady', '0'], ['--steady', '0.9']:

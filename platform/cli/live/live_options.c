@@ -47,6 +47,14 @@ const struct option live_options[] = {
      .greatest = 0.95,
      .help = "calm the flicker of depth: share of the past where nothing moves, 0 (default) "
              "to 0.95"},
+    {.kind = OPTION_CHOICE,
+     .name = "--depth-edges",
+     .argument = "HOW",
+     .offset = offsetof(struct live_settings, depth.edges),
+     .choice = edges_name,
+     .summary = edges_summary,
+     .help =
+         "the edges of the depth, each frame for itself; default as-given, which takes no time"},
     {.kind = OPTION_TEXT,
      .name = "--calibration",
      .argument = "FILE",
@@ -196,15 +204,16 @@ const struct option live_options[] = {
     {.help = NULL},
 };
 
-const struct live_settings live_settings_none = {.depth = DEPTH_SETTINGS_NONE,
-                                                 .lens = LENS_SETTINGS_NONE,
-                                                 .engine = ENGINE_SETTINGS_NONE(1),
-                                                 .size = {NAN, NAN},
-                                                 .fps = NAN,
-                                                 .blur_most = NAN,
-                                                 .patience = 10,
-                                                 .policy = POLICY_DEFAULT,
-                                                 .out = "null"};
+const struct live_settings live_settings_none = {
+    .depth = {.near_m = NAN, .far_m = NAN, .edges = EDGES_AS_GIVEN},
+    .lens = LENS_SETTINGS_NONE,
+    .engine = ENGINE_SETTINGS_NONE(1),
+    .size = {NAN, NAN},
+    .fps = NAN,
+    .blur_most = NAN,
+    .patience = 10,
+    .policy = POLICY_DEFAULT,
+    .out = "null"};
 
 static bool is_of_kind(const char *name, const char *kind)
 {

@@ -19,6 +19,7 @@ static bool fit_renderer(struct live *live, int width, int height)
     params.cpu = (uint32_t)live->settings->engine.cpu;
     params.papers = refocus_papers();
     params.methods = live->engine->methods;
+    params.depth_edges = live->settings->depth.edges == EDGES_AUTO;
     status = refocus_renderer_create(&live->engine->renderer, &params);
     live->create_ms = (double)(live_now_ns() - begin) / 1e6;
     if (status != REFOCUS_OK) {
@@ -72,6 +73,7 @@ static int refocus(struct live *live, const struct live_picture *picture,
 {
     struct refocus_settings params = live->engine->params;
     struct refocus_disparity disparity;
+    struct refocus_scene scene;
     int64_t begin = live_now_ns();
     int status;
 
@@ -83,7 +85,10 @@ static int refocus(struct live *live, const struct live_picture *picture,
         return status;
     disparity =
         refocus_disparity16(map->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
-    status = refocus_prepare(live->engine->renderer, &picture->image, &disparity);
+    scene = refocus_scene_default(&picture->image, &disparity);
+    if (live->settings->depth.edges == EDGES_AUTO)
+        scene.depth_edges = REFOCUS_DEPTH_EDGES_AUTO;
+    status = refocus_prepare_scene(live->engine->renderer, &scene);
     if (status != REFOCUS_OK)
         return status;
     live_times_add(&live->prepare.times, (double)(live_now_ns() - begin) / 1e6);
