@@ -31,8 +31,11 @@ enum {
     LARGE_BLOCK = 16,
     SMALL_BLOCK = 8,
     SMALL_REACH = 3,
-    MOST_LOOKED_AT = 1 << 15, /* edges; of more every second, third ... */
+    MOST_WINDOW = (2 * REACH + 1) * 12, /* shifts of a large block, and some that are not used */
+    SMALL_WINDOW = (2 * SMALL_REACH + 1) * 8, /* a small block has these */
+    MOST_LOOKED_AT = 1 << 13,                 /* edges; of more every second, third ... */
 };
+_Static_assert(4 * SMALL_WINDOW >= MOST_WINDOW, "memory for small blocks is enough for large ones");
 static const double ON_PHOTO = 0.75;  /* share of edges: the map needs nothing */
 static const double FITS = 1.4;       /* support in place: blocks are unsure, not wrong */
 static const double UNRELATED = 1.06; /* less support in place: it is the photo of something else */
@@ -47,9 +50,11 @@ struct shift {
 struct blocks {
     struct rf_edges *e;
     int side, across, down;
+    int reach, columns; /* a window of shifts has 2 reach + 1 rows of columns */
     int shifts, every;
     struct shift shift[SHIFTS];
-    int32_t *support;      /* for each shift and block */
+    double length[SHIFTS];
+    int32_t *support;      /* for each block, its window of shifts */
     int32_t *count;        /* number of edges, in 1/256 */
     double *right, *below; /* where the edges of a block fit best, pixels */
     double *weight;
@@ -72,28 +77,68 @@ static double length(struct shift shift)
     return sqrt(shift.x * shift.x + shift.y * shift.y);
 }
 
-/* Weights 1 4 6 4 1 along n values that lie `step` apart: 16 times a mean. */
-static void smooth_line(int32_t *at, int n, ptrdiff_t step)
+/* The number of values in a window of shifts, and where one lies in it. */
+static int window_size(const struct blocks *b)
 {
-    int32_t before[2] = {0, 0};
+    return (2 * b->reach + 1) * b->columns;
+}
+
+static int place_of(const struct blocks *b, int shift)
+{
+    return (b->shift[shift].y + b->reach) * b->columns + b->shift[shift].x + b->reach;
+}
+
+/* Weights 1 4 6 4 1 along n windows of `size` values that lie `step` apart: 16 times a mean. */
+static void smooth_line(int32_t *at, int size, int n, ptrdiff_t step)
+{
+    int32_t last[2][MOST_WINDOW] = {{0}};
+    static const int32_t none[MOST_WINDOW];
 
     for (int k = 0; k < n; k++) {
-        const int32_t own = at[k * step], next = k + 1 < n ? at[(k + 1) * step] : 0;
-        const int32_t last = k + 2 < n ? at[(k + 2) * step] : 0;
+        int32_t *restrict own = at + k * step;
+        const int32_t *restrict next = k + 1 < n ? own + step : none;
+        const int32_t *restrict after = k + 2 < n ? own + 2 * step : none;
 
-        at[k * step] = before[0] + 4 * before[1] + 6 * own + 4 * next + last;
-        before[0] = before[1];
-        before[1] = own;
+        for (int i = 0; i < size; i++) {
+            const int32_t was = own[i];
+
+            own[i] = last[0][i] + 4 * last[1][i] + 6 * was + 4 * next[i] + after[i];
+            last[0][i] = last[1][i];
+            last[1][i] = was;
+        }
     }
 }
 
-/* Sums over neighbouring blocks, 256 times a mean. */
-static void smooth_blocks(const struct blocks *b, int32_t *sum)
+struct smoothing {
+    const struct blocks *b;
+    int32_t *sum;
+    int size; /* values of a block */
+};
+
+static void smooth_across(void *context, int row, int worker)
 {
-    for (int y = 0; y < b->down; y++)
-        smooth_line(sum + (ptrdiff_t)y * b->across, b->across, 1);
-    for (int x = 0; x < b->across; x++)
-        smooth_line(sum + x, b->down, b->across);
+    const struct smoothing *s = context;
+
+    (void)worker;
+    smooth_line(s->sum + (ptrdiff_t)row * s->b->across * s->size, s->size, s->b->across, s->size);
+}
+
+static void smooth_down(void *context, int column, int worker)
+{
+    const struct smoothing *s = context;
+
+    (void)worker;
+    smooth_line(s->sum + (ptrdiff_t)column * s->size, s->size, s->b->down,
+                (ptrdiff_t)s->b->across * s->size);
+}
+
+/* Sums over neighbouring blocks, 256 times a mean. */
+static void smooth_blocks(const struct blocks *b, int32_t *sum, int size)
+{
+    struct smoothing smoothing = {b, sum, size};
+
+    rf_pool_run(b->e->pool, smooth_across, &smoothing, b->down);
+    rf_pool_run(b->e->pool, smooth_down, &smoothing, b->across);
 }
 
 static ptrdiff_t block_of(const struct blocks *b, const struct rf_map_edge *edge)
@@ -101,42 +146,90 @@ static ptrdiff_t block_of(const struct blocks *b, const struct rf_map_edge *edge
     return (ptrdiff_t)(edge->y / b->side) * b->across + edge->x / b->side;
 }
 
-static void add_support(void *context, int shift, int worker)
+/* The first edge in row y or below, a multiple of `every`. */
+static int first_edge(const struct blocks *b, int y)
 {
-    struct blocks *b = context;
+    int low = 0, high = (b->e->edges + b->every - 1) / b->every;
+
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+
+        if (b->e->edge[middle * b->every].y < y)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low * b->every;
+}
+
+static void add_support(void *context, int row, int worker)
+{
+    const struct blocks *b = context;
     const struct rf_edges *e = b->e;
-    const ptrdiff_t n = (ptrdiff_t)b->across * b->down;
-    int32_t *support = b->support + shift * n;
-    int64_t total = 0;
+    const int size = window_size(b), end = first_edge(b, (row + 1) * b->side);
+    const ptrdiff_t first = (ptrdiff_t)row * b->across;
 
     (void)worker;
-    memset(support, 0, (size_t)n * sizeof *support);
-    for (int i = 0; i < e->edges; i += b->every) {
+    memset(b->support + first * size, 0, (size_t)b->across * (size_t)size * sizeof *b->support);
+    memset(b->count + first, 0, (size_t)b->across * sizeof *b->count);
+    for (int i = first_edge(b, row * b->side); i < end; i += b->every) {
         const struct rf_map_edge *edge = &e->edge[i];
-        const int photo =
-            rf_photo_edge_at(e, edge, edge->x + b->shift[shift].x, edge->y + b->shift[shift].y);
+        const ptrdiff_t at = (edge->y - b->reach) * e->stride + edge->x - b->reach;
+        const struct rf_edge_window window = {.gradient_x = e->gradient.x + at,
+                                              .gradient_y = e->gradient.y + at,
+                                              .stride = e->stride,
+                                              .rows = 2 * b->reach + 1,
+                                              .columns = b->columns,
+                                              .normal_x = edge->normal_x,
+                                              .normal_y = edge->normal_y};
 
-        support[block_of(b, edge)] += photo;
-        total += photo;
+        e->kernels->edge_support(b->support + block_of(b, edge) * size, &window);
+        b->count[block_of(b, edge)]++;
     }
-    b->total[shift] = total;
-    smooth_blocks(b, support);
 }
 
-static int ascending(const void *a, const void *b)
+static void sum_support(struct blocks *b)
 {
-    const int64_t one = *(const int64_t *)a, other = *(const int64_t *)b;
+    const int size = window_size(b);
 
-    return (one > other) - (one < other);
+    for (int i = 0; i < b->shifts; i++) {
+        const int32_t *support = b->support + place_of(b, i);
+
+        b->total[i] = 0;
+        for (ptrdiff_t k = 0; k < (ptrdiff_t)b->across * b->down; k++)
+            b->total[i] += support[k * size];
+    }
 }
 
+/* The one in the middle, by parting around one of those that are left (Hoare's quickselect). */
 static int64_t median(const int64_t *value, int n)
 {
-    int64_t sorted[SHIFTS + GROWTHS];
+    int64_t left[SHIFTS + GROWTHS];
+    int low = 0, high = n - 1;
 
-    memcpy(sorted, value, (size_t)n * sizeof *sorted);
-    qsort(sorted, (size_t)n, sizeof *sorted, ascending);
-    return sorted[n / 2];
+    memcpy(left, value, (size_t)n * sizeof *left);
+    while (low < high) {
+        const int64_t pivot = left[n / 2];
+        int i = low, j = high;
+
+        while (i <= j) {
+            while (left[i] < pivot)
+                i++;
+            while (left[j] > pivot)
+                j--;
+            if (i <= j) {
+                const int64_t swap = left[i];
+
+                left[i++] = left[j];
+                left[j--] = swap;
+            }
+        }
+        if (j < n / 2)
+            low = i;
+        if (i > n / 2)
+            high = j;
+    }
+    return left[n / 2];
 }
 
 /* The shift that one block wants. */
@@ -148,19 +241,19 @@ struct wish {
 
 static struct wish ask_block(const struct blocks *b, ptrdiff_t block)
 {
-    const ptrdiff_t n = (ptrdiff_t)b->across * b->down;
+    const int32_t *window = b->support + block * window_size(b);
     /* The median of no edge would be 0: half an edge with a gradient of a code is added. */
     const double count = b->count[block] + 128;
     struct wish wish = {{0, 0}, 0, 0};
-    int64_t support[SHIFTS];
+    int64_t support[SHIFTS] = {0};
     double middle, zero = 0, most = -1e9;
 
     for (int i = 0; i < b->shifts; i++)
-        support[i] = b->support[i * n + block];
+        support[i] = window[place_of(b, i)];
     middle = (double)median(support, b->shifts) / count + 16;
     for (int i = 0; i < b->shifts; i++) {
         const double times = (double)support[i] / count / middle;
-        const double worth = times - 0.02 * length(b->shift[i]);
+        const double worth = times - 0.02 * b->length[i];
 
         if (worth > most) {
             most = worth;
@@ -206,12 +299,11 @@ static double ask_blocks(struct blocks *b, double margin)
     const ptrdiff_t n = (ptrdiff_t)b->across * b->down;
     double content = 0, all = 0;
 
-    memset(b->count, 0, (size_t)n * sizeof *b->count);
     b->every = b->e->edges / MOST_LOOKED_AT + 1;
-    for (int i = 0; i < b->e->edges; i += b->every)
-        b->count[block_of(b, &b->e->edge[i])]++;
-    smooth_blocks(b, b->count);
-    rf_pool_run(b->e->pool, add_support, b, b->shifts);
+    rf_pool_run(b->e->pool, add_support, b, b->down);
+    sum_support(b);
+    smooth_blocks(b, b->count, 1);
+    smooth_blocks(b, b->support, window_size(b));
     for (ptrdiff_t i = 0; i < n; i++) {
         const double count = b->count[i] / 256.0;
         struct wish wish;
@@ -314,7 +406,7 @@ static struct whole ask_whole(const struct blocks *b)
             (along ? peak((double)growth[k - 1], (double)growth[k], (double)growth[k + 1]) : 0);
     }
     for (int i = 0; i < b->shifts; i++) {
-        const double worth = (double)b->total[i] / middle - 0.03 * length(b->shift[i]);
+        const double worth = (double)b->total[i] / middle - 0.03 * b->length[i];
 
         if (b->shift[i].x == 0 && b->shift[i].y == 0)
             whole.zero = worth;
@@ -407,19 +499,12 @@ static void move_band(void *context, int band, int worker)
         }
 }
 
-static void take_over(struct rf_edges *e, uint16_t *to, const uint16_t *from)
-{
-    for (int y = 0; y < e->height; y++)
-        memcpy(to + y * e->stride, from + y * e->stride, (size_t)e->width * sizeof *to);
-}
-
 static void regrow(struct rf_edges *e, int grown)
 {
     struct change change = {.e = e, .grown = grown};
 
-    rf_find_rough_blocks(e, e->map);
     rf_pool_run(e->pool, regrow_band, &change, rf_edge_bands(e));
-    take_over(e, e->map, e->spare);
+    rf_copy_plane(e, e->map, e->spare);
 }
 
 static void move(struct rf_edges *e, const struct blocks *blocks, struct shift shift)
@@ -427,32 +512,45 @@ static void move(struct rf_edges *e, const struct blocks *blocks, struct shift s
     struct change change = {.e = e, .blocks = blocks, .shift = shift};
 
     rf_pool_run(e->pool, move_band, &change, rf_edge_bands(e));
-    take_over(e, e->map, e->spare);
+    rf_copy_plane(e, e->map, e->spare);
+}
+
+/* Ramps of the map as it is now. */
+static void find_ramps(struct rf_edges *e, const struct rf_ramp_limits *limits)
+{
+    if (!limits) {
+        rf_find_rough_blocks(e, e->map);
+        return;
+    }
+    rf_find_steepest(e);
+    rf_find_ramps(e, *limits);
 }
 
 /* Ramps and edges of the map as it is now. */
-static void look_again(struct rf_edges *e, struct rf_ramp_limits limits)
+static void look_again(struct rf_edges *e, const struct rf_ramp_limits *limits)
 {
-    rf_find_ramps(e, limits);
-    rf_find_map_edges(e, e->label);
+    find_ramps(e, limits);
+    rf_find_map_edges(e, limits ? e->label : e->map);
 }
 
 /* Makes near surfaces smaller or larger by the whole number of pixels that fits best. */
-static int undo_growth(struct rf_edges *e, double grown, struct rf_ramp_limits limits)
+static int undo_growth(struct rf_edges *e, double grown, const struct rf_ramp_limits *limits)
 {
     const int sign = grown < 0 ? -1 : 1, least = (int)fabs(grown);
     double support[2];
 
-    take_over(e, e->kept, e->map);
+    rf_copy_plane(e, e->kept, e->map);
     for (int i = 0; i < 2; i++) {
-        take_over(e, e->map, e->kept);
+        rf_copy_plane(e, e->map, e->kept);
+        rf_find_rough_blocks(e, e->map);
         regrow(e, sign * (least + i));
         look_again(e, limits);
         support[i] = support_in_place(e);
     }
     if (support[1] > support[0])
         return sign * (least + 1);
-    take_over(e, e->map, e->kept);
+    rf_copy_plane(e, e->map, e->kept);
+    rf_find_rough_blocks(e, e->map);
     regrow(e, sign * least);
     look_again(e, limits);
     return sign * least;
@@ -465,6 +563,8 @@ static struct blocks blocks_of(struct rf_edges *e, int side, int reach)
         .side = side,
         .across = (e->width + side - 1) / side,
         .down = (e->height + side - 1) / side,
+        .reach = reach,
+        .columns = reach == REACH ? 12 : 8,
         .support = e->blocks.support,
         .count = e->blocks.count,
         .right = e->blocks.right,
@@ -473,17 +573,20 @@ static struct blocks blocks_of(struct rf_edges *e, int side, int reach)
     };
 
     b.shifts = list_shifts(b.shift, reach);
+    for (int i = 0; i < b.shifts; i++)
+        b.length[i] = length(b.shift[i]);
     return b;
 }
 
 /* Moves edges block by block; false, and the map is as it was, if they do not fit clearly better.
  */
-static bool bend(struct rf_edges *e, const struct blocks *large, struct rf_ramp_limits limits)
+static bool bend(struct rf_edges *e, const struct blocks *large,
+                 const struct rf_ramp_limits *limits)
 {
     const double before = support_in_place(e);
     struct blocks small = blocks_of(e, SMALL_BLOCK, SMALL_REACH);
 
-    take_over(e, e->kept, e->map);
+    rf_copy_plane(e, e->kept, e->map);
     move(e, large, (struct shift){0, 0});
     look_again(e, limits);
     ask_blocks(&small, 0.05);
@@ -491,22 +594,23 @@ static bool bend(struct rf_edges *e, const struct blocks *large, struct rf_ramp_
     look_again(e, limits);
     if (support_in_place(e) > CLEARLY * before)
         return true;
-    take_over(e, e->map, e->kept);
-    rf_find_ramps(e, limits);
+    rf_copy_plane(e, e->map, e->kept);
+    find_ramps(e, limits);
     return false;
 }
 
-struct rf_alignment rf_align(struct rf_edges *e, double softness, struct rf_ramp_limits limits)
+struct rf_alignment rf_align(struct rf_edges *e, double softness,
+                             const struct rf_ramp_limits *limits)
 {
     struct rf_alignment found = {.on_photo = 1};
     struct blocks large = blocks_of(e, LARGE_BLOCK, REACH);
     struct whole whole;
     bool is_related;
 
-    rf_find_photo_gradient(e);
-    rf_find_map_edges(e, e->label);
+    rf_find_map_edges(e, limits ? e->label : e->map);
     if (e->edges < FEWEST || rf_run_cancelled(e->pool->run))
         return found;
+    rf_find_photo_gradient(e);
     found.on_photo = ask_blocks(&large, 0.1);
     if (found.on_photo >= ON_PHOTO || rf_run_cancelled(e->pool->run))
         return found;
@@ -534,12 +638,8 @@ void rf_align_lay_out(struct rf_edges *e, struct rf_arena *arena)
     const uint64_t large = (uint64_t)((e->width + LARGE_BLOCK - 1) / LARGE_BLOCK) *
                            (uint64_t)((e->height + LARGE_BLOCK - 1) / LARGE_BLOCK);
     const uint64_t small = 4 * large;
-    struct shift shift[SHIFTS];
-    const uint64_t few = (uint64_t)list_shifts(shift, SMALL_REACH);
 
-    e->blocks.support =
-        rf_arena_take(arena, large * SHIFTS > small * few ? large * SHIFTS : small * few,
-                      sizeof *e->blocks.support);
+    e->blocks.support = rf_arena_take(arena, small * SMALL_WINDOW, sizeof *e->blocks.support);
     e->blocks.count = rf_arena_take(arena, small, sizeof *e->blocks.count);
     e->blocks.right = rf_arena_take(arena, small, sizeof *e->blocks.right);
     e->blocks.below = rf_arena_take(arena, small, sizeof *e->blocks.below);

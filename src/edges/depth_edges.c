@@ -3,6 +3,7 @@
 #include <refocus/depth_edges.h>
 
 #include <stdlib.h>
+#include <string.h>
 
 #include <refocus/render.h>
 
@@ -61,8 +62,10 @@ static void copy_map(const struct refocus_disparity *map, struct rf_disparity_q1
         const uint8_t *in = (const uint8_t *)map->samples + y * map->stride;
         uint16_t *to = out.at + y * out.stride;
 
-        for (int x = 0; x < map->width; x++)
-            to[x] = (uint16_t)(map->bits == 16 ? ((const uint16_t *)in)[x] : in[x] * 257);
+        if (map->bits == 16)
+            memcpy(to, in, (size_t)map->width * sizeof *to);
+        for (int x = 0; x < map->width && map->bits == 8; x++)
+            to[x] = (uint16_t)(in[x] * 257);
     }
 }
 

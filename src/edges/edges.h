@@ -11,13 +11,18 @@
  *     align        where the map as a whole does not lie on the photo, undoes what is common to all
  *                  edges (grown, shrunk, shifted), then what is common to those of a block
  *     vote         of a soft map, gives each pixel of a ramp to the surface that looks like it
- *     settle       of a soft map, gives what lies beside a ramp the disparity of its surface
- * farther in thin         of a soft map, gives thin surfaces back the disparity that the softness
- * took
+ *     settle       of a soft map, gives what lies beside a ramp the disparity that its surface has
+ *                  farther in
+ *     thin         of a soft map, gives thin surfaces back the disparity that the softness took
+ *
+ * Most of a map is smooth: blocks without an edge are passed by as early as can be. Of a sharp map
+ * that lies on the photo no more is made than samples of its ramps, its edges and what the photo
+ * has around them.
  *
  * A map that is sharp and lies on the photo comes out as it went in, to the code. All is integer
- * arithmetic but for sums over blocks, in double precision, of which every operation is rounded
- * alike everywhere: the result is the same bits on all processors, with any number of threads.
+ * arithmetic but for slopes, in single precision, and sums over blocks, in double, of which every
+ * operation is rounded alike everywhere: the result is the same bits on all processors, with any
+ * number of threads.
  */
 #ifndef RF_EDGES_H
 #define RF_EDGES_H
@@ -25,6 +30,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "kernels/kernels.h"
 #include "support/arena.h"
@@ -32,7 +38,6 @@
 
 enum {
     RF_EDGE_BAND = 16,   /* rows of a work item */
-    RF_EDGE_BLOCK = 8,   /* pixels of a side of a block that is looked at or left alone together */
     RF_EDGE_STEP = 1966, /* 0.03: surfaces that are farther apart have an edge between them */
     RF_EDGE_SHIFT = 5,   /* pixels that the edges of a map may be off */
 };
@@ -56,19 +61,16 @@ struct rf_edge_blocks {
     double *right, *below, *weight;
 };
 
-/* Disparities in a block. */
-struct rf_edge_range {
-    uint16_t least, most;
-};
-
 /* Everything that the passes work on: planes of width x height, all of the same stride. The map has
  * a border of one pixel, which repeats its sides. Results that are never needed at once share
  * memory, in this order of their lives:
  *
  *     near, far  samples as they came | ends of ramps | shares and mixtures of thin surfaces
- *     largest    steps of ramps | slope of the map | voters | contrast along rows | cores
- *     spare      smoothed photo or map | what replaces map or label
- *     kept       the map before a change | contrast beside ramps
+ *     largest    steps of ramps | slope of the map | voters | cores
+ *     spare      where ways up ramps have come to | smoothed photo or map | what replaces map or
+ *                label | the greatest values along rows
+ *     label      where ways have come to, too | labels
+ *     kept       the map before a change | contrast beside ramps | what is near thin surfaces
  */
 struct rf_edges {
     const struct rf_kernels *kernels;
@@ -83,11 +85,14 @@ struct rf_edges {
     uint16_t *near, *far; /* the ends of a ramp; both are the pixel's own where there is none */
     uint16_t *label;      /* the end that a pixel of a ramp is closer to; else its own disparity */
     uint16_t *largest;    /* the largest step on a ramp */
+    uint16_t *length;     /* pixels to the farther end of a ramp */
     uint16_t *spare;      /* output of a pass before it replaces its input */
     uint16_t *kept;       /* the map before a change that may be taken back */
     struct rf_photo_gradient gradient;
-    struct rf_edge_range *range; /* one for each block */
+    struct rf_edge_range *range; /* one for each block that is looked at or left alone together */
     uint8_t *rough;              /* one for each block: whether there may be an edge */
+    uint8_t *rough_cell;         /* one for each cell of ramps.c: whether a block of it is */
+    uint8_t *moved[2];           /* whether ways in a cell still go on */
     struct rf_map_edge *edge;
     int edges, most_edges;
     struct rf_edge_blocks blocks;
@@ -103,27 +108,48 @@ static inline int rf_edge_blocks_across(const struct rf_edges *e)
     return (e->width + RF_EDGE_BLOCK - 1) / RF_EDGE_BLOCK;
 }
 
+/* Copies all rows, without their border. */
+static inline void rf_copy_plane(const struct rf_edges *e, uint16_t *to, const uint16_t *from)
+{
+    for (int y = 0; y < e->height; y++)
+        memcpy(to + y * e->stride, from + y * e->stride, (size_t)e->width * sizeof *to);
+}
+
 static inline bool rf_edge_is_rough(const struct rf_edges *e, int x, int y)
 {
     return e->rough[y / RF_EDGE_BLOCK * rf_edge_blocks_across(e) + x / RF_EDGE_BLOCK];
 }
 
+/* The pixels from x on of a row up to where rough blocks end or begin. */
+static inline int rf_edge_run(const struct rf_edges *e, int x, int y, bool *is_rough)
+{
+    const uint8_t *rough = e->rough + (ptrdiff_t)(y / RF_EDGE_BLOCK) * rf_edge_blocks_across(e);
+    int end = x;
+
+    *is_rough = rough[x / RF_EDGE_BLOCK];
+    while (end < e->width && rough[end / RF_EDGE_BLOCK] == *is_rough)
+        end += RF_EDGE_BLOCK;
+    return (end < e->width ? end : e->width) - x;
+}
+
 /* Marks the blocks around which a plane differs by more than RF_EDGE_STEP. */
 void rf_find_rough_blocks(struct rf_edges *e, const uint16_t *plane);
 
-/* How far a ramp is followed, and the least contrast that makes one of it. */
-struct rf_ramp_limits {
-    int steps;    /* a longer one is a slope: it is left as it is */
-    int contrast; /* Q16 */
-    bool part;    /* label is one of the ends; false: label is the map */
-};
-
-/* Writes near, far and label. */
-void rf_find_ramps(struct rf_edges *e, struct rf_ramp_limits limits);
+/* Writes steepest, of the map as it is now, and marks rough blocks. */
+void rf_find_steepest(struct rf_edges *e);
 
 /* The softness of the map's edges: the standard deviation in pixels of the Gaussian that would make
- * such ramps of sharp edges. 0: there are too few to tell. To be called after rf_find_ramps(). */
+ * such ramps of sharp edges. 0: there are too few to tell. After rf_find_steepest(). */
 double rf_measure_softness(const struct rf_edges *e);
+
+/* Limits of what is taken for a ramp. */
+struct rf_ramp_limits {
+    int steps;    /* a longer one is a slope: it is left as it is */
+    int contrast; /* Q16: so is one of less */
+};
+
+/* Follows each ramp to its ends: writes near, far and label. After rf_find_steepest(). */
+void rf_find_ramps(struct rf_edges *e, struct rf_ramp_limits limits);
 
 /* Whether a pixel is on a ramp and not close to either end. */
 static inline bool rf_is_between(const struct rf_edges *e, ptrdiff_t i, int disparity)
@@ -136,11 +162,11 @@ static inline bool rf_is_between(const struct rf_edges *e, ptrdiff_t i, int disp
 /* Writes the gradient of the photo. */
 void rf_find_photo_gradient(struct rf_edges *e);
 
-/* Writes the list of edges of a plane of disparities; none if they are too many. */
+/* Writes the list of edges in rough blocks of a plane of disparities; none if they are too many. */
 void rf_find_map_edges(struct rf_edges *e, const uint16_t *plane);
 
-/* How much of an edge of this direction the photo has at (x, y): at most RF_MOST_PHOTO_EDGE. */
-enum { RF_MOST_PHOTO_EDGE = 40 * 16 };
+/* How much of an edge of this direction the photo has at (x, y), at most RF_EDGE_SHIFT + 1 pixels
+ * from it: up to RF_MOST_PHOTO_EDGE. */
 int rf_photo_edge_at(const struct rf_edges *e, const struct rf_map_edge *edge, int x, int y);
 
 /* The findings of rf_align(). */
@@ -153,12 +179,18 @@ struct rf_alignment {
 
 /*
  * Moves the edges of the map onto the photo's, where they are not and where that is certain.
- * near, far and label are those of the map, and are written again when it changes.
+ * near, far and label are those of the map within these limits, and are written again when it
+ * changes. NULL: they are not known, and the map is sharp.
  */
-struct rf_alignment rf_align(struct rf_edges *e, double softness, struct rf_ramp_limits limits);
+struct rf_alignment rf_align(struct rf_edges *e, double softness,
+                             const struct rf_ramp_limits *limits);
 
 /* Lays out e->blocks for width x height pixels. */
 void rf_align_lay_out(struct rf_edges *e, struct rf_arena *arena);
+
+/* Gives each pixel the greatest value of a plane within a square of 2 width + 1 pixels, up to 31.
+ */
+void rf_widen(struct rf_edges *e, uint16_t *plane, uint16_t *spare, int width);
 
 /* Decides for each pixel between the ends of a ramp: writes label. */
 void rf_vote(struct rf_edges *e, double softness);

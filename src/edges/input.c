@@ -31,17 +31,19 @@ static void load_photo_row(void *context, int y, int worker)
     const struct rf_order order = rf_order_of(photo->format);
     const int at[3] = {order.r, order.g, order.b}, k = job->reduced;
     const struct rf_edges *e = &job->edges;
+    const uint8_t *in = photo->plane[0] + (ptrdiff_t)y * k * photo->stride[0];
 
     (void)worker;
     for (int c = 0; c < 3; c++) {
-        const uint8_t *in = photo->plane[0] + (ptrdiff_t)y * k * photo->stride[0] + at[c];
-        uint8_t *out = e->colour[c] + y * e->stride;
+        uint8_t *restrict out = e->colour[c] + y * e->stride;
+        const uint8_t *restrict code = in + at[c];
 
-        for (int x = 0; x < e->width; x++)
-            out[x] = k == 1 ? in[(ptrdiff_t)x * order.bytes]
-                            : mean_code(in + (ptrdiff_t)x * k * order.bytes, photo->stride[0],
-                                        order.bytes, rf_smaller(k, photo->width - x * k),
-                                        rf_smaller(k, photo->height - y * k));
+        for (int x = 0; x < e->width && k == 1; x++, code += order.bytes)
+            out[x] = *code;
+        for (int x = 0; x < e->width && k > 1; x++, code += (ptrdiff_t)k * order.bytes)
+            out[x] =
+                mean_code(code, photo->stride[0], order.bytes, rf_smaller(k, photo->width - x * k),
+                          rf_smaller(k, photo->height - y * k));
     }
 }
 
@@ -52,11 +54,10 @@ void rf_load_edge_photo(struct rf_edge_job *job)
 
 /* ----- map ----- */
 
-static uint16_t sample_at(const struct refocus_disparity *map, int x, int y)
+static uint16_t sample_at(const struct refocus_disparity *map, const void *row, int x)
 {
-    const uint8_t *row = (const uint8_t *)map->samples + y * map->stride;
-
-    return (uint16_t)(map->bits == 16 ? ((const uint16_t *)row)[x] : row[x] * 257);
+    return (uint16_t)(map->bits == 16 ? ((const uint16_t *)row)[x]
+                                      : ((const uint8_t *)row)[x] * 257);
 }
 
 /* The sample in the middle of the i-th of n parts of `size`. */
@@ -69,42 +70,51 @@ static void load_samples(void *context, int y, int worker)
 {
     const struct rf_edge_job *job = context;
     const struct refocus_disparity *map = job->map;
-    const int row = middle_of(y, job->rows, map->height);
+    const void *row =
+        (const uint8_t *)map->samples + middle_of(y, job->rows, map->height) * map->stride;
+    uint16_t *out = job->sample.at + y * job->sample.stride;
+    const bool all = job->columns == map->width;
 
     (void)worker;
+    if (all && map->bits == 16) {
+        memcpy(out, row, (size_t)job->columns * sizeof *out);
+        return;
+    }
     for (int x = 0; x < job->columns; x++)
-        job->sample.at[y * job->sample.stride + x] =
-            sample_at(map, middle_of(x, job->columns, map->width), row);
+        out[x] = sample_at(map, row, all ? x : middle_of(x, job->columns, map->width));
 }
 
-/* A place among samples: between `first` and the one at `next`, in Q8. */
-struct place {
-    int first, next, share;
-};
-
 /* Centres lie at (i + 1/2) / size of both rasters. */
-static struct place place_of(int i, int size, int samples)
+static struct rf_sample_place place_of(int i, int size, int samples)
 {
     const int64_t at = ((2 * (int64_t)i + 1) * samples * 128) / size - 128;
     const int64_t inside = at < 0 ? 0 : at;
     const int first = rf_smaller((int)(inside >> 8), samples - 1);
 
-    return (struct place){first, rf_smaller(first + 1, samples - 1), (int)(inside & 255)};
+    return (struct rf_sample_place){first, rf_smaller(first + 1, samples - 1), (int)(inside & 255)};
 }
 
-/* The map at a pixel, by straight lines between its samples. */
-static uint16_t interpolate(const struct rf_edge_job *job, int x, int y)
+/* A row of the map by straight lines between its samples. */
+static void interpolate(const struct rf_edge_job *job, uint16_t *out, int y)
 {
-    const struct place across = place_of(x, job->edges.width, job->columns);
-    const struct place down = place_of(y, job->edges.height, job->rows);
+    const int width = job->edges.width;
+    const struct rf_sample_place down = place_of(y, job->edges.height, job->rows);
     const uint16_t *above = job->sample.at + down.first * job->sample.stride;
     const uint16_t *below = job->sample.at + down.next * job->sample.stride;
-    const int64_t high =
-        above[across.first] * (256 - across.share) + above[across.next] * across.share;
-    const int64_t low =
-        below[across.first] * (256 - across.share) + below[across.next] * across.share;
 
-    return (uint16_t)((high * (256 - down.share) + low * down.share + 32768) >> 16);
+    if (width == job->columns && down.share == 0) {
+        memcpy(out, above, (size_t)width * sizeof *out);
+        return;
+    }
+    for (int x = 0; x < width; x++) {
+        const struct rf_sample_place across = job->column[x];
+        const int64_t high =
+            above[across.first] * (256 - across.share) + above[across.next] * across.share;
+        const int64_t low =
+            below[across.first] * (256 - across.share) + below[across.next] * across.share;
+
+        out[x] = (uint16_t)((high * (256 - down.share) + low * down.share + 32768) >> 16);
+    }
 }
 
 static void enlarge_row(void *context, int y, int worker)
@@ -113,8 +123,7 @@ static void enlarge_row(void *context, int y, int worker)
     const struct rf_edges *e = &job->edges;
 
     (void)worker;
-    for (int x = 0; x < e->width; x++)
-        e->map[y * e->stride + x] = interpolate(job, x, y);
+    interpolate(job, e->map + y * e->stride, y);
 }
 
 void rf_load_edge_map(struct rf_edge_job *job)
@@ -129,6 +138,8 @@ void rf_load_edge_map(struct rf_edge_job *job)
         .step = rf_code_step(job->map),
     };
 
+    for (int x = 0; x < e->width; x++)
+        job->column[x] = place_of(x, e->width, job->columns);
     rf_pool_run(e->pool, load_samples, job, job->rows);
     if (d.step)
         rf_dequantise(&d, e->pool);
@@ -143,9 +154,24 @@ double rf_softness_of_samples(struct rf_edge_job *job)
     own.height = job->rows;
     job->sample.at = own.map;
     rf_pool_run(own.pool, load_samples, job, job->rows);
-    rf_find_ramps(&own, (struct rf_ramp_limits){.steps = 16, .contrast = RF_EDGE_STEP});
     job->sample.at = own.near;
+    rf_find_steepest(&own);
     return rf_measure_softness(&own);
+}
+
+/* Writes how many pixels of a row differ to the place of its first sample. */
+static void count_changes(void *context, int y, int worker)
+{
+    const struct rf_edge_job *job = context;
+    const struct rf_edges *e = &job->edges;
+    const uint16_t *map = e->map + y * e->stride;
+    uint16_t *was = e->spare + y * e->stride, changed = 0;
+
+    (void)worker;
+    interpolate(job, was, y);
+    for (int x = 0; x < e->width; x++)
+        changed = (uint16_t)(changed + (abs(map[x] - was[x]) >= CHANGED));
+    was[0] = changed;
 }
 
 float rf_share_changed(struct rf_edge_job *job)
@@ -155,8 +181,8 @@ float rf_share_changed(struct rf_edge_job *job)
 
     job->sample.at = e->near;
     rf_pool_run(e->pool, load_samples, job, job->rows);
+    rf_pool_run(e->pool, count_changes, job, e->height);
     for (int y = 0; y < e->height; y++)
-        for (int x = 0; x < e->width; x++)
-            changed += abs(e->map[y * e->stride + x] - interpolate(job, x, y)) >= CHANGED;
+        changed += e->spare[y * e->stride];
     return (float)changed / ((float)e->width * (float)e->height);
 }

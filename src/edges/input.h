@@ -7,6 +7,11 @@
 #include "edges/edges.h"
 #include "image/planes.h"
 
+/* A place between two samples of a row, in Q8 from the first one. */
+struct rf_sample_place {
+    int32_t first, next, share;
+};
+
 /* A photo, a map, and the planes at the size that the work is done at. */
 struct rf_edge_job {
     const struct refocus_image *photo; /* packed */
@@ -14,6 +19,7 @@ struct rf_edge_job {
     struct rf_edges edges;
     int reduced;                    /* the photo by so much */
     int columns, rows;              /* samples of the map that are used */
+    struct rf_sample_place *column; /* where each pixel of a row lies among samples */
     bool enlarged;                  /* the map is not of the photo's size */
     struct rf_disparity_q16 sample; /* in the memory of near, until ramps are found */
 };

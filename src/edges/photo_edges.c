@@ -2,7 +2,6 @@
  */
 #include "edges/edges.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "support/compare.h"
@@ -13,110 +12,69 @@ enum {
     LEAST_RANGE = 2621, /* 0.04 within 5 x 5 pixels */
 };
 
-struct channel {
+/* ----- planes: nothing is looked for at their sides, where no value is written ----- */
+
+struct planes {
     struct rf_edges *e;
-    const uint8_t *codes;        /* one of them */
+    const uint8_t *codes;        /* one channel of the photo */
     const uint16_t *disparities; /* or these */
-    uint16_t *smooth;
-    bool first;
 };
 
-/* Three values around i by weights 1, 2, 1, at the ends of a row with the last one repeated. */
-static inline int binomial(int before, int own, int after)
+static void smooth_row(void *context, int item, int worker)
 {
-    return before + 2 * own + after;
-}
-
-/* A binomial 3x3 mean of codes in 1/16, or of disparities. */
-static void smooth_band(void *context, int band, int worker)
-{
-    const struct channel *channel = context;
-    const struct rf_edges *e = channel->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+    const struct planes *planes = context;
+    const struct rf_edges *e = planes->e;
+    const ptrdiff_t s = e->stride, at = (item + 1) * s + 1;
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        const ptrdiff_t here = y * e->stride, above = rf_larger(y - 1, 0) * e->stride;
-        const ptrdiff_t below = rf_smaller(y + 1, e->height - 1) * e->stride;
-        uint16_t *out = channel->smooth + here;
-        int column[3]; /* sums of the columns to the left, in the middle and to the right */
+    if (planes->codes) {
+        const uint8_t *here = planes->codes + at, *const row[3] = {here - s, here, here + s};
 
-        for (int x = 0; x <= e->width; x++) {
-            const int at = rf_smaller(x, e->width - 1);
+        e->kernels->binomial8(e->spare + at, row, e->width - 2);
+    } else {
+        const uint16_t *here = planes->disparities + at, *const row[3] = {here - s, here, here + s};
 
-            column[0] = x > 1 ? column[1] : 0;
-            column[1] = x > 0 ? column[2] : 0;
-            column[2] =
-                channel->codes
-                    ? binomial(channel->codes[above + at], channel->codes[here + at],
-                               channel->codes[below + at])
-                    : binomial(channel->disparities[above + at], channel->disparities[here + at],
-                               channel->disparities[below + at]);
-            if (x == 1)
-                column[0] = column[1];
-            if (x > 0)
-                out[x - 1] = (uint16_t)(binomial(column[0], column[1], column[2]) >>
-                                        (channel->codes ? 0 : 4));
-        }
+        e->kernels->binomial16(e->spare + at, row, e->width - 2);
     }
 }
 
-/* Sobel's operator at a pixel that is not at a side: eight times the slope. */
-static inline int slope_x(const uint16_t *p, ptrdiff_t s)
+static void gradient_row(void *context, int item, int worker)
 {
-    return binomial(p[1 - s], p[1], p[1 + s]) - binomial(p[-1 - s], p[-1], p[-1 + s]);
-}
-
-static inline int slope_y(const uint16_t *p, ptrdiff_t s)
-{
-    return binomial(p[s - 1], p[s], p[s + 1]) - binomial(p[-s - 1], p[-s], p[-s + 1]);
-}
-
-static void gradient_band(void *context, int band, int worker)
-{
-    const struct channel *channel = context;
-    const struct rf_edges *e = channel->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+    const struct rf_edges *e = context;
+    const ptrdiff_t s = e->stride, at = (item + 2) * s + 2;
+    const uint16_t *here = e->spare + at, *const row[3] = {here - s, here, here + s};
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        int16_t *gx = e->gradient.x + y * e->stride, *gy = e->gradient.y + y * e->stride;
-        const uint16_t *smooth = channel->smooth + y * e->stride;
+    e->kernels->photo_gradient(e->gradient.x + at, e->gradient.y + at, row, e->width - 4);
+}
 
-        if (channel->first) {
-            memset(gx, 0, (size_t)e->width * sizeof *gx);
-            memset(gy, 0, (size_t)e->width * sizeof *gy);
-        }
-        if (y == 0 || y == e->height - 1)
-            continue;
-        for (int x = 1; x < e->width - 1; x++) {
-            const int right = slope_x(smooth + x, e->stride) / 8;
-            const int down = slope_y(smooth + x, e->stride) / 8;
-            const int now = gx[x] * gx[x] + gy[x] * gy[x];
+static void slope_row(void *context, int item, int worker)
+{
+    const struct rf_edges *e = context;
+    const ptrdiff_t s = e->stride, at = (item + 2) * s + 2;
+    const uint16_t *here = e->spare + at, *const row[3] = {here - s, here, here + s};
 
-            if (right * right + down * down > now) {
-                gx[x] = (int16_t)right;
-                gy[x] = (int16_t)down;
-            }
-        }
-    }
+    (void)worker;
+    e->kernels->map_slope(e->largest + at, row, e->width - 4);
 }
 
 void rf_find_photo_gradient(struct rf_edges *e)
 {
-    for (int c = 0; c < 3; c++) {
-        struct channel channel = {
-            .e = e, .codes = e->colour[c], .smooth = e->spare, .first = c == 0};
+    const size_t bytes = (size_t)e->stride * (size_t)e->height * sizeof *e->gradient.x;
 
-        rf_pool_run(e->pool, smooth_band, &channel, rf_edge_bands(e));
-        rf_pool_run(e->pool, gradient_band, &channel, rf_edge_bands(e));
+    memset(e->gradient.x, 0, bytes);
+    memset(e->gradient.y, 0, bytes);
+    for (int c = 0; c < 3; c++) {
+        struct planes planes = {.e = e, .codes = e->colour[c]};
+
+        rf_pool_run(e->pool, smooth_row, &planes, e->height - 2);
+        rf_pool_run(e->pool, gradient_row, e, e->height - 4);
     }
 }
 
 int rf_photo_edge_at(const struct rf_edges *e, const struct rf_map_edge *edge, int x, int y)
 {
-    const ptrdiff_t at = rf_smaller(rf_larger(y, 0), e->height - 1) * e->stride +
-                         rf_smaller(rf_larger(x, 0), e->width - 1);
+    const ptrdiff_t at = y * e->stride + x;
     const int across = e->gradient.x[at] * edge->normal_x + e->gradient.y[at] * edge->normal_y;
 
     return rf_smaller((across < 0 ? -across : across) >> 7, RF_MOST_PHOTO_EDGE);
@@ -124,30 +82,15 @@ int rf_photo_edge_at(const struct rf_edges *e, const struct rf_map_edge *edge, i
 
 /* ----- edges of the map ----- */
 
-/* The slope at a pixel of the smoothed map in 1/65536 a pixel, at most 2^16 / 2 sqrt(2). */
-static void slope_band(void *context, int band, int worker)
+/* Sobel's operator: eight times the slope. */
+static int slope_x(const uint16_t *p, ptrdiff_t s)
 {
-    const struct channel *channel = context;
-    const struct rf_edges *e = channel->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+    return p[1 - s] + 2 * p[1] + p[1 + s] - (p[-1 - s] + 2 * p[-1] + p[-1 + s]);
+}
 
-    (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        const uint16_t *smooth = channel->smooth + y * e->stride;
-        uint16_t *slope = e->largest + y * e->stride;
-        const bool inside = y > 0 && y < e->height - 1;
-
-        for (int x = 0; x < e->width; x++) {
-            double right, down;
-
-            slope[x] = 0;
-            if (!inside || x == 0 || x == e->width - 1 || !rf_edge_is_rough(e, x, y))
-                continue;
-            right = slope_x(smooth + x, e->stride);
-            down = slope_y(smooth + x, e->stride);
-            slope[x] = (uint16_t)(sqrt(right * right + down * down) / 8);
-        }
-    }
+static int slope_y(const uint16_t *p, ptrdiff_t s)
+{
+    return p[s - 1] + 2 * p[s] + p[s + 1] - (p[-s - 1] + 2 * p[-s] + p[-s + 1]);
 }
 
 /* The slope between pixels, at an offset of at most one pixel in Q7: 16384 times it. */
@@ -174,15 +117,13 @@ static bool is_step(const struct rf_edges *e, const uint16_t *plane, int x, int 
     return most - least > LEAST_RANGE;
 }
 
-/* A pixel where the map is steeper than to either side, as Canny has it. */
+/* A pixel that is steep, and steeper than to either side, as Canny has it. */
 static bool is_edge(const struct rf_edges *e, const uint16_t *smooth, int x, int y,
                     struct rf_map_edge *edge)
 {
     const ptrdiff_t at = y * e->stride + x;
     const int slope = e->largest[at];
 
-    if (slope <= LEAST_SLOPE)
-        return false;
     *edge = (struct rf_map_edge){
         .x = (uint16_t)x,
         .y = (uint16_t)y,
@@ -195,25 +136,31 @@ static bool is_edge(const struct rf_edges *e, const uint16_t *smooth, int x, int
            (int64_t)slope << 14 > slope_at(e, x, y, -edge->normal_x, -edge->normal_y);
 }
 
+/* Adds those of n pixels of a row, if there is room. */
+static void add_edges(struct rf_edges *e, const uint16_t *plane, int x, int y, int n)
+{
+    const uint16_t *slope = e->largest + y * e->stride + x;
+    struct rf_map_edge edge;
+
+    for (int i = 0; i < n && e->edges < e->most_edges; i++)
+        if (slope[i] > LEAST_SLOPE && is_edge(e, e->spare, x + i, y, &edge) &&
+            is_step(e, plane, x + i, y))
+            e->edge[e->edges++] = edge;
+}
+
 void rf_find_map_edges(struct rf_edges *e, const uint16_t *plane)
 {
-    struct channel channel = {.e = e, .disparities = plane, .smooth = e->spare};
+    struct planes planes = {.e = e, .disparities = plane};
 
-    rf_find_rough_blocks(e, plane);
-    rf_pool_run(e->pool, smooth_band, &channel, rf_edge_bands(e));
-    rf_pool_run(e->pool, slope_band, &channel, rf_edge_bands(e));
+    rf_pool_run(e->pool, smooth_row, &planes, e->height - 2);
+    rf_pool_run(e->pool, slope_row, e, e->height - 4);
     e->edges = 0;
     for (int y = MARGIN; y < e->height - MARGIN; y++)
-        for (int x = MARGIN; x < e->width - MARGIN; x++) {
-            struct rf_map_edge edge;
-
-            if (!rf_edge_is_rough(e, x, y) || !is_edge(e, e->spare, x, y, &edge) ||
-                !is_step(e, plane, x, y))
-                continue;
-            if (e->edges == e->most_edges) { /* noise */
-                e->edges = 0;
-                return;
-            }
-            e->edge[e->edges++] = edge;
+        for (int x = MARGIN, n; x < e->width - MARGIN; x += n) {
+            n = rf_smaller(RF_EDGE_BLOCK - x % RF_EDGE_BLOCK, e->width - MARGIN - x);
+            if (rf_edge_is_rough(e, x, y))
+                add_edges(e, plane, x, y, n);
         }
+    if (e->edges == e->most_edges) /* noise */
+        e->edges = 0;
 }

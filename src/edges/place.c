@@ -7,7 +7,10 @@
 #include "edges/input.h"
 #include "support/compare.h"
 
-enum { MOST_ENLARGED = 4 }; /* the map is brought to at most so many times its size */
+enum {
+    MOST_ENLARGED = 4,     /* the map is brought to at most so many times its size */
+    LEAST_CONTRAST = 2621, /* 0.04, of a ramp */
+};
 /* Softer edges are ramps of several pixels, which show. An exact map has 0.4, with smooth
  * silhouettes 1; straight lines between samples two pixels apart make 1.2. */
 static const double SOFT = 1.25;
@@ -42,19 +45,22 @@ static void *take_plane(struct rf_arena *arena, const struct rf_edges *e, uint64
     return rf_arena_take(arena, (uint64_t)e->stride * ((uint64_t)e->height + 2), size);
 }
 
-/* Sets the pointers, or with arena->base == NULL only counts. Each plane has a border of a pixel,
- * so that all have the same stride. The map comes first: the others are not needed to bring it to
- * the photo's size. */
-static void lay_out(struct rf_edges *e, struct rf_arena *arena)
+/* Sets the pointers, or with arena->base == NULL only counts. Each plane has a border of a pixel.
+ * The map comes first: the others are not needed to bring it to the photo's size. */
+static void lay_out(struct rf_edge_job *job, struct rf_arena *arena)
 {
+    struct rf_edges *e = &job->edges;
     const uint64_t across = (uint64_t)rf_edge_blocks_across(e);
     const uint64_t blocks = across * (uint64_t)((e->height + RF_EDGE_BLOCK - 1) / RF_EDGE_BLOCK);
-    uint16_t **const planes[] = {&e->map,     &e->near,  &e->far, &e->label,
-                                 &e->largest, &e->spare, &e->kept};
+    uint16_t **const planes[] = {&e->map,     &e->near,   &e->far,   &e->label,
+                                 &e->largest, &e->length, &e->spare, &e->kept};
     int16_t **const slopes[] = {&e->gradient.x, &e->gradient.y};
 
-    for (size_t i = 0; i < sizeof planes / sizeof *planes; i++)
+    for (size_t i = 0; i < sizeof planes / sizeof *planes; i++) {
         *planes[i] = take_plane(arena, e, sizeof **planes[i]);
+        if (arena->base)
+            *planes[i] += e->stride + 1;
+    }
     for (size_t i = 0; i < sizeof slopes / sizeof *slopes; i++)
         *slopes[i] = take_plane(arena, e, sizeof **slopes[i]);
     for (int c = 0; c < 3; c++)
@@ -63,11 +69,13 @@ static void lay_out(struct rf_edges *e, struct rf_arena *arena)
     e->is_wide = take_plane(arena, e, 1);
     e->range = rf_arena_take(arena, blocks, sizeof *e->range);
     e->rough = rf_arena_take(arena, blocks, 1);
+    e->rough_cell = rf_arena_take(arena, blocks, 1);
+    for (int i = 0; i < 2; i++)
+        e->moved[i] = rf_arena_take(arena, blocks, 1);
     e->most_edges = (int)((int64_t)e->width * e->height / 8);
     e->edge = rf_arena_take(arena, (uint64_t)e->most_edges, sizeof *e->edge);
+    job->column = rf_arena_take(arena, (uint64_t)e->width, sizeof *job->column);
     rf_align_lay_out(e, arena);
-    if (arena->base)
-        e->map += e->stride + 1;
 }
 
 /* A map that is brought to the photo's size, in memory that begins with it if it is the result of
@@ -89,7 +97,7 @@ uint64_t rf_place_edges_bytes(int width, int height, int columns, int rows)
 
     choose_size(&job, width, height, columns, rows);
     last = behind_map(&job.edges, NULL);
-    lay_out(&job.edges, &arena);
+    lay_out(&job, &arena);
     if (!job.enlarged)
         return arena.used;
     /* The map that comes in may have more samples than the one that the passes make of it. */
@@ -124,29 +132,27 @@ static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_repor
 {
     struct rf_edges *e = &job->edges;
     const double pixel = job->reduced;
-    struct rf_ramp_limits limits = {.steps = 16, .contrast = RF_EDGE_STEP};
+    struct rf_ramp_limits limits;
     struct rf_alignment found;
     double softness;
     bool soft;
 
-    rf_find_ramps(e, limits);
+    rf_find_steepest(e);
     softness = rf_measure_softness(e);
     if (job->enlarged && softness < SOFT) /* straight lines between samples are ramps */
         softness = SOFT;
     soft = softness >= SOFT;
-    /* A ramp of a Gaussian is 4 standard deviations long; one of a sharp map 2 or 3 pixels. */
-    limits.steps = soft ? (int)(4 * softness + 2.5) : 3;
-    limits.contrast = soft ? 2621 : 3932;
-    limits.part = soft; /* ramps of a sharp map are mixed pixels */
-    rf_find_ramps(e, limits);
-    found = rf_align(e, softness, limits);
+    /* A ramp of a Gaussian is 4 standard deviations long. */
+    limits =
+        (struct rf_ramp_limits){.steps = (int)(4 * softness + 2.5), .contrast = LEAST_CONTRAST};
+    if (soft)
+        rf_find_ramps(e, limits);
+    found = rf_align(e, softness, soft ? &limits : NULL);
     if (soft && !rf_run_cancelled(e->pool->run)) {
         rf_vote(e, softness);
         rf_settle(e, softness);
         rf_restore_thin(e, softness);
-        for (int y = 0; y < e->height; y++)
-            memcpy(e->map + y * e->stride, e->label + y * e->stride,
-                   (size_t)e->width * sizeof *e->map);
+        rf_copy_plane(e, e->map, e->label);
     }
     report->softness = (float)(softness * pixel);
     report->on_photo = (float)found.on_photo;
@@ -183,7 +189,7 @@ bool rf_place_edges(const struct rf_place_edges *place, struct refocus_depth_edg
     bool changed;
 
     choose_size(&job, photo->width, photo->height, map->width, map->height);
-    lay_out(e, &arena);
+    lay_out(&job, &arena);
     e->kernels = place->kernels;
     e->pool = place->pool;
     job.sample = (struct rf_disparity_q16){e->near, e->stride};

@@ -7,11 +7,13 @@
 #include "support/compare.h"
 
 enum {
-    FLAT = 79,       /* 0.0012: a smaller step belongs to the surface */
-    ENDS = 12,       /* so does one of less than a twelfth of the ramp's largest step */
-    CLEAR = 6554,    /* 0.1: contrasts that softness is measured by */
-    BINS = 256,      /* contrast / largest step, in 1/16 pixels */
-    FEWEST = 50,     /* pixels along edges to measure softness by */
+    FLAT = 79,               /* 0.0012: a smaller step belongs to the surface */
+    CLEAR = 6554,            /* 0.1: contrasts that softness is measured by */
+    LEAST_STEP = CLEAR / 20, /* pixels of less hardly count */
+    BINS = 256,              /* contrast / largest step, in 1/16 pixels */
+    MOST_STEPS = 16,         /* a longer ramp is a slope, when softness is measured */
+    ROWS = 64,               /* softness is measured on so many, at least */
+    FEWEST = 50,             /* pixels along edges to measure softness by */
     PERCENTILE = 85, /* wires and hair look less soft than the map is: their two ramps overlap */
 };
 
@@ -26,23 +28,12 @@ static void find_ranges(void *context, int row, int worker)
 {
     const struct ranges *ranges = context;
     const struct rf_edges *e = ranges->e;
-    const int across = rf_edge_blocks_across(e);
-    const int end = rf_smaller((row + 1) * RF_EDGE_BLOCK, e->height);
+    const int y = row * RF_EDGE_BLOCK;
 
     (void)worker;
-    for (int b = 0; b < across; b++) {
-        const int x0 = b * RF_EDGE_BLOCK, x1 = rf_smaller(x0 + RF_EDGE_BLOCK, e->width);
-        struct rf_edge_range range = {65535, 0};
-
-        for (int y = row * RF_EDGE_BLOCK; y < end; y++)
-            for (int x = x0; x < x1; x++) {
-                const uint16_t d = ranges->plane[y * e->stride + x];
-
-                range.least = d < range.least ? d : range.least;
-                range.most = d > range.most ? d : range.most;
-            }
-        e->range[row * across + b] = range;
-    }
+    e->kernels->block_ranges(e->range + (ptrdiff_t)row * rf_edge_blocks_across(e),
+                             ranges->plane + y * e->stride, e->stride, e->width,
+                             rf_smaller(RF_EDGE_BLOCK, e->height - y));
 }
 
 void rf_find_rough_blocks(struct rf_edges *e, const uint16_t *plane)
@@ -67,16 +58,9 @@ void rf_find_rough_blocks(struct rf_edges *e, const uint16_t *plane)
 
 /* ----- ramps ----- */
 
-struct ramps {
-    struct rf_edges *e;
-    struct rf_ramp_limits limits;
-    ptrdiff_t neighbour[RF_NO_DIRECTION];
-};
-
 static void find_steepest(void *context, int band, int worker)
 {
-    const struct ramps *ramps = context;
-    const struct rf_edges *e = ramps->e;
+    const struct rf_edges *e = context;
     const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
 
     (void)worker;
@@ -88,75 +72,102 @@ static void find_steepest(void *context, int band, int worker)
     }
 }
 
-/* One end of a ramp, and the steps that were taken to it. */
-struct end {
-    int disparity, steps;
+/* Ways up or down from all pixels of rough cells, a step at a time. */
+struct climb {
+    const struct rf_edges *e;
+    bool down;
+    uint16_t *end;
+    const uint16_t *from;
+    uint16_t *to;
+    int step, steps;
+    const uint8_t *moved; /* one for each cell: whether ways from there went on by the last step */
+    uint8_t *moves;       /* whether they go on by this one */
 };
 
-/* Goes uphill (shift 0) or downhill (shift 4) from pixel i as long as the map keeps rising or
- * falling. *largest is the largest step of the ramp so far. */
-static struct end climb(const struct ramps *ramps, ptrdiff_t i, int shift, int *largest)
+static int cells_across(const struct rf_edges *e)
 {
-    const struct rf_edges *e = ramps->e;
-    struct end end = {e->map[i], 0};
-
-    for (; end.steps < ramps->limits.steps; end.steps++) {
-        const int direction = e->steepest[i] >> shift & 15;
-        int next, step;
-
-        if (direction == RF_NO_DIRECTION)
-            break;
-        i += ramps->neighbour[direction];
-        next = e->map[i];
-        step = abs(next - end.disparity);
-        if (step < FLAT || step * ENDS < *largest)
-            break;
-        *largest = rf_larger(*largest, step);
-        end.disparity = next;
-    }
-    return end;
+    return (e->width + RF_CLIMB_CELL - 1) / RF_CLIMB_CELL;
 }
 
-/* Each way is gone twice, as the first time the ramp's largest step is not known yet. */
-static void follow_ramp(const struct ramps *ramps, ptrdiff_t i)
+static int cells_down(const struct rf_edges *e)
 {
-    struct rf_edges *e = ramps->e;
-    const int steps = ramps->limits.steps, own = e->map[i];
-    struct end near, far;
-    int largest = 0;
-
-    climb(ramps, i, 0, &largest);
-    climb(ramps, i, 4, &largest);
-    near = climb(ramps, i, 0, &largest);
-    far = climb(ramps, i, 4, &largest);
-    if (near.disparity - far.disparity < ramps->limits.contrast || near.steps == steps ||
-        far.steps == steps)
-        return;
-    e->near[i] = (uint16_t)near.disparity;
-    e->far[i] = (uint16_t)far.disparity;
-    e->largest[i] = (uint16_t)largest;
-    if (ramps->limits.part)
-        e->label[i] = 2 * own > near.disparity + far.disparity ? e->near[i] : e->far[i];
+    return (e->height + RF_CLIMB_CELL - 1) / RF_CLIMB_CELL;
 }
 
-static void follow_ramps(void *context, int band, int worker)
+/* Whether a way from a cell so near that it comes this far still goes on. */
+static bool is_needed(const struct climb *climb, int column, int row)
 {
-    const struct ramps *ramps = context;
-    struct rf_edges *e = ramps->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
-    const size_t bytes = (size_t)e->width * sizeof *e->map;
+    const int across = cells_across(climb->e), down = cells_down(climb->e);
+    const int cells = (climb->steps + RF_CLIMB_CELL - 1) / RF_CLIMB_CELL;
+    const int right = rf_smaller(column + cells, across - 1);
+
+    for (int v = rf_larger(row - cells, 0); v <= rf_smaller(row + cells, down - 1); v++)
+        for (int u = rf_larger(column - cells, 0); u <= right; u++)
+            if (climb->moved[v * across + u])
+                return true;
+    return false;
+}
+
+static void climb_cells(void *context, int row, int worker)
+{
+    const struct climb *climb = context;
+    const struct rf_edges *e = climb->e;
+    const int across = cells_across(e), y = row * RF_CLIMB_CELL;
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        const ptrdiff_t at = y * e->stride;
+    for (int column = 0; column < across; column++) {
+        const int x = column * RF_CLIMB_CELL;
+        const ptrdiff_t at = y * e->stride + x;
+        const struct rf_climb_cell cell = {
+            .direction = e->steepest + at,
+            .down = climb->down,
+            .from = climb->from + at,
+            .to = climb->to + at,
+            .end = climb->end + at,
+            .largest = e->largest + at,
+            .length = e->length + at,
+            .stride = e->stride,
+            .columns = rf_smaller(RF_CLIMB_CELL, e->width - x),
+            .rows = rf_smaller(RF_CLIMB_CELL, e->height - y),
+            .flat = FLAT,
+            .step = (uint16_t)climb->step,
+        };
 
-        memcpy(e->near + at, e->map + at, bytes);
-        memcpy(e->far + at, e->map + at, bytes);
-        memcpy(e->label + at, e->map + at, bytes);
-        for (int x = 0; x < e->width; x++)
-            if (rf_edge_is_rough(e, x, y))
-                follow_ramp(ramps, at + x);
+        climb->moves[row * across + column] = is_needed(climb, column, row) &&
+                                              e->kernels->climb(&cell) &&
+                                              e->rough_cell[row * across + column];
     }
+}
+
+static void climb(struct rf_edges *e, bool down, uint16_t *end, int steps)
+{
+    const int cells = cells_across(e) * cells_down(e);
+    struct climb climb = {
+        .e = e, .down = down, .end = end, .from = e->map, .steps = steps, .moved = e->rough_cell};
+
+    rf_copy_plane(e, end, e->map);
+    for (climb.step = 1; climb.step <= steps; climb.step++) {
+        climb.to = climb.step % 2 ? e->spare : e->label;
+        climb.moves = e->moved[climb.step % 2];
+        rf_pool_run(e->pool, climb_cells, &climb, cells_down(e));
+        if (!memchr(climb.moves, 1, (size_t)cells))
+            break;
+        climb.from = climb.to;
+        climb.moved = climb.moves;
+    }
+}
+
+static void find_rough_cells(struct rf_edges *e)
+{
+    for (int y = 0; y < e->height; y += RF_CLIMB_CELL)
+        for (int x = 0; x < e->width; x += RF_CLIMB_CELL) {
+            const int right = rf_smaller(x + RF_EDGE_BLOCK, e->width - 1);
+            const int below = rf_smaller(y + RF_EDGE_BLOCK, e->height - 1);
+
+            e->rough_cell[y / RF_CLIMB_CELL * cells_across(e) + x / RF_CLIMB_CELL] =
+                rf_edge_is_rough(e, x, y) || rf_edge_is_rough(e, right, y) ||
+                rf_edge_is_rough(e, x, below) || rf_edge_is_rough(e, right, below);
+        }
 }
 
 /* A pixel of the border is never steeper than the one that it repeats, which comes first. */
@@ -174,18 +185,106 @@ static void repeat_sides(struct rf_edges *e)
     memcpy(e->map + e->height * e->stride - 1, e->map + (e->height - 1) * e->stride - 1, bytes);
 }
 
-void rf_find_ramps(struct rf_edges *e, struct rf_ramp_limits limits)
+void rf_find_steepest(struct rf_edges *e)
 {
-    const ptrdiff_t s = e->stride;
-    struct ramps ramps = {e, limits, {1, -1, s, -s, s + 1, 1 - s, s - 1, -1 - s}};
-
     repeat_sides(e);
     rf_find_rough_blocks(e, e->map);
-    rf_pool_run(e->pool, find_steepest, &ramps, rf_edge_bands(e));
-    rf_pool_run(e->pool, follow_ramps, &ramps, rf_edge_bands(e));
+    rf_pool_run(e->pool, find_steepest, e, rf_edge_bands(e));
+}
+
+/* Each way is gone twice, as the first time the ramp's largest step is not known yet. */
+static void follow_ramps(struct rf_edges *e, int steps)
+{
+    const size_t bytes = (size_t)e->stride * (size_t)e->height * sizeof *e->largest;
+
+    find_rough_cells(e);
+    memset(e->largest, 0, bytes);
+    for (int i = 0; i < 2; i++) {
+        memset(e->length, 0, bytes);
+        climb(e, false, e->near, steps);
+        climb(e, true, e->far, steps);
+    }
+}
+
+struct choice {
+    const struct rf_edges *e;
+    struct rf_ramp_limits limits;
+};
+
+/* Some pixels of a row that are looked at together. */
+static void choose(const struct choice *choice, ptrdiff_t at, int n)
+{
+    const struct rf_edges *e = choice->e;
+    const struct rf_ramp_limits limits = choice->limits;
+    uint16_t *near = e->near + at, *far = e->far + at, *label = e->label + at;
+
+    for (int x = 0; x < n; x++) {
+        const uint16_t own = e->map[at + x];
+        const bool is_ramp =
+            near[x] - far[x] >= limits.contrast && e->length[at + x] < limits.steps;
+
+        near[x] = is_ramp ? near[x] : own;
+        far[x] = is_ramp ? far[x] : own;
+        label[x] = 2 * own > near[x] + far[x] ? near[x] : far[x];
+    }
+}
+
+static void choose_band(void *context, int band, int worker)
+{
+    const struct choice *choice = context;
+    const struct rf_edges *e = choice->e;
+    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+
+    (void)worker;
+    for (int y = band * RF_EDGE_BAND; y < end; y++)
+        for (int x = 0; x < e->width; x += RF_EDGE_BLOCK) {
+            const ptrdiff_t at = y * e->stride + x;
+            const int n = rf_smaller(RF_EDGE_BLOCK, e->width - x);
+            uint16_t *const out[3] = {e->near + at, e->far + at, e->label + at};
+
+            if (rf_edge_is_rough(e, x, y))
+                choose(choice, at, n);
+            for (int i = 0; i < 3 && !rf_edge_is_rough(e, x, y); i++)
+                memcpy(out[i], e->map + at, (size_t)n * sizeof *e->map);
+        }
+}
+
+void rf_find_ramps(struct rf_edges *e, struct rf_ramp_limits limits)
+{
+    struct choice choice = {e, limits};
+
+    follow_ramps(e, limits.steps);
+    rf_pool_run(e->pool, choose_band, &choice, rf_edge_bands(e));
 }
 
 /* ----- softness ----- */
+
+/* A way up or down from a pixel. */
+struct way {
+    ptrdiff_t at;
+    int steps, largest;
+};
+
+static struct way go(const struct rf_edges *e, ptrdiff_t i, bool down, int largest)
+{
+    const ptrdiff_t s = e->stride;
+    const ptrdiff_t neighbour[RF_NO_DIRECTION] = {1, -1, s, -s, s + 1, 1 - s, s - 1, -1 - s};
+    struct way way = {i, 0, largest};
+
+    for (; way.steps < MOST_STEPS; way.steps++) {
+        const int direction = e->steepest[way.at] >> (down ? 4 : 0) & 15;
+        int step;
+
+        if (direction == RF_NO_DIRECTION)
+            break;
+        step = abs(e->map[way.at + neighbour[direction]] - e->map[way.at]);
+        if (step < FLAT || step * RF_RAMP_ENDS < way.largest)
+            break;
+        way.at += neighbour[direction];
+        way.largest = rf_larger(way.largest, step);
+    }
+    return way;
+}
 
 /* The largest difference of a pixel to the four beside, above and below it. */
 static int local_step(const struct rf_edges *e, ptrdiff_t i)
@@ -197,32 +296,50 @@ static int local_step(const struct rf_edges *e, ptrdiff_t i)
     return rf_larger(across, down);
 }
 
+/* How soft the ramps of some pixels are: contrast / largest step, in 1/16 pixels. Each counts by
+ * its own share of the ramp, so that wide ramps do not count more than narrow ones. */
+struct histogram {
+    int64_t bin[BINS], all;
+};
+
+static void add_ramp(const struct rf_edges *e, ptrdiff_t at, struct histogram *ramps)
+{
+    const int first = go(e, at, true, go(e, at, false, 0).largest).largest;
+    const struct way near = go(e, at, false, first), far = go(e, at, true, first);
+    const int contrast = e->map[near.at] - e->map[far.at];
+    int share;
+
+    if (contrast < CLEAR || near.steps == MOST_STEPS || far.steps == MOST_STEPS)
+        return;
+    share = 256 * local_step(e, at) / contrast;
+    ramps->bin[rf_smaller(16 * contrast / first, BINS - 1)] += share;
+    ramps->all += share;
+}
+
 /*
  * A sharp edge of contrast c, blurred by a Gaussian of standard deviation s, is steepest in its
- * middle, c / (s sqrt(2 pi)) a pixel: so s = contrast / largest step / 2.507. Each pixel of a ramp
- * counts by its own share of the ramp, so that wide ramps do not count more than narrow ones. The
- * two pixels at a step of an exact map read 1 / 2.507 = 0.4.
+ * middle, c / (s sqrt(2 pi)) a pixel: so s = contrast / largest step / 2.507. The two pixels at a
+ * step of an exact map read 1 / 2.507 = 0.4.
  */
 double rf_measure_softness(const struct rf_edges *e)
 {
-    int64_t bin[BINS] = {0}, all = 0, below = 0;
+    const int every = e->height / ROWS + 1;
+    struct histogram ramps = {{0}, 0};
+    int64_t below = 0;
     int i = 0;
 
-    for (int y = 0; y < e->height; y++)
+    if (rf_run_cancelled(e->pool->run)) /* the plane of directions is not complete */
+        return 0;
+    for (int y = every / 2; y < e->height; y += every)
         for (int x = 0; x < e->width; x++) {
             const ptrdiff_t at = y * e->stride + x;
-            const int contrast = e->near[at] - e->far[at];
-            int share;
 
-            if (contrast < CLEAR)
-                continue;
-            share = 256 * local_step(e, at) / contrast;
-            bin[rf_smaller(16 * contrast / rf_larger(e->largest[at], 1), BINS - 1)] += share;
-            all += share;
+            if (rf_edge_is_rough(e, x, y) && local_step(e, at) >= LEAST_STEP)
+                add_ramp(e, at, &ramps);
         }
-    if (all < FEWEST * 256)
+    if (ramps.all * every < FEWEST * 256)
         return 0;
-    while (i < BINS - 1 && (below += bin[i]) * 100 < all * PERCENTILE)
+    while (i < BINS - 1 && (below += ramps.bin[i]) * 100 < ramps.all * PERCENTILE)
         i++;
     return (i + 0.5) / (16 * 2.5066);
 }

@@ -11,12 +11,11 @@
 
 enum {
     ALIKE = 5,  /* a surface goes on with less than a fifth of the ramp's contrast */
-    FEWEST = 4, /* pixels that show it */
+    FEWEST = 2, /* pixels that show it, in every other row */
 };
 
 struct settle {
     struct rf_edges *e;
-    int width;          /* half of the band, pixels */
     uint16_t *contrast; /* contrast of the greatest ramp near by; 0 outside of bands */
     uint16_t *core;     /* disparity beyond bands; 0 in them */
     struct rf_vote_shape shape;
@@ -29,54 +28,16 @@ static void find_contrast(void *context, int band, int worker)
     const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++)
-        for (int x = 0; x < e->width; x++) {
-            const ptrdiff_t at = y * e->stride + x;
-
-            e->spare[at] =
-                rf_is_between(e, at, e->map[at]) ? (uint16_t)(e->near[at] - e->far[at]) : 0;
-        }
-}
-
-/* The greatest of 2 width + 1 values of a row, and then of a column. */
-static void widen_rows(void *context, int band, int worker)
-{
-    const struct settle *settle = context;
-    const struct rf_edges *e = settle->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
-
-    (void)worker;
     for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        const uint16_t *in = e->spare + y * e->stride;
+        const ptrdiff_t at = y * e->stride;
+        bool rough;
 
-        for (int x = 0; x < e->width; x++) {
-            const int x1 = rf_smaller(x + settle->width, e->width - 1);
-            uint16_t most = 0;
-
-            for (int u = rf_larger(x - settle->width, 0); u <= x1; u++)
-                most = in[u] > most ? in[u] : most;
-            e->largest[y * e->stride + x] = most;
-        }
-    }
-}
-
-static void widen_columns(void *context, int band, int worker)
-{
-    const struct settle *settle = context;
-    const struct rf_edges *e = settle->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
-
-    (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        const int y1 = rf_smaller(y + settle->width, e->height - 1);
-        uint16_t *out = settle->contrast + y * e->stride;
-
-        memset(out, 0, (size_t)e->width * sizeof *out);
-        for (int v = rf_larger(y - settle->width, 0); v <= y1; v++) {
-            const uint16_t *in = e->largest + v * e->stride;
-
-            for (int x = 0; x < e->width; x++)
-                out[x] = in[x] > out[x] ? in[x] : out[x];
+        memset(settle->contrast + at, 0, (size_t)e->width * sizeof *e->near);
+        for (int x = 0, n; x < e->width; x += n) {
+            n = rf_edge_run(e, x, y, &rough);
+            for (ptrdiff_t i = at + x; i < at + x + n && rough; i++)
+                if (rf_is_between(e, i, e->map[i]))
+                    settle->contrast[i] = (uint16_t)(e->near[i] - e->far[i]);
         }
     }
 }
@@ -150,15 +111,13 @@ void rf_settle(struct rf_edges *e, double softness)
 {
     struct settle settle = {
         .e = e,
-        .width = (int)(0.7 * softness + 1),
         .contrast = e->kept,
         .core = e->largest,
         .shape = rf_vote_shape(softness, 0.35),
     };
 
     rf_pool_run(e->pool, find_contrast, &settle, rf_edge_bands(e));
-    rf_pool_run(e->pool, widen_rows, &settle, rf_edge_bands(e));
-    rf_pool_run(e->pool, widen_columns, &settle, rf_edge_bands(e));
+    rf_widen(e, settle.contrast, e->spare, (int)(0.7 * softness + 1));
     rf_pool_run(e->pool, find_cores, &settle, rf_edge_bands(e));
     rf_pool_run(e->pool, settle_band, &settle, rf_edge_bands(e));
 }

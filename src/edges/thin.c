@@ -29,6 +29,7 @@ struct thin {
     struct rf_edges *e;
     uint16_t *own;   /* B, Q16 */
     uint16_t *other; /* O */
+    uint16_t *is_looked_at;
     int reach, near_by, columns;
     /* The Gaussian in Q16, of sum 1 at most, and 0 beyond the reach. */
     uint16_t gauss[2 * RF_VOTE_REACH + 1][2 * RF_VOTE_MIDDLE + 1];
@@ -85,33 +86,22 @@ static void part_band(void *context, int band, int worker)
 
     (void)worker;
     for (int y = band * RF_EDGE_BAND; y < end; y++)
-        for (int x = 0; x < e->width; x++) {
-            thin->own[y * e->stride + x] = WHOLE - 1;
-            if (rf_edge_is_rough(e, x, y))
+        for (int x = 0; x < e->width; x++)
+            if (thin->is_looked_at[y * e->stride + x])
                 part_window(thin, x, y);
-        }
 }
 
-/* Marks the blocks that are looked at to explain a pixel of a thin surface. */
-static void mark_blocks(struct rf_edges *e, int reach)
+/* Marks what is looked at to explain pixels of thin surfaces. */
+static void mark_thin(void *context, int band, int worker)
 {
-    const int across = rf_edge_blocks_across(e);
-    const int down = (e->height + RF_EDGE_BLOCK - 1) / RF_EDGE_BLOCK;
-    const int blocks = (reach + RF_EDGE_BLOCK - 1) / RF_EDGE_BLOCK;
+    const struct thin *thin = context;
+    const struct rf_edges *e = thin->e;
+    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
 
-    memset(e->rough, 0, (size_t)across * (size_t)down);
-    for (int y = 0; y < e->height; y++)
-        for (int x = 0; x < e->width; x++) {
-            const int u = x / RF_EDGE_BLOCK, v = y / RF_EDGE_BLOCK;
-            const int bottom = rf_smaller(v + blocks, down - 1);
-            const int left = rf_larger(u - blocks, 0), right = rf_smaller(u + blocks, across - 1);
-
-            if (e->is_wide[y * e->stride + x])
-                continue;
-            for (int row = rf_larger(v - blocks, 0); row <= bottom; row++)
-                for (int column = left; column <= right; column++)
-                    e->rough[row * across + column] = 1;
-        }
+    (void)worker;
+    for (int y = band * RF_EDGE_BAND; y < end; y++)
+        for (int x = 0; x < e->width; x++)
+            thin->is_looked_at[y * e->stride + x] = !e->is_wide[y * e->stride + x];
 }
 
 /* The disparity that explains the map best, or the label where the surface is wide. */
@@ -150,18 +140,20 @@ static void explain_band(void *context, int band, int worker)
     const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++)
-        for (int x = 0; x < e->width; x++) {
-            const ptrdiff_t at = y * e->stride + x;
+    for (int y = band * RF_EDGE_BAND; y < end; y++) {
+        const ptrdiff_t at = y * e->stride;
 
-            e->spare[at] = e->is_wide[at] ? e->label[at] : explain(thin, x, y);
-        }
+        memcpy(e->spare + at, e->label + at, (size_t)e->width * sizeof *e->label);
+        for (int x = 0; x < e->width; x++)
+            if (!e->is_wide[at + x])
+                e->spare[at + x] = explain(thin, x, y);
+    }
 }
 
 void rf_restore_thin(struct rf_edges *e, double softness)
 {
     const double spread = 1.15 * softness; /* with what the decision of pixels adds */
-    struct thin thin = {.e = e, .own = e->near, .other = e->far};
+    struct thin thin = {.e = e, .own = e->near, .other = e->far, .is_looked_at = e->kept};
 
     if (e->width < RF_MOST_VOTE_COLUMNS) /* windows do not fit */
         return;
@@ -169,10 +161,9 @@ void rf_restore_thin(struct rf_edges *e, double softness)
     thin.columns = 2 * thin.reach < RF_VOTE_COLUMNS ? RF_VOTE_COLUMNS : RF_MOST_VOTE_COLUMNS;
     thin.near_by = rf_larger(thin.reach, 3);
     make_gauss(&thin, spread);
-    mark_blocks(e, thin.near_by);
+    rf_pool_run(e->pool, mark_thin, &thin, rf_edge_bands(e));
+    rf_widen(e, thin.is_looked_at, e->spare, thin.near_by);
     rf_pool_run(e->pool, part_band, &thin, rf_edge_bands(e));
     rf_pool_run(e->pool, explain_band, &thin, rf_edge_bands(e));
-    for (int y = 0; y < e->height; y++)
-        memcpy(e->label + y * e->stride, e->spare + y * e->stride,
-               (size_t)e->width * sizeof *e->label);
+    rf_copy_plane(e, e->label, e->spare);
 }

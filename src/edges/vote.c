@@ -11,6 +11,8 @@
  */
 #include "edges/window.h"
 
+#include <string.h>
+
 struct vote {
     struct rf_edges *e;
     uint16_t *voter;
@@ -26,12 +28,17 @@ static void find_voters(void *context, int band, int worker)
 
     (void)worker;
     for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        uint16_t *voter = vote->voter + y * e->stride;
+        const ptrdiff_t at = y * e->stride;
+        uint16_t *voter = vote->voter + at;
+        bool rough;
 
-        for (int x = 0; x < e->width; x++) {
-            const ptrdiff_t at = y * e->stride + x;
-
-            voter[x] = rf_is_between(e, at, e->map[at]) ? 0 : (uint16_t)rf_larger(e->label[at], 1);
+        for (int x = 0; x < e->width; x++)
+            voter[x] = (uint16_t)(e->label[at + x] + (e->label[at + x] == 0));
+        for (int x = 0, n; x < e->width; x += n) {
+            n = rf_edge_run(e, x, y, &rough);
+            for (int u = x; u < x + n && rough; u++)
+                if (rf_is_between(e, at + u, e->map[at + u]))
+                    voter[u] = 0;
         }
         for (int x = e->width; x < RF_MOST_VOTE_COLUMNS; x++)
             voter[x] = 0;
@@ -93,12 +100,18 @@ static void decide_band(void *context, int band, int worker)
     const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++)
-        for (int x = 0; x < e->width; x++) {
-            const ptrdiff_t at = y * e->stride + x;
+    for (int y = band * RF_EDGE_BAND; y < end; y++) {
+        const ptrdiff_t at = y * e->stride;
+        bool rough;
 
-            e->spare[at] = vote->voter[at] ? e->label[at] : decide(vote, x, y);
+        memcpy(e->spare + at, e->label + at, (size_t)e->width * sizeof *e->label);
+        for (int x = 0, n; x < e->width; x += n) {
+            n = rf_edge_run(e, x, y, &rough);
+            for (int u = x; u < x + n && rough; u++)
+                if (!vote->voter[at + u])
+                    e->spare[at + u] = decide(vote, u, y);
         }
+    }
 }
 
 static inline void sort_two(uint16_t *a, uint16_t *b)
@@ -141,14 +154,20 @@ static void clean_band(void *context, int band, int worker)
     const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++)
-        for (int x = 0; x < e->width; x++) {
-            const ptrdiff_t at = y * e->stride + x;
-            const bool inside = x > 0 && y > 0 && x < e->width - 1 && y < e->height - 1;
+    for (int y = band * RF_EDGE_BAND; y < end; y++) {
+        const ptrdiff_t at = y * e->stride;
+        bool rough;
 
-            e->label[at] = inside && !vote->voter[at] ? median_of_nine(e->spare + at, e->stride)
-                                                      : e->spare[at];
+        memcpy(e->label + at, e->spare + at, (size_t)e->width * sizeof *e->label);
+        if (y == 0 || y == e->height - 1)
+            continue;
+        for (int x = 0, n; x < e->width; x += n) {
+            n = rf_edge_run(e, x, y, &rough);
+            for (int u = rf_larger(x, 1); u < rf_smaller(x + n, e->width - 1) && rough; u++)
+                if (!vote->voter[at + u])
+                    e->label[at + u] = median_of_nine(e->spare + at + u, e->stride);
         }
+    }
 }
 
 void rf_vote(struct rf_edges *e, double softness)

@@ -8,12 +8,13 @@
 
 enum {
     RF_VOTE_REACH = 15, /* most pixels to each side */
-    RF_DENSE_REACH = 9, /* beyond it every other row is looked at */
+    RF_NARROW_REACH = (RF_VOTE_COLUMNS - 1) / 2,
+    RF_CUT_REACH = 10, /* less is cut off to the one above: twice the columns cost twice as much */
+    RF_VOTE_STEP = 2,  /* rows: every other one is looked at */
     RF_VOTE_MIDDLE = RF_MOST_VOTE_COLUMNS - 1,
 };
 _Static_assert(2 * RF_VOTE_REACH + 1 <= RF_MOST_VOTE_COLUMNS &&
-                   2 * RF_DENSE_REACH + 1 <= RF_MOST_VOTE_ROWS &&
-                   RF_VOTE_REACH + 2 <= RF_MOST_VOTE_ROWS,
+                   2 * (RF_VOTE_REACH / RF_VOTE_STEP) + 1 <= RF_MOST_VOTE_ROWS,
                "no window is larger than the kernels take");
 
 struct rf_vote_shape {
@@ -26,15 +27,16 @@ struct rf_vote_shape {
 /* spread: the Gaussian's standard deviation, in reaches. */
 static inline struct rf_vote_shape rf_vote_shape(double softness, double spread)
 {
-    const int reach = rf_smaller(rf_larger((int)(3.5 * softness + 0.5), 6), RF_VOTE_REACH);
+    const int whole = rf_smaller(rf_larger((int)(3.5 * softness), 6), RF_VOTE_REACH);
+    const int reach = whole < RF_CUT_REACH ? rf_smaller(whole, RF_NARROW_REACH) : whole;
     struct rf_vote_shape shape = {.reach = reach,
-                                  .step = reach > RF_DENSE_REACH ? 2 : 1,
+                                  .step = RF_VOTE_STEP,
                                   .columns = 2 * reach < RF_VOTE_COLUMNS ? RF_VOTE_COLUMNS
                                                                          : RF_MOST_VOTE_COLUMNS};
 
     for (int y = -reach; y <= reach; y++)
         for (int x = -reach; x <= reach; x++) {
-            const double off = (x * x + y * y) / (2 * spread * reach * spread * reach);
+            const double off = (x * x + y * y) / (2 * spread * whole * spread * whole);
 
             shape.nearness[RF_VOTE_REACH + y][RF_VOTE_MIDDLE + x] =
                 (uint8_t)(255 * rf_exp_minus(off) + 0.5);

@@ -3,6 +3,7 @@
 #define RF_KERNELS_EDGES_H
 
 #include <assert.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -19,6 +20,77 @@
  */
 enum { RF_NO_DIRECTION = 8 };
 typedef void rf_steepest_fn(uint8_t *out, const uint16_t *const row[3], int n);
+
+/*
+ * block_ranges: the least and the greatest disparity of each block of a row of them, which is
+ * `width` elements wide and `rows`, 1 to RF_EDGE_BLOCK, high; the last block may be narrower.
+ */
+enum { RF_EDGE_BLOCK = 8 };
+struct rf_edge_range {
+    uint16_t least, most;
+};
+typedef void rf_block_ranges_fn(struct rf_edge_range *range, const uint16_t *plane,
+                                ptrdiff_t stride, int width, int rows);
+
+/*
+ * climb: the next step along the steepest way up, or down, from each pixel of a cell. `from` holds
+ * the disparities that ways have come to before this step, and `to` receives those after it: from[]
+ * of the neighbour that `direction` names, or the pixel's own. Steps are modulo 2^16. A way ends
+ * before its first step that is less than `flat`, at least 1, or than largest / RF_RAMP_ENDS. So
+ * where end == from and the step is neither,
+ *
+ *     end = to, largest = max(largest, the step), length = max(length, number of the step)
+ *
+ * Whether that was so anywhere is returned. Up to RF_CLIMB_CELL rows and columns, and of `from` the
+ * elements around them, too, which `to` does not overlap.
+ */
+enum { RF_CLIMB_CELL = 16, RF_RAMP_ENDS = 12 };
+struct rf_climb_cell {
+    const uint8_t *direction; /* as steepest writes them */
+    bool down;
+    const uint16_t *from;
+    uint16_t *to, *end, *largest, *length;
+    ptrdiff_t stride; /* every plane has it */
+    int columns, rows;
+    uint16_t flat, step; /* step: the number of this one */
+};
+typedef bool rf_climb_fn(const struct rf_climb_cell *cell);
+
+/*
+ * binomial8 and binomial16: row[1] smoothed by a binomial 3x3 mean: 16 times it, of codes; of
+ * disparities it is rounded down. binomial8 and the three below: elements -1 to n of each row are
+ * read.
+ */
+typedef void rf_binomial8_fn(uint16_t *out, const uint8_t *const row[3], int n);
+typedef void rf_binomial16_fn(uint16_t *out, const uint16_t *const row[3], int n);
+
+/*
+ * photo_gradient: with Sobel's operator an eighth of (right, down), each rounded towards 0, of
+ * codes at most 16 * 255; it replaces (gx, gy) where it is longer.
+ */
+typedef void rf_photo_gradient_fn(int16_t *gx, int16_t *gy, const uint16_t *const row[3], int n);
+
+/* map_slope: sqrt(right^2 + down^2) / 8 by Sobel's operator, in single precision, rounded down. */
+typedef void rf_map_slope_fn(uint16_t *slope, const uint16_t *const row[3], int n);
+
+/*
+ * edge_support: adds how much of an edge of this direction the photo has at each pixel of a window,
+ *
+ *     sum[columns * y + x] += min(|normal_x gx + normal_y gy| >> 7, RF_MOST_PHOTO_EDGE)
+ *
+ * Normals are Q7, at most 127; gradients at most 2040.
+ */
+enum { RF_MOST_PHOTO_EDGE = 40 * 16 };
+struct rf_edge_window {
+    const int16_t *gradient_x, *gradient_y; /* at the window's first pixel */
+    ptrdiff_t stride;
+    int rows, columns; /* 8 or 12 columns */
+    int normal_x, normal_y;
+};
+typedef void rf_edge_support_fn(int32_t *sum, const struct rf_edge_window *window);
+
+/* greatest: the greatest element of `rows` rows, at least one, at each of n places. */
+typedef void rf_greatest_fn(uint16_t *out, const uint16_t *const *row, int rows, int n);
 
 /*
  * Windows around a pixel: rows 0, step, 2 step ... of columns 0 to columns - 1. They are a multiple
