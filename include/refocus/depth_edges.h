@@ -44,6 +44,8 @@ struct refocus_depth_edges_report {
     uint32_t parted;      /**< 1: pixels of ramps were given to one of two surfaces */
     float changed;        /**< share of the pixels that differ by 1/255 or more from the map as
                                it was, brought to the photo's size by straight lines */
+    float noise;          /**< standard deviation of the noise that was smoothed away, share of the
+                               range, 0 to 1 */
 };
 
 static inline struct refocus_depth_edges_report refocus_depth_edges_report_default(void)
@@ -64,6 +66,7 @@ static inline struct refocus_depth_edges_report refocus_depth_edges_report_defau
  *     photo clearly better then. A photo of something else can mislead it.
  *   - Each pixel of a ramp between two surfaces is given to the one that looks like it in the
  *     photo. Slopes and rounded things, which are longer ramps, stay.
+ *   - Noise of 0.4 % of the range and more is smoothed away within surfaces.
  *   - Wires and hair get back the disparity that a soft map mixed with what is behind them.
  *
  * A map of the photo's size that is sharp and lies on the photo comes out as it is, to the code.

@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "depth/smooth.h"
 #include "support/compare.h"
 
 enum {
@@ -13,8 +14,6 @@ enum {
     MOST_STEP = CODES / 64, /* 6 bits */
     PIXELS_A_CODE = 64,     /* fewer: a small picture of a fine map */
     LOOKED_AT = 1 << 17,    /* pixels, about: the others hardly have more codes */
-    ROWS = 16,              /* a work item of a thread */
-    PASSES = 3,
 };
 
 /* Neighbours of another step are no more than this away: one step, and what rounding and the
@@ -101,97 +100,22 @@ int rf_code_step(const struct refocus_disparity *map)
     return low;
 }
 
-/* One pass of smoothing, from a plane to another. */
-struct pass {
-    const struct rf_dequantiser *d;
-    struct rf_disparity_q16 in, out;
-    int apart;
-};
-
-/* n pixels of a row from x on, n at most the distance of the neighbours, some of which lie beyond
- * the sides: there the last pixel is repeated. */
-static void smooth_side(const struct pass *pass, uint16_t *out, const uint16_t *const row[3], int x,
-                        int n)
-{
-    const struct rf_dequantiser *d = pass->d;
-    const int apart = pass->apart;
-    uint16_t near_by[3][3 * RF_DEQUANTISE_REACH];
-    const uint16_t *from[3];
-
-    for (int j = 0; j < 3; j++) {
-        for (int i = 0; i < n + 2 * apart; i++) {
-            const int at = rf_larger(x - apart + i, 0);
-
-            near_by[j][i] = row[j][rf_smaller(at, d->width - 1)];
-        }
-        from[j] = near_by[j] + apart;
-    }
-    d->kernels->smooth_codes(out + x, from, apart, most_alike(d->step), n);
-}
-
-static void smooth_row(const struct pass *pass, int y)
-{
-    const struct rf_dequantiser *d = pass->d;
-    const int left = rf_smaller(pass->apart, d->width);
-    const int right = rf_larger(d->width - pass->apart, left);
-    uint16_t *out = pass->out.at + y * pass->out.stride;
-    const uint16_t *row[3], *middle[3];
-
-    for (int j = 0; j < 3; j++) {
-        const int v = rf_larger(y + (j - 1) * pass->apart, 0);
-
-        row[j] = pass->in.at + rf_smaller(v, d->height - 1) * pass->in.stride;
-        middle[j] = row[j] + left;
-    }
-    smooth_side(pass, out, row, 0, left);
-    d->kernels->smooth_codes(out + left, middle, pass->apart, most_alike(d->step), right - left);
-    smooth_side(pass, out, row, right, d->width - right);
-}
-
-static void smooth_band(void *context, int band, int worker)
-{
-    const struct pass *pass = context;
-    const int end = rf_smaller((band + 1) * ROWS, pass->d->height);
-
-    (void)worker;
-    for (int y = band * ROWS; y < end; y++)
-        smooth_row(pass, y);
-}
-
-static void clamp_band(void *context, int band, int worker)
-{
-    const struct pass *pass = context;
-    const struct rf_dequantiser *d = pass->d;
-    const int end = rf_smaller((band + 1) * ROWS, d->height);
-
-    (void)worker;
-    for (int y = band * ROWS; y < end; y++)
-        d->kernels->clamp_codes(d->code.at + y * d->code.stride, pass->in.at + y * pass->in.stride,
-                                (uint16_t)(d->step / 2), d->width);
-}
-
-static void run_bands(struct rf_pool *pool, rf_work_fn *work, struct pass *pass)
-{
-    const int bands = (pass->d->height + ROWS - 1) / ROWS;
-
-    if (pool)
-        rf_pool_run(pool, work, pass, bands);
-    for (int band = 0; !pool && band < bands; band++)
-        work(pass, band, 0);
-}
-
 void rf_dequantise(const struct rf_dequantiser *d, struct rf_pool *pool)
 {
-    static const int apart[PASSES] = {4, 2, 1};
-    struct pass pass = {.d = d, .in = d->code};
+    const uint16_t alike = most_alike(d->step);
+    const struct rf_smooth_pass passes[] = {{4, alike}, {2, alike}, {1, alike}};
+    const struct rf_smoother smoother = {
+        .kernels = d->kernels,
+        .code = d->code,
+        .spare = {d->spare[0], d->spare[1]},
+        .width = d->width,
+        .height = d->height,
+        .pass = passes,
+        .passes = sizeof passes / sizeof *passes,
+        .most_moved = (uint16_t)(d->step / 2),
+    };
 
-    for (int i = 0; i < PASSES; i++) {
-        pass.out = d->spare[i % 2];
-        pass.apart = apart[i];
-        run_bands(pool, smooth_band, &pass);
-        pass.in = pass.out;
-    }
-    run_bands(pool, clamp_band, &pass);
+    rf_smooth(&smoother, pool);
 }
 
 void rf_dequantised_patch(const struct rf_kernels *kernels, const struct refocus_disparity *map,

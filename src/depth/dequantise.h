@@ -6,10 +6,9 @@
  * over steps of one code and nowhere else, and no pixel leaves the interval that was rounded to its
  * code: half a step up and down. Edges between surfaces are more than a step and stay as they are.
  *
- * The smoothing is a binomial 3x3 mean, three times, with neighbours 4, 2 and 1 pixels apart (the
- * a trous algorithm, Holschneider et al. 1989), so a pixel depends on those up to
- * RF_DEQUANTISE_REACH away. Then a step of 257 codes is spread over 14 pixels: what is left
- * between two neighbours is 0.08 pixels of blur at K = 127.
+ * The smoothing (depth/smooth.h) has neighbours 4, 2 and 1 pixels apart, so a pixel depends on
+ * those up to RF_DEQUANTISE_REACH away. Then a step of 257 codes is spread over 14 pixels: what is
+ * left between two neighbours is 0.08 pixels of blur at K = 127.
  */
 #ifndef RF_DEQUANTISE_H
 #define RF_DEQUANTISE_H

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "depth/dequantise.h"
+#include "depth/noise.h"
 #include "image/format.h"
 #include "support/compare.h"
 
@@ -129,10 +130,11 @@ static void enlarge_row(void *context, int y, int worker)
 void rf_load_edge_map(struct rf_edge_job *job)
 {
     struct rf_edges *e = &job->edges;
+    const struct rf_disparity_q16 spare[2] = {{e->far, e->stride}, {e->label, e->stride}};
     const struct rf_dequantiser d = {
         .kernels = e->kernels,
         .code = job->sample,
-        .spare = {{e->far, e->stride}, {e->label, e->stride}},
+        .spare = {spare[0], spare[1]},
         .width = job->columns,
         .height = job->rows,
         .step = rf_code_step(job->map),
@@ -143,6 +145,10 @@ void rf_load_edge_map(struct rf_edge_job *job)
     rf_pool_run(e->pool, load_samples, job, job->rows);
     if (d.step)
         rf_dequantise(&d, e->pool);
+    else
+        job->noise = rf_noise_of(job->sample, job->columns, job->rows);
+    if (job->noise)
+        rf_denoise(e->kernels, job->sample, spare, job->columns, job->rows, job->noise, e->pool);
     rf_pool_run(e->pool, enlarge_row, job, e->height);
 }
 

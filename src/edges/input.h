@@ -21,13 +21,15 @@ struct rf_edge_job {
     int columns, rows;              /* samples of the map that are used */
     struct rf_sample_place *column; /* where each pixel of a row lies among samples */
     bool enlarged;                  /* the map is not of the photo's size */
+    int noise;                      /* standard deviation of what was smoothed away, Q16 */
     struct rf_disparity_q16 sample; /* in the memory of near, until ramps are found */
 };
 
 /* Writes the colours of the photo. */
 void rf_load_edge_photo(struct rf_edge_job *job);
 
-/* Writes the map: slopes in place of the steps of few codes, at the size that work is done at. */
+/* Writes the map at the size that work is done at: slopes in place of the steps of few codes, and
+ * without noise. */
 void rf_load_edge_map(struct rf_edge_job *job);
 
 /* The softness of the samples as they are, in pixels of their own. */

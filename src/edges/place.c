@@ -161,7 +161,8 @@ static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_repor
     report->shift_y = (float)(found.shift_y * pixel);
     report->bent = found.bent;
     report->parted = soft;
-    return soft || found.bent || found.grown || found.shift_x || found.shift_y;
+    report->noise = (float)job->noise / 65535;
+    return soft || job->noise || found.bent || found.grown || found.shift_x || found.shift_y;
 }
 
 /* Brings the result to the photo's size. */

@@ -212,7 +212,7 @@ static void failing_edges(void **state)
     (void)state;
     fail_each(place_sharp_edges, 1, 0);
     fail_each(place_soft_edges, 1, 0);
-    fail_each(place_coarse_edges, 2, 0); /* one of the upsampler */
+    fail_each(place_coarse_edges, 1, 0);
 }
 
 /* The memory for the largest picture that there can be is counted in 64 bits, and nothing is read

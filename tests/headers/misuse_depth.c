@@ -235,8 +235,8 @@ static void edges_arguments(void)
 
 static void placing_edges(void)
 {
-    static const uint32_t no_sizes[] = {0, 4, sizeof findings - 4, REFOCUS_MAX_STRUCT_SIZE + 1,
-                                        UINT32_MAX};
+    static const uint32_t no_sizes[] = {0, 4, offsetof(struct refocus_depth_edges_report, changed),
+                                        REFOCUS_MAX_STRUCT_SIZE + 1, UINT32_MAX};
     const struct misuse bad[] = {
         BAD(refocus_depth_edges_params, struct_size, 0),
         BAD(refocus_depth_edges_params, struct_size, sizeof(struct refocus_depth_edges_params) - 4),

@@ -1,0 +1,132 @@
+/* test_noise.c: how much noise a map of disparities is found to have, and what is left of it. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "depth/noise.h"
+
+enum { WIDTH = 203, HEIGHT = 151, PIXELS = WIDTH * HEIGHT };
+
+static uint16_t exact[PIXELS], map[PIXELS], spare[2][PIXELS];
+static uint32_t random_state = 1;
+
+static double evenly(void)
+{
+    random_state = random_state * 1664525 + 1013904223;
+    return (random_state >> 8) / 16777216.0;
+}
+
+/* A number of mean 0 and standard deviation 1, near enough. */
+static double normally(void)
+{
+    double sum = -6;
+
+    for (int i = 0; i < 12; i++)
+        sum += evenly();
+    return sum;
+}
+
+/* A slanted plane with a ball before it. */
+static double surface(int x, int y)
+{
+    const double dx = x - 120, dy = y - 70, in = 45 * 45 - dx * dx - dy * dy;
+
+    return in > 0 ? 42000 + 220 * sqrt(in) : 12000 + 61.3 * x + 37.7 * y;
+}
+
+static void draw(double noise)
+{
+    for (int i = 0; i < PIXELS; i++) {
+        exact[i] = (uint16_t)surface(i % WIDTH, i / WIDTH);
+        map[i] = (uint16_t)fmin(fmax(exact[i] + noise * normally(), 0), 65535);
+    }
+}
+
+static struct rf_disparity_q16 plane(uint16_t *at)
+{
+    return (struct rf_disparity_q16){at, WIDTH};
+}
+
+static int noise_found(void)
+{
+    return rf_noise_of(plane(map), WIDTH, HEIGHT);
+}
+
+static void is_measured(void **state)
+{
+    static const double noises[] = {400, 655, 1311, 3277};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof noises / sizeof *noises; i++) {
+        draw(noises[i]);
+        assert_in_range(noise_found(), 0.8 * noises[i], 1.2 * noises[i]);
+    }
+}
+
+/* Exact maps, those of 8 bits, little noise, and depths that change at every few pixels. */
+static void is_none(void **state)
+{
+    (void)state;
+    draw(0);
+    assert_int_equal(noise_found(), 0);
+    for (int i = 0; i < PIXELS; i++)
+        map[i] = (uint16_t)(exact[i] / 257 * 257);
+    assert_int_equal(noise_found(), 0);
+    draw(120);
+    assert_int_equal(noise_found(), 0);
+    for (int i = 0; i < PIXELS; i++) { /* leaves of 4 x 3 pixels */
+        const uint32_t leaf = (uint32_t)(i % WIDTH / 4 + i / WIDTH / 3 * 64) * 2654435761u;
+
+        map[i] = (uint16_t)(leaf >> 16);
+    }
+    assert_int_equal(noise_found(), 0);
+    assert_int_equal(rf_noise_of(plane(map), 1, 1), 0);
+    assert_int_equal(rf_noise_of(plane(map), 2, HEIGHT), 0);
+}
+
+/* Between surfaces nothing is averaged, and no pixel goes farther than three deviations. */
+static void is_smoothed_within_surfaces(void **state)
+{
+    static const double noises[] = {655, 1311, 3277};
+    static uint16_t noisy[PIXELS];
+    const struct rf_disparity_q16 spares[2] = {plane(spare[0]), plane(spare[1])};
+    struct rf_pool pool;
+    struct rf_run run = {.looked_at = NULL};
+    struct rf_kernels kernels;
+    uint32_t cpu = 0;
+
+    (void)state;
+    assert_true(rf_kernels_select(&kernels, &cpu));
+    atomic_init(&run.state, RF_RUN_RUNNING);
+    assert_int_equal(rf_pool_start(&pool, 2, NULL, &run), 0);
+    for (size_t i = 0; i < sizeof noises / sizeof *noises; i++) {
+        double before = 0, after = 0;
+        int far_off = 0;
+
+        draw(noises[i]);
+        memcpy(noisy, map, sizeof noisy);
+        rf_denoise(&kernels, plane(map), spares, WIDTH, HEIGHT, (int)noises[i], &pool);
+        for (int k = 0; k < PIXELS; k++) {
+            before += pow(noisy[k] - exact[k], 2);
+            after += pow(map[k] - exact[k], 2);
+            far_off += abs(map[k] - exact[k]) > 14000;
+            assert_true(abs(map[k] - noisy[k]) <= 3 * noises[i] + 8);
+        }
+        assert_true(after < before / 9);
+        assert_int_equal(far_off, 0);
+    }
+    rf_pool_end(&pool);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(is_measured), cmocka_unit_test(is_none),
+                                       cmocka_unit_test(is_smoothed_within_surfaces)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
