@@ -2,19 +2,6 @@
 #include "colour/transfer.h"
 #include "thin/mixture.h"
 
-static struct rf_thin_run run_of(const struct rf_thin *thin, uint32_t first, int count)
-{
-    struct rf_thin_run run = {.first = first, .count = (uint16_t)count, .least = 65535};
-
-    for (int i = 0; i < count; i++) {
-        const uint16_t d = thin[i].near_disparity;
-
-        run.least = d < run.least ? d : run.least;
-        run.most = d > run.most ? d : run.most;
-    }
-    return run;
-}
-
 static void find_band(void *context, int band, int worker)
 {
     const struct rf_thin_pass *t = context;
@@ -43,7 +30,8 @@ static void find_band(void *context, int band, int worker)
 
         for (int i = 0; i < found; i++)
             rf_fit_coverage(t, &thin[count + (uint32_t)i], tx, band);
-        list->run[(size_t)band * t->view->tiles_x + tx] = run_of(thin + count, count, found);
+        list->run[(size_t)band * t->view->tiles_x + tx] =
+            (struct rf_thin_run){.first = count, .count = (uint16_t)found};
         count += (uint32_t)found;
     }
 }

@@ -70,50 +70,16 @@ static bool is_near(const struct rf_thin_pass *t, const struct rf_thin *thin, in
 bool rf_is_matted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
 {
     const int level = level_of(thin->at);
-    const struct rf_thin_bounds *b = &t->bounds[level];
 
     if (thin->alpha > MOST_FAR_ALPHA && !is_near(t, thin, tx, ty))
         return false;
-    if (t->plan->plain)
-        return thin->near_disparity >= b->matte_from && thin->near_disparity <= b->matte_to &&
-               thin->far_disparity <= b->matte_far;
     return abs(rf_near_blur(t, thin, tx, ty)) <= matte_blur(level) &&
            rf_thin_blur(t, thin->far_disparity, tx * RF_TILE, ty * RF_TILE) >= far_blur(level);
 }
 
 bool rf_is_splatted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
 {
-    const int level = level_of(thin->at);
-
-    return t->plan->plain ? thin->near_disparity >= t->bounds[level].splat_from
-                          : rf_near_blur(t, thin, tx, ty) <= -splat_blur_of(t, level);
-}
-
-/* The least disparity with at most a blur; 65536: none. */
-static int disparity_from(const struct rf_thin_pass *t, int blur)
-{
-    int low = 0, high = 65536;
-
-    while (low < high) {
-        const int middle = (low + high) / 2;
-
-        if (plain_blur(t->plan->focus, (uint16_t)middle) <= blur)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return low;
-}
-
-static void set_bounds(struct rf_thin_pass *t)
-{
-    for (int k = 0; k < RF_THIN_LEVELS && t->plan->plain; k++)
-        t->bounds[k] = (struct rf_thin_bounds){
-            .splat_from = disparity_from(t, -splat_blur_of(t, k)),
-            .matte_from = disparity_from(t, matte_blur(k)),
-            .matte_to = disparity_from(t, -matte_blur(k) - 1) - 1,
-            .matte_far = disparity_from(t, far_blur(k) - 1) - 1,
-        };
+    return rf_near_blur(t, thin, tx, ty) <= -splat_blur_of(t, level_of(thin->at));
 }
 
 /* Rays hit thin structures often enough where they lie closer than 1.8 pixels, and miss many from
@@ -141,10 +107,10 @@ static int disc_scale(const struct rf_ray_set *set)
 void rf_thin_set_up(struct rf_thin_pass *t, const struct rf_thin_settings *settings)
 {
     t->splat_blur = splat_blur(settings->rays);
-    set_bounds(t);
     t->mattes = settings->on;
     t->disc_scale =
-        settings->on && settings->splats && !(t->plan->plain && t->bounds[0].splat_from > 65535)
+        settings->on && settings->splats &&
+                !(t->plan->plain && plain_blur(t->plan->focus, 65535) > -splat_blur_of(t, 0))
             ? disc_scale(settings->set)
             : 0;
 }

@@ -24,27 +24,19 @@ static bool is_visible(const struct rf_thin_pass *t, int tx, int ty)
     return true;
 }
 
-/* Whether no mixture of a tile can be matted, as far as its run can say. */
-static bool is_none(const struct rf_thin_pass *t, const struct rf_thin_run *run)
-{
-    const struct rf_thin_bounds *all = &t->bounds[RF_THIN_LEVELS - 1]; /* the widest */
-
-    return !run->count ||
-           (t->plan->plain && (run->least > all->matte_to || run->most < all->matte_from));
-}
-
 void rf_choose_matted(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice)
 {
     uint32_t count;
     const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
 
-    if (is_none(t, rf_thin_run_of(t, tx, ty)) || !is_visible(t, tx, ty))
-        return;
-    for (uint32_t i = 0; i < count; i++)
-        if (rf_is_matted(t, &thin[i], tx, ty)) {
-            choice->matte[i / 64] |= UINT64_C(1) << i % 64;
-            choice->mattes = true;
-        }
+    for (uint32_t i = 0; i < count; i++) {
+        if (!rf_is_matted(t, &thin[i], tx, ty))
+            continue;
+        if (!choice->mattes && !is_visible(t, tx, ty))
+            return;
+        choice->matte[i / 64] |= UINT64_C(1) << i % 64;
+        choice->mattes = true;
+    }
 }
 
 /* The light in the list is F, that in the planes the photo's: alpha N = C - (1 - alpha) F. */

@@ -36,29 +36,13 @@ static bool is_alone(const struct rf_thin_pass *t, int tx, int ty, int blur)
     return true;
 }
 
-/* Whether all mixtures of a tile are splatted, or none, as far as its run can say. */
-static bool are_all_splatted(const struct rf_thin_pass *t, const struct rf_thin_run *run)
-{
-    return t->plan->plain && run->least >= t->bounds[RF_THIN_LEVELS - 1].splat_from;
-}
-
-static bool is_none_splatted(const struct rf_thin_pass *t, const struct rf_thin_run *run)
-{
-    return t->plan->plain && run->most < t->bounds[0].splat_from;
-}
-
 /* The farthest near disparity of the mixtures of a tile that are splatted; 65536: none is. */
 static int farthest_splatted(const struct rf_thin_pass *t, int tx, int ty)
 {
-    const struct rf_thin_run *run = rf_thin_run_of(t, tx, ty);
     uint32_t count;
     const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
     int least = 65536;
 
-    if (count == 0 || is_none_splatted(t, run))
-        return least;
-    if (are_all_splatted(t, run))
-        return run->least;
     for (uint32_t i = 0; i < count; i++)
         if (rf_is_splatted(t, &thin[i], tx, ty) && thin[i].near_disparity < least)
             least = thin[i].near_disparity;
@@ -68,7 +52,6 @@ static int farthest_splatted(const struct rf_thin_pass *t, int tx, int ty)
 static void choose_splatted(const struct rf_thin_pass *t, int tx, int ty,
                             struct rf_thin_choice *choice)
 {
-    const bool all = are_all_splatted(t, rf_thin_run_of(t, tx, ty));
     const int d = farthest_splatted(t, tx, ty);
     uint32_t count;
     const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
@@ -77,7 +60,7 @@ static void choose_splatted(const struct rf_thin_pass *t, int tx, int ty,
         return;
     choice->splats = true;
     for (uint32_t i = 0; i < count; i++)
-        if (all || rf_is_splatted(t, &thin[i], tx, ty))
+        if (rf_is_splatted(t, &thin[i], tx, ty))
             choice->splat[i / 64] |= UINT64_C(1) << i % 64;
 }
 

@@ -55,7 +55,6 @@
 struct rf_thin_run {
     uint32_t first;
     uint16_t count;
-    uint16_t least, most; /* near disparities; 65535 and 0 if there are no mixtures */
 };
 
 /* Room for the mixtures of a row of tiles: one pixel in four. Further ones stay as they are. */
@@ -81,14 +80,6 @@ struct rf_thin_list {
  * before the focus on, and matted up to (112 + 9 k) / 256 pixels of their own blur, before what is
  * blurred by (384 + 32 k) / 256 pixels and more.
  */
-enum { RF_THIN_LEVELS = 16 };
-
-/* Where the blur is that of a lens alone: the disparities of a level. Mixtures are splatted that
- * are as near as splat_from (65536: none), and matted that are between two others and before
- * something at most as near as matte_far. */
-struct rf_thin_bounds {
-    int splat_from, matte_from, matte_to, matte_far;
-};
 
 /* Mixtures of a tile that are separated, a bit each. */
 struct rf_thin_choice {
@@ -123,7 +114,6 @@ struct rf_thin_pass {
     int disc_scale; /* Q8: radius of a splatted disc, as part of its blur; 0: none is splatted */
     int splat_blur; /* Q7.8: from this blur before the focus on, more and more are splatted */
     bool mattes;    /* mixtures in focus may be matted */
-    struct rf_thin_bounds bounds[RF_THIN_LEVELS];
 };
 
 enum {
@@ -145,7 +135,7 @@ struct rf_thin_settings {
     const struct rf_ray_set *set; /* the set of these rays */
 };
 
-/* Sets t->splat_blur, bounds, disc_scale and mattes, by t->plan. */
+/* Sets t->splat_blur, disc_scale and mattes, by t->plan. */
 void rf_thin_set_up(struct rf_thin_pass *t, const struct rf_thin_settings *settings);
 
 /* Whether anything is separated with these settings. */
