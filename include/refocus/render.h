@@ -108,7 +108,8 @@ struct refocus_renderer_params {
                                may change single pixels by a code. For sweep, search,
                                raytrace, jittered and blur */
     uint32_t thin;        /**< 1: with memory for struct refocus_thin_params, which other
-                               renderers, and strip mode, take as not enabled */
+                               renderers, and strip mode, take as not enabled, and for a matte
+                               (scene.h), which they refuse */
     uint32_t depth_edges; /**< 1: with memory for REFOCUS_DEPTH_EDGES_AUTO of scene.h; not in strip
                                mode, which goes without: call refocus_depth_edges() before */
     uint32_t reserved2;   /**< 0 */
@@ -142,7 +143,7 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max
  *     interpolated  32 (W + 16) (H + 16) + 24 (W + 64) T + 2^16
  *     diffusion     96 (W + 16) (H + 16) + 2^18
  *
- * params->thin takes up to 6 (W + 16) (H + 16) + 2^12 more, 4.4 bytes a pixel for large pictures.
+ * params->thin takes up to 8 (W + 16) (H + 16) + 2^12 more, 6 bytes a pixel for large pictures.
  *
  * params->depth_edges takes up to 16 (W + 128) (H + 64) + 64 (W + H) + 2^18 more.
  *
@@ -179,7 +180,8 @@ REFOCUS_API void refocus_renderer_destroy(struct refocus_renderer **renderer);
  * @param scene  see struct refocus_scene
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (also depth_edges without memory for it),
  *         REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED (in_place: a map of another size, or a photo of
- *         Y, U and V), REFOCUS_ERR_CANCELLED. After an error nothing is prepared.
+ *         Y, U and V; a matte without params.thin, in strip mode or of a photo of Y, U and V),
+ *         REFOCUS_ERR_CANCELLED. After an error nothing is prepared.
  */
 REFOCUS_API int refocus_prepare_scene(struct refocus_renderer *renderer,
                                       const struct refocus_scene *scene);

@@ -20,7 +20,32 @@ enum refocus_depth_edges {
                                            alone have the memory for it */
 };
 
-/** A photo and what is known of the depth in it. Start from refocus_scene_default(). */
+/**
+ * A photo and what is known of the depth in it. Start from refocus_scene_default().
+ *
+ * The matte says how much of each pixel the subject covers,
+ *
+ *     C = alpha N + (1 - alpha) F
+ *
+ * with N the colour of the subject and F that of what is behind it. The subject is the nearer of
+ * the two surfaces at its silhouette: where what has alpha 0 is not farther by 1/32 of disparity,
+ * as the ground at its feet or something before it, the matte changes nothing. Elsewhere
+ *
+ * - alpha within 1/32 of 0 or 1 counts as 0 or 1. Such a pixel up to 6 pixels from the silhouette
+ *   keeps its disparity if one farther in on its side and up to 10 pixels away has it, within 1/32,
+ *   and else gets that of the nearest of these. Where there is none, as in hair, it keeps its own,
+ *   unless a pixel beside it on the other side has the same: it gets one from the rest of its side
+ *   then, as the map has lost it.
+ * - between them F and N are estimated from both sides so that C stays what it is, and the
+ *   disparity is that of the side with the greater part. The sweep draws alpha N over what is
+ *   behind, where N is in focus and F is not; else the pixel as one of N, with the mean colour of
+ *   the background in place of F, if alpha is 1/6 or more, and as one of F if it is less. Other
+ *   methods draw it as it is.
+ *
+ * There is room for as many mixtures as a fourth of the pixels of a row of tiles of 16 x 16;
+ * further ones are drawn as they are. In tiles with mixtures of the matte no others are looked for
+ * (struct refocus_thin_params). A matte of one value, 0 or 1 for example, changes nothing.
+ */
 struct refocus_scene {
     uint32_t struct_size;              /**< sizeof(struct refocus_scene) */
     uint32_t depth_edges;              /**< enum refocus_depth_edges; default as given */
@@ -30,6 +55,10 @@ struct refocus_scene {
     const struct refocus_disparity
         *disparity; /**< any size; covers the same view as the photo. Another size than the
                          photo's is brought to it by following the photo's edges */
+    const struct refocus_disparity
+        *matte; /**< NULL, the default, or alpha of each pixel: any size, bilinear between samples;
+                     0 = background, the greatest value of its bits = subject. Of photos of R, G, B,
+                     to renderers with `thin` */
 };
 
 /** A photo and its disparities alone, which stay the caller's. */

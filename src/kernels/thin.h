@@ -13,6 +13,8 @@ struct rf_thin {
     uint8_t alpha; /* 255 = 1 */
     uint16_t near_disparity, far_disparity;
     uint16_t light[3]; /* F, Q12 */
+    uint16_t whole[3]; /* light as a pixel of N alone, Q12: alpha N and (1 - alpha) times the mean
+                          light of the background; of the caller's matte alone */
 };
 
 /* A tile of a photo in planes, of pixel (0, 0) on, rows `stride` apart. The photo goes

@@ -58,6 +58,7 @@ static void lay_out_thin(struct rf_arena *arena, struct rf_thin_list *thin, int 
 
     thin->pixel = rf_arena_take(arena, rf_thin_capacity(width) * down, sizeof *thin->pixel);
     thin->run = rf_arena_take(arena, across * down, sizeof *thin->run);
+    thin->given = rf_arena_take(arena, down, sizeof *thin->given);
 }
 
 /* Lays out the coverage that thin structures are drawn into. Its sources share memory with the

@@ -12,8 +12,8 @@
  *     background light spare of the pre-filter | cone | light of the hidden background
  *     pyramid          coverage sources | pyramid | foreground cells | weights
  *
- * All of it is also what a scene is prepared in: upsampling and edges work there before any plane
- * lives (struct refocus_renderer, prepare_memory).
+ * All of it is also what a scene is prepared in: upsampling, edges and the matte work there before
+ * any plane lives (struct refocus_renderer, prepare_memory).
  *
  * Of a photo of Y, U and V the weights lie in the third plane of the hidden background's light,
  * which no other plane of such a photo uses: there they share nothing.

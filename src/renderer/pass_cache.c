@@ -73,7 +73,7 @@ static uint32_t thin_key(const struct rf_frame *f)
 {
     return rf_thin_is_separated(&f->thin)
                ? (uint32_t)f->thin.disc_scale << 8 | (uint32_t)f->thin.mattes << 7 |
-                     (1 + rf_renderer_of(f)->blend)
+                     (uint32_t)f->thin.finds << 6 | (1 + rf_renderer_of(f)->blend)
                : 0;
 }
 
@@ -293,9 +293,10 @@ static void find_thin(struct rf_frame *f)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
 
-    if (!rf_thin_is_separated(&f->thin) || r->photo.thin.blend == r->blend)
-        return;
-    rf_thin_find(&f->thin, r->blend);
+    if (rf_thin_is_separated(&f->thin) && r->photo.thin.has_matte)
+        rf_matte_reblend(&f->thin, r->transfer, r->blend);
+    if (f->thin.finds && r->photo.thin.blend != r->blend)
+        rf_thin_find(&f->thin, r->blend);
 }
 
 void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need, bool whole)

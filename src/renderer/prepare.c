@@ -16,7 +16,8 @@
 /* A scene as it was read: its structs are copies of the caller's. */
 struct scene {
     struct refocus_image photo;
-    struct refocus_disparity disparity;
+    struct refocus_disparity disparity, matte;
+    bool has_matte;
     uint32_t depth_edges; /* enum refocus_depth_edges */
 };
 
@@ -64,6 +65,28 @@ static struct refocus_image yuv_guide(const struct refocus_renderer *r)
                                 r->view.width, r->view.height, codes->uv_stride);
 }
 
+/* Takes in the matte. All planes of a lens setting serve as scratch. */
+static void take_in_matte(struct refocus_renderer *r, const struct refocus_disparity *matte)
+{
+    const struct rf_matte_pass pass = {
+        .exec = &r->exec,
+        .view = &r->view,
+        .matte = matte,
+        .transfer = &r->transfer[r->blend],
+        .light = r->light,
+        .disparity = r->disparity,
+        .pyramid = &r->pyramid,
+        .alpha = {(uint16_t *)r->blur.at, r->blur.stride},
+        .near = {r->smooth.channel[0], r->smooth.stride},
+        .lost = {r->smooth.channel[1], r->smooth.stride},
+        .spare = {r->smooth.channel[2], r->smooth.stride},
+        .list = &r->photo.thin,
+    };
+
+    rf_matte_take_in(&pass);
+    rf_planes_end(&r->lifetimes);
+}
+
 static void take_in(struct refocus_renderer *r, const struct scene *scene)
 {
     const struct refocus_image *photo = &scene->photo;
@@ -80,6 +103,8 @@ static void take_in(struct refocus_renderer *r, const struct scene *scene)
         else
             upsample(r, &guide, map);
     }
+    if (scene->has_matte && !rf_cancelled(&r->exec))
+        take_in_matte(r, &scene->matte);
     if (!rf_cancelled(&r->exec))
         rf_find_silhouettes(&r->exec,
                             &(struct rf_silhouette_window){&r->view, r->light, r->disparity},
@@ -111,7 +136,13 @@ static int read_scene(const struct refocus_renderer *r, const struct rf_log *log
                            refocus_format_is_yuv(scene->photo.format)))
         return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
                          "with in_place the photo may be R, G, B, and disparity of its size");
-    return REFOCUS_OK;
+    scene->has_matte = given->matte != NULL;
+    if (!scene->has_matte)
+        return REFOCUS_OK;
+    if (!r->has_thin || refocus_format_is_yuv(scene->photo.format))
+        return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
+                         "a matte may be given of a photo of R, G, B to a renderer with thin");
+    return rf_read_map(log, "matte", &scene->matte, given->matte);
 }
 
 static int prepare(struct refocus_renderer *r, const struct rf_log *log,
@@ -130,6 +161,7 @@ static int prepare(struct refocus_renderer *r, const struct rf_log *log,
     own->highlights_blend = own->thin.blend = RF_NO_BLEND;
     own->silhouettes.count = 0;
     r->edges = refocus_depth_edges_report_default();
+    own->thin.has_matte = false;
     r->blend = REFOCUS_BLEND_LINEAR; /* silhouettes are always found in linear light */
     rf_yuv_begin(&r->yuv, &scene.photo, r->blend);
     rf_run_begin(r);
@@ -141,6 +173,8 @@ static int prepare(struct refocus_renderer *r, const struct rf_log *log,
     } else {
         rf_use(r, rf_whole(r));
         memset(own->band_blend, REFOCUS_BLEND_LINEAR, (size_t)rf_bands(&r->view));
+        if (r->has_thin)
+            rf_matte_forget(&own->thin, &r->view);
         take_in(r, &scene);
     }
     if (rf_run_end(r))

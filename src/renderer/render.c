@@ -82,9 +82,9 @@ static void set_up_thin(struct rf_frame *f)
 
     rf_thin_set_up(&f->thin,
                    &(struct rf_thin_settings){
-                       .on = p->thin && rf_renderer_of(f)->has_thin &&
-                             p->method == REFOCUS_METHOD_SWEEP && !rf_renderer_of(f)->yuv.on &&
-                             p->max_blur_radius > 0,
+                       .on = rf_renderer_of(f)->has_thin && p->method == REFOCUS_METHOD_SWEEP &&
+                             !rf_renderer_of(f)->yuv.on && p->max_blur_radius > 0,
+                       .finds = p->thin,
                        .splats = p->cat_eye <= 0 && p->fringe == 0 && !f->fine,
                        .rays = p->rays,
                        .set = &rf_renderer_of(f)->ray_sets.set[rf_renderer_of(f)->ray_sets.preset],

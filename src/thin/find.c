@@ -9,7 +9,7 @@ static void find_band(void *context, int band, int worker)
     const uint64_t capacity = rf_thin_capacity(t->view->width);
     struct rf_thin *thin = list->pixel + (uint64_t)band * capacity;
     const int y = rf_band_start(band);
-    uint32_t count = 0;
+    uint32_t count = list->given[band].count;
 
     (void)worker;
     for (int tx = 0; tx < t->view->tiles_x; tx++) {
@@ -25,8 +25,11 @@ static void find_band(void *context, int band, int worker)
             .below = t->view->height - y,
         };
         const uint64_t room = capacity - count;
-        const int found =
-            t->exec->kernels->find_thin(thin + count, &tile, (int)(room < 256 ? room : 256));
+        int found;
+
+        if (list->run[(size_t)band * t->view->tiles_x + tx].given)
+            continue;
+        found = t->exec->kernels->find_thin(thin + count, &tile, (int)(room < 256 ? room : 256));
 
         for (int i = 0; i < found; i++)
             rf_fit_coverage(t, &thin[count + (uint32_t)i], tx, band);

@@ -5,7 +5,11 @@
 
 #include "thin/mixture.h"
 
-enum { MOST_FAR_ALPHA = 160 }; /* 255 = 1 */
+/* 255 = 1 */
+enum {
+    MOST_FAR_ALPHA = 160,
+    SIDE = 42, /* a pixel that N covers less shows what is behind it */
+};
 
 /* Signed circle of confusion of one disparity, as the kernel signed_blur rounds it. */
 static int plain_blur(struct rf_focus focus, uint16_t disparity)
@@ -77,6 +81,22 @@ bool rf_is_matted(const struct rf_thin_pass *t, const struct rf_thin *thin, int 
            rf_thin_blur(t, thin->far_disparity, tx * RF_TILE, ty * RF_TILE) >= far_blur(level);
 }
 
+void rf_choose_sides(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice)
+{
+    uint32_t count;
+    const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
+
+    for (uint32_t i = 0; i < count; i++, thin++) {
+        const int level = level_of(thin->at), near = rf_near_blur(t, thin, tx, ty);
+        const int far = rf_thin_blur(t, thin->far_disparity, tx * RF_TILE, ty * RF_TILE);
+
+        if (abs(near) <= matte_blur(level) || far - near < far_blur(level))
+            continue;
+        choice->sides = true;
+        (thin->alpha >= SIDE ? choice->near : choice->far)[i / 64] |= UINT64_C(1) << i % 64;
+    }
+}
+
 bool rf_is_splatted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
 {
     return rf_near_blur(t, thin, tx, ty) <= -splat_blur_of(t, level_of(thin->at));
@@ -107,9 +127,10 @@ static int disc_scale(const struct rf_ray_set *set)
 void rf_thin_set_up(struct rf_thin_pass *t, const struct rf_thin_settings *settings)
 {
     t->splat_blur = splat_blur(settings->rays);
-    t->mattes = settings->on;
+    t->finds = settings->on && settings->finds;
+    t->mattes = t->finds || (settings->on && t->list->has_matte);
     t->disc_scale =
-        settings->on && settings->splats &&
+        t->finds && settings->splats &&
                 !(t->plan->plain && plain_blur(t->plan->focus, 65535) > -splat_blur_of(t, 0))
             ? disc_scale(settings->set)
             : 0;

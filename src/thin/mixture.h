@@ -43,6 +43,22 @@ int rf_near_blur(const struct rf_thin_pass *t, const struct rf_thin *thin, int t
 bool rf_is_splatted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty);
 bool rf_is_matted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty);
 
+/* Disparities farther apart than this are of two surfaces. */
+enum { RF_SURFACE_JUMP = 65535 / 32 };
+
+/* Whether alpha, 255 = 1, of the caller's matte is as good as 1, or 0. */
+static inline bool rf_is_sure(int alpha, bool near)
+{
+    return near ? alpha >= 247 : alpha <= 8;
+}
+
+/* Brings the disparities at the silhouettes of the caller's matte to it, after alpha was read. */
+void rf_settle_sides(const struct rf_matte_pass *pass);
+
+/* Chooses the mixtures of a tile of the caller's matte that are drawn as the side that most of them
+ * belongs to: where N is blurred, and not as F is. */
+void rf_choose_sides(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice);
+
 /* Chooses the mixtures of a tile that are matted, if nothing nearer reaches it. */
 void rf_choose_matted(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice);
 

@@ -74,7 +74,11 @@ static void choose_band(void *context, int band, int worker)
         struct rf_thin_choice *choice = rf_thin_choice_of(t, tx, band);
 
         *choice = (struct rf_thin_choice){.splats = false};
-        if (t->disc_scale)
+        if (rf_thin_run_of(t, tx, band)->given)
+            rf_choose_sides(t, tx, band, choice);
+        else if (!t->finds)
+            continue;
+        else if (t->disc_scale)
             choose_splatted(t, tx, band, choice);
         if (t->mattes)
             rf_choose_matted(t, tx, band, choice);
@@ -83,12 +87,13 @@ static void choose_band(void *context, int band, int worker)
 
 static bool is_any(const struct rf_thin_choice *choice)
 {
-    return choice->splats || choice->mattes;
+    return choice->splats || choice->mattes || choice->sides;
 }
 
 static bool is_apart(const struct rf_thin_choice *choice, uint32_t i)
 {
-    return rf_has_bit(choice->splat, i) || rf_has_bit(choice->matte, i);
+    return rf_has_bit(choice->splat, i) || rf_has_bit(choice->matte, i) ||
+           rf_has_bit(choice->near, i) || rf_has_bit(choice->far, i);
 }
 
 /* Where N is composited, the planes have the circle of confusion of F. */
@@ -103,8 +108,9 @@ static void patch_tile(const struct rf_thin_pass *t, int tx, int ty)
         const int y = ty * RF_TILE + thin[i].at / RF_TILE;
 
         if (is_apart(choice, i))
-            t->blur.at[y * t->view->stride + x] =
-                (int16_t)rf_thin_blur(t, thin[i].far_disparity, x, y);
+            t->blur.at[y * t->view->stride + x] = (int16_t)rf_thin_blur(
+                t, rf_has_bit(choice->near, i) ? thin[i].near_disparity : thin[i].far_disparity, x,
+                y);
     }
 }
 
@@ -159,14 +165,15 @@ static void swap_tile(const struct rf_thin_pass *t, int tx, int ty)
     for (uint32_t i = 0; i < count; i++) {
         const ptrdiff_t at = thin[i].at / RF_TILE * stride + thin[i].at % RF_TILE;
         const uint16_t light[3] = {red[at], green[at], blue[at]};
+        uint16_t *const own = rf_has_bit(choice->near, i) ? thin[i].whole : thin[i].light;
 
         if (!is_apart(choice, i))
             continue;
-        red[at] = thin[i].light[0];
-        green[at] = thin[i].light[1];
-        blue[at] = thin[i].light[2];
+        red[at] = own[0];
+        green[at] = own[1];
+        blue[at] = own[2];
         for (int c = 0; c < 3; c++)
-            thin[i].light[c] = light[c];
+            own[c] = light[c];
     }
 }
 

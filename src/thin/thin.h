@@ -27,8 +27,13 @@
  * nothing, or is of another colour than such a mixture, it is 1 if the map has the pixel near, else
  * the pixel is no mixture.
  *
+ * Where the caller gives a matte, alpha is that, at any silhouette (settle.c, given.c), and what is
+ * not matted is drawn as one of its sides: the planes get C with the mean background in place of F,
+ * at the depth of N, where alpha is 1/6 or more, and else F at its own.
+ *
  * This header is all that other folders see. The passes run in this order:
  *
+ *     rf_matte_take_in       once a photo with a matte    changes disparity; writes the list
  *     rf_thin_find           once a photo and blend       reads light, disparity; writes the list
  *     rf_thin_set_up         once a lens setting
  *     rf_thin_separate       after circles of confusion   reads the list; writes the choice
@@ -44,6 +49,8 @@
 #include <stdint.h>
 
 #include "aperture/ray_set.h"
+#include "background/pyramid.h"
+#include "colour/transfer.h"
 #include "focus/focus.h"
 #include "image/planes.h"
 #include "image/viewport.h"
@@ -55,6 +62,7 @@
 struct rf_thin_run {
     uint32_t first;
     uint16_t count;
+    uint16_t given; /* 1: they are those of the caller's matte */
 };
 
 /* Room for the mixtures of a row of tiles: one pixel in four. Further ones stay as they are. */
@@ -63,12 +71,19 @@ static inline uint64_t rf_thin_capacity(int width)
     return (uint64_t)((width + 15) / 16) * 64;
 }
 
+/* The mixtures of the caller's matte in a row of tiles: the first of the row, in this blend. */
+struct rf_given_row {
+    uint32_t count, blend;
+};
+
 /* The mixtures of a photo. */
 struct rf_thin_list {
-    struct rf_thin *pixel;   /* rf_thin_capacity() for each row of tiles; while the light planes
-                                hold F, `light` of each holds that of the photo */
-    struct rf_thin_run *run; /* run of each tile */
-    uint32_t blend;          /* blend of the light that they were found in, or RF_NO_BLEND */
+    struct rf_thin *pixel;      /* rf_thin_capacity() for each row of tiles; while the light planes
+                                   hold F, `light` of each holds that of the photo */
+    struct rf_thin_run *run;    /* run of each tile */
+    uint32_t blend;             /* blend of the light that they were found in, or RF_NO_BLEND */
+    bool has_matte;             /* the caller gave a matte */
+    struct rf_given_row *given; /* the given ones of each row of tiles */
 };
 
 /*
@@ -84,7 +99,8 @@ struct rf_thin_list {
 /* Mixtures of a tile that are separated, a bit each. */
 struct rf_thin_choice {
     bool splats, mattes; /* whether any of them is */
-    uint64_t splat[4], matte[4];
+    bool sides;          /* whether any is drawn as one of its sides */
+    uint64_t splat[4], matte[4], near[4], far[4];
 };
 
 /* The coverage layer that is composited over the picture; coverage.h has its parts. */
@@ -114,6 +130,7 @@ struct rf_thin_pass {
     int disc_scale; /* Q8: radius of a splatted disc, as part of its blur; 0: none is splatted */
     int splat_blur; /* Q7.8: from this blur before the focus on, more and more are splatted */
     bool mattes;    /* mixtures in focus may be matted */
+    bool finds;     /* thin structures are separated, and not the caller's matte alone */
 };
 
 enum {
@@ -126,9 +143,33 @@ uint64_t rf_coverage_source_bytes(void); /* Returns the size of one source. */
 /* Finds the mixtures of the photo, all of which is in the window, whose light is of `blend`. */
 void rf_thin_find(const struct rf_thin_pass *t, uint32_t blend);
 
+/* The caller's matte, and the planes that it is taken in with. */
+struct rf_matte_pass {
+    const struct rf_executor *exec;
+    const struct rf_viewport *view;        /* all of the photo */
+    const struct refocus_disparity *matte; /* any size; its greatest value is the subject */
+    const struct rf_transfer *transfer;    /* transfer of linear light */
+    struct rf_light_q12 light;             /* read: linear */
+    struct rf_disparity_q16 disparity;     /* brought to the matte */
+    struct rf_disparity_q16 alpha, near, lost, spare; /* scratch */
+    const struct rf_pyramid *pyramid;                 /* scratch */
+    struct rf_thin_list *list;                        /* empty; gets the mixtures */
+};
+
+/* Empties the list of mixtures, for another photo of the size of the view. */
+void rf_matte_forget(struct rf_thin_list *list, const struct rf_viewport *view);
+
+/* Takes in the matte: the disparities at its silhouettes (settle.c), and its mixtures (given.c). */
+void rf_matte_take_in(const struct rf_matte_pass *pass);
+
+/* Changes the light of these mixtures to a blend, whose transfer is transfer[blend]. */
+void rf_matte_reblend(const struct rf_thin_pass *t, const struct rf_transfer *transfer,
+                      uint32_t blend);
+
 /* Settings of a lens that decide which mixtures are separated. */
 struct rf_thin_settings {
-    bool on;
+    bool on;     /* mixtures can be separated */
+    bool finds;  /* thin structures are looked for */
     bool splats; /* discs are as good as rays: an aperture without fine structure, the same all over
                     the picture */
     int rays;    /* rays of the preset, or REFOCUS_RAYS_FULL */

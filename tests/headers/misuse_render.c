@@ -18,10 +18,15 @@ static void prepare_map(const struct refocus_disparity *map)
 {
     const struct refocus_image photo = misuse_photo();
 
-    const struct refocus_scene scene = refocus_scene_default(&photo, map);
+    const struct refocus_disparity good = misuse_map();
+    struct refocus_scene scene = refocus_scene_default(&photo, map);
 
     REFUSED(refocus_prepare, renderer, &photo, map);
     REFUSED(refocus_prepare_scene, renderer, &scene);
+    scene.disparity = &good;
+    scene.matte = map; /* NULL is none */
+    if (map)
+        REFUSED(refocus_prepare_scene, renderer, &scene);
 }
 
 static void prepare_scene(void)
@@ -217,7 +222,7 @@ void misuse_render(void **state)
     (void)state;
     creating();
     without_renderer();
-    limits.threads = 1;
+    limits.threads = limits.thin = 1;
     ANSWERS(REFOCUS_OK, refocus_renderer_create, &renderer, &limits);
     RETURNS(refocus_renderer_get_info, renderer, NULL);
     ANSWERS(REFOCUS_ERR_STATE, refocus_render, renderer, &params, &photo);

@@ -387,7 +387,7 @@ static void memory(void **state)
         bytes = -(double)refocus_renderer_memory(&params);
         params.thin = 1;
         bytes += (double)refocus_renderer_memory(&params);
-        if (bytes < 0 || bytes > (6.0 * (w + 16) * (h + 16) + 4096))
+        if (bytes < 0 || bytes > (8.0 * (w + 16) * (h + 16) + 4096))
             fail_msg("%d x %d: %.0f bytes", w, h, bytes);
     }
 }

@@ -216,6 +216,24 @@ static int render(struct refocus_renderer *renderer, struct refocus_settings *p,
     return status;
 }
 
+/* A matte of the photo's size, or of 16 bits and any size. */
+static const struct refocus_disparity *take_matte(struct input *in, int any,
+                                                  const struct refocus_image *photo)
+{
+    static uint16_t deep[MAX_SIDE * MAX_SIDE];
+    static struct refocus_disparity matte;
+    uint8_t *const samples = (uint8_t *)deep;
+    const int width = any ? take_in(in, 0, 1, MAX_SIDE) : photo->width;
+    const int height = any ? take_in(in, 0, 1, MAX_SIDE) : photo->height;
+
+    take_pixels(in, samples, sizeof deep);
+    for (size_t i = 0; i < sizeof deep; i++) /* much is sure, as in true mattes */
+        samples[i] = samples[i] < 100 ? 0 : samples[i] > 150 ? 255 : samples[i];
+    matte = any ? refocus_disparity16(deep, width, height, 2 * (ptrdiff_t)width)
+                : refocus_disparity8(samples, width, height, width);
+    return &matte;
+}
+
 static void use(struct input *in, struct refocus_renderer *renderer, float most, int wild)
 {
     enum { CAPACITY = 4 * MAX_SIDE * MAX_SIDE + 2 * GUARD };
@@ -223,7 +241,8 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     static uint16_t disparity[MAX_SIDE * MAX_SIDE], view[MAX_SIDE * MAX_SIDE];
     const int width = take_in(in, 0, 1, MAX_SIDE), height = take_in(in, 0, 1, MAX_SIDE);
     const uint32_t kind = take(in, 1), out_format = 1 + take(in, 1) % 8;
-    const uint32_t format = 1 + kind % 8; /* bits 3 and 4: matrix and range; 5: edges */
+    const uint32_t format =
+        1 + kind % 8; /* bits 3 and 4: matrix and range; 5: edges; 6, 7: matte */
     const int bits = take(in, 1) & 1 ? 16 : 8;
     const int dw = take_in(in, 0, 1, MAX_SIDE), dh = take_in(in, 0, 1, MAX_SIDE);
     const int same = (int)take(in, 1) & 1;
@@ -243,6 +262,7 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
         image.stride[i] = -image.stride[i];
     }
     take_extras(in, wild, &lens);
+    lens.thin.enabled = kind >> 6 & 1;
     if (in->size > 0 && take(in, 1) & 1)
         take_controls(in, wild, &map, &lens);
     else if (!wild && lens.render.method != REFOCUS_METHOD_DIFFUSION)
@@ -250,8 +270,10 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     take_pixels(in, photo, sizeof photo);
     take_pixels(in, (uint8_t *)disparity, sizeof disparity);
     scene.depth_edges = kind >> 5 & 1;
+    if (kind >> 6 & 1)
+        scene.matte = take_matte(in, kind >> 7 & 1, &image);
     status = refocus_prepare_scene(renderer, &scene);
-    check(status == REFOCUS_OK || status == REFOCUS_ERR_SIZE);
+    check(status == REFOCUS_OK || status == REFOCUS_ERR_SIZE || status == REFOCUS_ERR_UNSUPPORTED);
     lens.render.aperture = aperture;
     status = render(renderer, &lens, width, height, out_format, out[0], CAPACITY);
     if (status == REFOCUS_OK) {
@@ -280,6 +302,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     limits.depth_edges = 1;
     limits.methods = wild_limits ? take(&in, 4) : REFOCUS_METHODS_ALL;
     limits.max_memory = 64 << 20;
+    limits.thin = flags >> 2 & 1;
     status = refocus_renderer_create(&renderer, &limits);
     check((status == REFOCUS_OK) == (renderer != NULL));
     check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT || status == REFOCUS_ERR_SIZE ||

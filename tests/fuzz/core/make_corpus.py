@@ -112,6 +112,13 @@ def main():
                                  + lens(1, 5, 5, 0, 65, blend=1, sigma=300) + MASK)
         seeds[name + "_region"] = (limits(48, 48, 10, 2) + picture(48, 48, form + 8, out, 16)
                                    + lens(.8, 7, 10, 0, 32, region=(6, 8, 20, 16)) + POLYGON)
+    for number, (depth, bits) in enumerate(((None, 16), ((9, 7), 8), (None, 8), ((40, 31), 16))):
+        seeds["matte%d" % number] = (b"\4" + limits(48, 40, 9, 2)[1:]
+                                     + picture(46, 39, 65 + 128 * (number % 2), 1, bits, depth=depth)
+                                     + lens(.3 * number, 9, 9, 0, 32, blend=number % 3) + DISC)
+    seeds["matte_yuv"] = (b"\4" + limits(48, 40, 9, 2)[1:] + picture(46, 39, 71, 7, 16)
+                          + lens(.3, 9, 9, 0, 32) + DISC)
+    seeds["matte_refused"] = limits(40, 30, 8, 2) + picture(40, 30, 65, 1, 16) + lens(.3, 8, 8, 0, 64)
     papers = ["jittered", "lightfield", "blur", "scatter", "foveated", "interpolated", "diffusion"]
     for method, name in enumerate(papers, 3):
         seeds[name] = (limits(40, 30, 8, 2) + picture(40, 27, 1, 1, 16)
