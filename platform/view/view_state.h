@@ -48,6 +48,8 @@ struct rf_view_result {
 struct rf_session_setup {
     const struct refocus_image *photo; /* RGB8; the caller's, until the end */
     const uint16_t *disparity; /* disparities of its size, packed, which are copied; NULL: all 0 */
+    const struct refocus_disparity
+        *matte;                      /* matte of any size, or NULL; the caller's, until the end */
     struct refocus_strokes *strokes; /* the painting so far, over those disparities,
                                         or NULL: none. The caller's, but the
                                         session's to change until its end */

@@ -212,6 +212,15 @@ static void publish(struct rf_session *s, const struct rf_view_state *state, uin
     s->setup.notify(s->setup.notify_user);
 }
 
+static int prepare(const struct rf_session *s, struct refocus_renderer *renderer,
+                   const struct refocus_image *photo, const struct refocus_disparity *map)
+{
+    struct refocus_scene scene = refocus_scene_default(photo, map);
+
+    scene.matte = s->setup.matte;
+    return refocus_prepare_scene(renderer, &scene);
+}
+
 static int prepare_small(struct rf_session *s)
 {
     const struct refocus_image *const photo = s->setup.photo;
@@ -225,7 +234,7 @@ static int prepare_small(struct rf_session *s)
         return REFOCUS_OK;
     rf_reduce_disparity(disparity_of(s), photo->width, photo->height, s->reduction,
                         s->small_disparity);
-    status = refocus_prepare(s->small, &image, &map);
+    status = prepare(s, s->small, &image, &map);
     s->small_stale = status != REFOCUS_OK;
     return status;
 }
@@ -255,7 +264,7 @@ static int render_full(struct rf_session *s, const struct rf_view_state *state)
         return REFOCUS_OK;
     s->have_full = false;
     if (s->full_stale)
-        status = refocus_prepare(s->full, photo, &map);
+        status = prepare(s, s->full, photo, &map);
     if (status != REFOCUS_OK)
         return status;
     s->full_stale = false;

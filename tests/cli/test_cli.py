@@ -37,7 +37,7 @@ class Usage(Case):
         options = {
             'render': self.PAPERS + self.CONTROLS +
                       '-o --output --depth --depth-unit --near --far --invalid --speckle '
-                      '--depth-edges --focus --focus-at --focus-rectangle '
+                      '--depth-edges --matte --focus --focus-at --focus-rectangle '
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
                       '--highlights --mirror --background --no-thin --threads --cpu --repeat --json --view '
@@ -48,14 +48,14 @@ class Usage(Case):
                      '--focus-at --blur --json -h --help',
             'sheet': self.PAPERS + self.CONTROLS +
                      '-o --output --depth --depth-unit --near --far --invalid --speckle '
-                     '--depth-edges --kind --focuses --blurs --f-numbers --apertures --sigmas '
+                     '--depth-edges --matte --kind --focuses --blurs --f-numbers --apertures --sigmas '
                      '--cell-width --region --focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --f-number --focal-length --sensor-width --method --rays --iterations '
                      '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin '
                      '--threads --cpu --json --settings --save-settings -h --help',
             'pull': self.PAPERS + self.CONTROLS +
                     '-o --output --depth --depth-unit --near --far --invalid --speckle '
-                    '--depth-edges --from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
+                    '--depth-edges --matte --from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
                     '--wiggle '
                     '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality --aperture --blend '
@@ -63,13 +63,13 @@ class Usage(Case):
                     '--settings --save-settings -h --help',
             'view': self.PAPERS + self.CONTROLS +
                     '-o --output --depth --depth-unit --near --far --invalid --speckle '
-                    '--depth-edges --strokes --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
+                    '--depth-edges --matte --strokes --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality '
                     '--aperture --blend --sigma --highlights --mirror --background --no-thin --threads '
                     '--cpu --json --settings --size --fullscreen --seconds -h --help',
             'info': '--json -h --help',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
-                       '--depth-unit --near --far --depth-edges --focus --focus-at --focus-rectangle '
+                       '--depth-unit --near --far --depth-edges --matte --focus --focus-at --focus-rectangle '
                        '--focus-distance --blur --f-number --focal-length --sensor-width --rays --iterations '
                        '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin '
                        '--threads --cpu --repeat --json -h --help',

@@ -65,6 +65,47 @@ class Results(Case):
             self.assertEqual((edges['softness_px'] > 1.25, edges['changed'] > 0.05),
                              (parted, parted))
 
+    def test_matte(self):
+        """A soft silhouette in focus stays soft by its matte, of any size and depth of samples."""
+        width, height, edge = 96, 64, 45
+        cover = [max(0, min(255, 51 * (edge + 2 - x))) for x in range(width)]
+        pictures.ppm('mixed.ppm', width, height, lambda x, y: tuple(
+            (a * cover[x] + b * (255 - cover[x])) // 255
+            for a, b in ((200, 30 + 9 * (y % 8)), (150, 40), (60, 120 + 9 * (x % 8)))))
+        pictures.pgm('map.pgm', width, height, lambda x, y: 200 if cover[x] > 127 else 40)
+        pictures.pgm('matte.pgm', width, height, lambda x, y: cover[x])
+        pictures.pgm('deep.pgm', width, height, lambda x, y: 257 * cover[x], 65535)
+        pictures.pgm('none.pgm', width, height, lambda x, y: 0)
+        pictures.pgm('tall.pgm', 40, 90, lambda x, y: 0)
+        command = ('mixed.ppm', '--depth', 'map.pgm', '--focus', '0.784', '--blur', '12')
+        without = self.reports('render', *command, '-o', 'without.ppm')
+        report = self.reports('render', *command, '-o', 'with.ppm', '--matte', 'matte.pgm')['matte']
+        self.assertIsNone(without['matte'])
+        self.assertEqual((report['file'], report['width'], report['height']), ('matte.pgm', 96, 64))
+        self.assertAlmostEqual(report['mixed'], 4 / 96)
+        self.differs(pictures.read_bytes('with.ppm'), pictures.read_bytes('without.ppm'))
+        for matte, same in ('deep.pgm', 'with.ppm'), ('none.pgm', 'without.ppm'):
+            self.succeeds('render', *command, '-o', 'other.ppm', '--matte', matte)
+            self.same(pictures.read_bytes('other.ppm'), pictures.read_bytes(same))
+        self.succeeds('render', *command, '-o', 'other.ppm', '--matte', 'matte.pgm', '--no-thin')
+        self.same(pictures.read_bytes('other.ppm'), pictures.read_bytes('with.ppm'))
+        scores = [self.reports('compare', *command, '--reference', 'with.ppm', '--methods', 'sweep',
+                               *matte)['methods'][-1]['rmse'] for matte in ((), ('--matte', 'matte.pgm'))]
+        self.assertEqual((scores[0] > 0, scores[1]), (True, 0))
+        for name, more in ('sheet', ()), ('pull', ('--to', '0.2', '--seconds', '0.2')):
+            focus = () if name == 'sheet' else ('--from', '0.784')
+            options = tuple(o for o in command if o not in ('--focus', '0.784')) + focus + more
+            ending = '.ppm' if name == 'sheet' else '.y4m'
+            for matte in (), ('--matte', 'matte.pgm'):
+                self.succeeds(name, *options, '-o', 'p%d%s' % (len(matte), ending), *matte)
+            self.differs(pictures.read_bytes('p0' + ending), pictures.read_bytes('p2' + ending))
+        self.fails(1, re.compile('^refocus: tall.pgm: its 40x90 samples have another shape'), 'render',
+                   *command, '-o', 'out.ppm', '--matte', 'tall.pgm')
+        self.fails(1, re.compile('^refocus: absent.pgm: '), 'render', *command, '-o', 'out.ppm',
+                   '--matte', 'absent.pgm')
+        self.fails(2, re.compile('^refocus: matte.pgm: '), 'render', *command, '-o', 'matte.pgm',
+                   '--matte', 'matte.pgm')
+
     def test_depth_edges_in_full(self):
         """`depth` looks at the photo with --full alone."""
         width, height, edge = 96, 64, 45

@@ -83,10 +83,10 @@ static int print_report(const struct settings *settings, const struct engine *en
 {
     if (settings->shot.engine.json) {
         json_t *json = json_pack(
-            "{s:o, s:o, s:i, s:i, s:o, s:o}", "photo", report_text_json(input->photo_name),
+            "{s:o, s:o, s:i, s:i, s:o, s:o, s:o}", "photo", report_text_json(input->photo_name),
             "output", report_text_json(settings->output), "width", (int)out->width, "height",
             (int)out->height, "depth", report_depth_json(input->depth_from, &input->report),
-            "edges", edges_json(&engine->edges));
+            "edges", edges_json(&engine->edges), "matte", input_matte_json(input));
         json_t *run = engine_json(engine);
         json_t *blur = input_blur_json(input, &settings->shot.lens);
 

@@ -229,6 +229,7 @@ static int show(struct viewing *v, view_run_fn *run_window)
     setup.methods = suitable_methods(&v->engine);
     setup.session.photo = v->input.photo->image;
     setup.session.disparity = v->input.disparity;
+    setup.session.matte = v->input.matte.samples ? &v->input.matte : NULL;
     setup.session.strokes = v->strokes;
     setup.session.params = v->engine.params;
     setup.session.aim = aim;

@@ -31,6 +31,7 @@ static const struct option options[] = {
     DEPTH_FILE_OPTION(struct settings, depth),
     DEPTH_UNIT_OPTIONS(struct settings, depth),
     DEPTH_EDGES_OPTION(struct settings, depth),
+    MATTE_OPTION(struct settings, depth),
     {.kind = OPTION_HEADING, .help = "What is compared"},
     {.kind = OPTION_TEXT,
      .name = "--methods",
@@ -61,7 +62,7 @@ static const struct option options[] = {
 static int check(const struct settings *settings, const char *photo)
 {
     const char *const inputs[] = {photo, settings->depth.file, settings->reference,
-                                  settings->engine.aperture};
+                                  settings->engine.aperture, settings->depth.matte};
     int status = input_check_depth(&settings->depth);
 
     if (status == EXIT_DONE)
@@ -71,7 +72,7 @@ static int check(const struct settings *settings, const char *photo)
                                 "there is nothing to compare with; give --reference "
                                 "GT");
     if (status == EXIT_DONE && settings->output)
-        status = output_check(settings->output, OUTPUT_PICTURE, NULL, inputs, 4);
+        status = output_check(settings->output, OUTPUT_PICTURE, NULL, inputs, 5);
     return status;
 }
 
@@ -114,7 +115,7 @@ static uint64_t memory_of(const struct engine *engine, const struct refocus_imag
     params.threads = engine->info.threads;
     params.papers = refocus_papers();
     params.methods = REFOCUS_METHOD_BIT(method);
-    params.thin = engine->params.thin.enabled;
+    params.thin = engine->params.thin.enabled || engine->has_matte;
     return refocus_renderer_memory(&params);
 }
 
@@ -248,7 +249,7 @@ static int compare(struct engine *engine, struct input *input, struct comparison
     const struct refocus_image *photo = input->photo->image;
     const struct refocus_disparity disparity = refocus_disparity16(
         input->disparity, input->width, input->height, (ptrdiff_t)input->width * 2);
-    struct refocus_scene scene = refocus_scene_default(photo, &disparity);
+    struct refocus_scene scene = input_scene(input, &disparity);
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
     uint16_t *prepared = malloc(pixels * 2);
     uint8_t *mask = malloc(pixels);
@@ -257,6 +258,7 @@ static int compare(struct engine *engine, struct input *input, struct comparison
 
     engine->places_edges = input_has_edges_placed(input, &settings->depth);
     scene.depth_edges = engine->places_edges;
+    engine->has_matte = input->matte.samples != NULL;
     status = prepared && mask ? input_blur(input, &settings->lens, &blur)
                               : report_failure(EXIT_FAILED, "compare", "not enough memory");
     if (status == EXIT_DONE)

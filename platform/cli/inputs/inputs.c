@@ -275,6 +275,78 @@ static bool has_another_shape(const struct refocus_depth_map *map,
            (2 * wide > 3 * high || 2 * high > 3 * wide);
 }
 
+static int check_shape(const struct input *input, const char *file,
+                       const struct refocus_depth_map *map, const char *what)
+{
+    const struct refocus_image *photo = input->photo->image;
+
+    if (!has_another_shape(map, photo))
+        return EXIT_DONE;
+    return report_failure(EXIT_FAILED, file,
+                          "its %dx%d samples have another shape than the photo of %dx%d pixels; "
+                          "give the %s of this photo, as upright as the photo is",
+                          (int)map->width, (int)map->height, (int)photo->width, (int)photo->height,
+                          what);
+}
+
+/* Read the matte with the codes that the file has: white is all subject. */
+static int read_matte(struct input *input, const char *file)
+{
+    struct refocus_photo *read = NULL;
+    struct refocus_reason reason = {""};
+    struct refocus_depth_map map;
+    uint64_t bytes;
+    int status = refocus_depth_read(&read, file, NULL, 0, 0, NULL, &reason);
+
+    if (status != REFOCUS_OK)
+        return report_failure(input_exit_code(status), file, "%s",
+                              reason.text[0] ? reason.text : refocus_strerror(status));
+    map = *read->depth;
+    bytes = (uint64_t)map.width * (uint64_t)map.height * 2;
+    map.meaning = REFOCUS_DEPTH_DISPARITY;
+    map.flags = 0;
+    map.near_m = map.far_m = map.value_far = 0;
+    map.value_near = map.sample == REFOCUS_SAMPLE_U8    ? 255
+                     : map.sample == REFOCUS_SAMPLE_U16 ? 65535
+                                                        : 1;
+    input->matte_name = file;
+    input->matte_samples = bytes <= SIZE_MAX ? malloc((size_t)bytes) : NULL;
+    input->matte =
+        refocus_disparity16(input->matte_samples, map.width, map.height, (ptrdiff_t)map.width * 2);
+    status = check_shape(input, file, &map, "matte");
+    if (status == EXIT_DONE &&
+        (!input->matte_samples ||
+         refocus_depth_to_disparity(&map, input->matte_samples, input->matte.stride, NULL)))
+        status = report_failure(EXIT_FAILED, file, "not enough memory for the matte");
+    refocus_photo_free(&read);
+    return status;
+}
+
+json_t *input_matte_json(const struct input *input)
+{
+    const int64_t samples = (int64_t)input->matte.width * input->matte.height;
+    int64_t subject = 0, mixed = 0;
+
+    if (!input->matte_samples)
+        return json_null();
+    for (int64_t i = 0; i < samples; i++) {
+        subject += input->matte_samples[i] == 65535;
+        mixed += input->matte_samples[i] > 0 && input->matte_samples[i] < 65535;
+    }
+    return json_pack("{s:o, s:i, s:i, s:f, s:f}", "file", report_text_json(input->matte_name),
+                     "width", (int)input->matte.width, "height", (int)input->matte.height,
+                     "subject", (double)subject / (double)samples, "mixed",
+                     (double)mixed / (double)samples);
+}
+
+struct refocus_scene input_scene(const struct input *input, const struct refocus_disparity *map)
+{
+    struct refocus_scene scene = refocus_scene_default(input->photo->image, map);
+
+    scene.matte = input->matte.samples ? &input->matte : NULL;
+    return scene;
+}
+
 int input_read(struct input *input, const char *photo, const struct depth_settings *settings)
 {
     int status = input_read_photo(input, photo, "the photo, and this file to --depth");
@@ -283,13 +355,8 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
         return status;
     if (settings->file) {
         status = read_side(input, settings->file, settings);
-        if (status == EXIT_DONE && has_another_shape(input->side->depth, input->photo->image))
-            return report_failure(EXIT_FAILED, settings->file,
-                                  "its %dx%d samples have another shape than the photo "
-                                  "of %dx%d pixels; give the map of this photo, as "
-                                  "upright as the photo is",
-                                  input->side->depth->width, input->side->depth->height,
-                                  input->photo->image->width, input->photo->image->height);
+        if (status == EXIT_DONE)
+            status = check_shape(input, settings->file, input->side->depth, "map");
     } else {
         if (!input->photo->depth->samples && settings->optional)
             return EXIT_DONE;
@@ -299,6 +366,8 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
         input->depth_from = input->photo;
         status = settle_embedded(input, settings);
     }
+    if (status == EXIT_DONE && settings->matte)
+        status = read_matte(input, settings->matte);
     return status == EXIT_DONE ? input_convert(input, settings) : status;
 }
 
@@ -316,6 +385,7 @@ void input_free(struct input *input)
 {
     free(input->disparity);
     free(input->confidence);
+    free(input->matte_samples);
     free(input->made_samples);
     refocus_photo_free(&input->side);
     refocus_photo_free(&input->photo);

@@ -11,7 +11,7 @@
 #include "line/option.h"
 
 struct depth_settings {
-    const char *file, *unit;
+    const char *file, *unit, *matte;
     double near_m, far_m; /* NAN: not given */
     double speckle;       /* patches of fewer samples are removed; 0: none */
     const char *invalid;  /* names of the codes that mean "no value", or NULL */
@@ -63,6 +63,13 @@ struct depth_settings {
         .offset = offsetof(type, member.edges), .choice = edges_name, .summary = edges_summary,    \
         .help = "the edges of the depth map"                                                       \
     }
+#define MATTE_OPTION(type, member)                                                                 \
+    {                                                                                              \
+        .kind = OPTION_TEXT, .name = "--matte", .argument = "FILE",                                \
+        .offset = offsetof(type, member.matte),                                                    \
+        .help = "how much of each pixel is subject: a grey PNG, PGM or JPEG of 8 or 16 bits, "     \
+                "white = subject; its edges and hair are drawn by it (sweep)"                      \
+    }
 #define REPAIR_OPTIONS(type, member)                                                               \
     {.kind = OPTION_TEXT,                                                                          \
      .name = "--invalid",                                                                          \
@@ -86,7 +93,10 @@ struct input {
     float *made_samples;
     uint16_t *disparity; /* packed */
     uint8_t *confidence; /* one for each sample of the map: 0 = filled */
-    int width, height;   /* size of the disparities: the map's, or the photo's */
+    const char *matte_name;
+    uint16_t *matte_samples;        /* packed, or NULL */
+    struct refocus_disparity matte; /* samples NULL: none */
+    int width, height;              /* size of the disparities: the map's, or the photo's */
     struct refocus_depth_report report;
     struct refocus_depth_edges_report edges; /* by depth --full; struct_size 0: as given */
 };
@@ -113,6 +123,12 @@ bool input_has_edges_placed(const struct input *input, const struct depth_settin
 /* Make the disparities from input->depth_from: repaired and enlarged as the settings say. */
 int input_convert(struct input *input, const struct depth_settings *settings);
 void input_free(struct input *input);
+
+/* null, or the matte's file, size, and the parts of it that are subject, and mixed. */
+json_t *input_matte_json(const struct input *input);
+
+/* The photo and a map of its depth, with the matte if there is one, which all stay the caller's. */
+struct refocus_scene input_scene(const struct input *input, const struct refocus_disparity *map);
 
 /* The exit code for a status of the file library. */
 int input_exit_code(int status);

@@ -116,7 +116,7 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
     params.cpu = (uint32_t)settings->cpu;
     params.papers = refocus_papers();
     params.methods = engine->methods;
-    params.thin = engine->params.thin.enabled;
+    params.thin = engine->params.thin.enabled || engine->has_matte;
     params.depth_edges = engine->places_edges;
     engine->params.render.max_blur_radius = (float)blur;
     status = refocus_renderer_create(&engine->renderer, &params);

@@ -62,6 +62,7 @@ int shot_inputs(const struct shot_settings *settings, const char *photo,
 
     inputs[count++] = photo;
     inputs[count++] = settings->depth.file;
+    inputs[count++] = settings->depth.matte;
     inputs[count++] = settings->engine.aperture;
     inputs[count++] = settings->engine.papers.field_map;
     inputs[count++] = settings->engine.controls.focus_map;
@@ -93,10 +94,11 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     image = shot->input.photo->image;
     disparity = refocus_disparity16(shot->input.disparity, shot->input.width, shot->input.height,
                                     (ptrdiff_t)shot->input.width * 2);
-    scene = refocus_scene_default(image, &disparity);
+    scene = input_scene(&shot->input, &disparity);
     shot->engine.places_edges = input_has_edges_placed(&shot->input, &settings->depth);
     scene.depth_edges = shot->engine.places_edges;
     report_progress("preparing", 0.15);
+    shot->engine.has_matte = shot->input.matte.samples != NULL;
     status = engine_create(&shot->engine, &settings->engine, image->width, image->height,
                            fmax(blur, most_blur));
     shot->engine.params.render.max_blur_radius = (float)blur;

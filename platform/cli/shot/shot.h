@@ -24,7 +24,8 @@ struct shot_settings {
 /* Rows of tables of options, for settings with a member of that type. */
 #define SHOT_DEPTH_OPTIONS(type, member)                                                           \
     DEPTH_FILE_OPTION(type, member.depth), DEPTH_UNIT_OPTIONS(type, member.depth),                 \
-        REPAIR_OPTIONS(type, member.depth), DEPTH_EDGES_OPTION(type, member.depth)
+        REPAIR_OPTIONS(type, member.depth), DEPTH_EDGES_OPTION(type, member.depth),                \
+        MATTE_OPTION(type, member.depth)
 #define SHOT_LENS_OPTIONS(type, member)                                                            \
     {.kind = OPTION_HEADING, .help = "Focus and blur"}, FOCUS_OPTIONS(type, member.lens),          \
         LENS_OPTIONS(type, member.lens), CONTROL_OPTIONS(type, member.engine.controls),            \
@@ -49,7 +50,7 @@ int shot_check(struct shot_settings *settings, bool own_focus);
 
 /* The files that a picture is made of, some of which may be NULL, and their number: for
  * checks that none of them is written over. */
-enum { SHOT_INPUTS = 7 };
+enum { SHOT_INPUTS = 8 };
 int shot_inputs(const struct shot_settings *settings, const char *photo,
                 const char *inputs[SHOT_INPUTS]);
 

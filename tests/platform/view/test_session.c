@@ -131,15 +131,18 @@ static void expect_render(const struct rf_view_frame *frame, uint32_t method, fl
     struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 127);
     struct refocus_settings lens = refocus_settings_default(focus, blur);
     struct refocus_disparity map = refocus_disparity16(depth, W, H, 2 * W);
+    struct refocus_scene scene = refocus_scene_default(&photo, &map);
     struct refocus_image out = photo;
     struct refocus_renderer *renderer;
     int wrong = 0;
 
+    limits.thin = 1;
+    scene.matte = setup.matte;
     lens.render.method = method;
     out.plane[0] = malloc(3 * (size_t)PIXELS);
     assert_non_null(out.plane[0]);
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
-    assert_int_equal(refocus_prepare(renderer, &photo, &map), REFOCUS_OK);
+    assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_OK);
     assert_int_equal(refocus_render_settings(renderer, &lens, &out), REFOCUS_OK);
     for (int i = 0; i < PIXELS; i++) {
         const uint8_t *const p = out.plane[0] + 3 * i;
@@ -324,11 +327,28 @@ static void test_painting(void **unused)
     rf_session_destroy(&session);
 }
 
+/* A matte, of a size of its own, is part of the scene. */
+static void test_matte(void **state)
+{
+    static const uint8_t samples[6] = {0, 0, 255, 255, 0, 0};
+    const struct refocus_disparity matte = refocus_disparity8(samples, 6, 1, 6);
+    struct rf_view_state view = whole(0.1f, 9);
+    struct rf_session *session;
+
+    (void)state;
+    setup.matte = &matte;
+    session = begin();
+    expect_render(wait_for(session, rf_session_show(session, &view), true), 0, 0.1f, 9);
+    rf_session_destroy(&session);
+    setup.matte = NULL;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_full_is_render), cmocka_unit_test(test_nobody_waits),
-        cmocka_unit_test(test_hold), cmocka_unit_test(test_modes), cmocka_unit_test(test_painting)};
+        cmocka_unit_test(test_hold),           cmocka_unit_test(test_modes),
+        cmocka_unit_test(test_painting),       cmocka_unit_test(test_matte)};
     int failed;
 
     make_scene();
