@@ -26,7 +26,7 @@
 enum {
     REACH = RF_EDGE_SHIFT,
     SHIFTS = 89, /* shifts that are no longer than sqrt(REACH^2 + 1) */
-    GROWTHS = 2 * REACH + 3,
+    GROWTHS = 2 * RF_MOST_GROWN + 1,
     FEWEST = 200, /* edges that can tell */
     LARGE_BLOCK = 16,
     SMALL_BLOCK = 8,
@@ -425,43 +425,7 @@ struct change {
     struct rf_edges *e;
     const struct blocks *blocks; /* or NULL */
     struct shift shift;
-    int grown;
 };
-
-/* The least (grown > 0) or greatest disparity within a disc. What differs little from the pixel's
- * own belongs to its surface: slopes stay. */
-static uint16_t extreme(const struct rf_edges *e, int x, int y, int grown)
-{
-    const int radius = abs(grown);
-    const int own = e->map[y * e->stride + x];
-    int found = own;
-
-    for (int v = -radius; v <= radius; v++) {
-        const uint16_t *row = e->map + rf_smaller(rf_larger(y + v, 0), e->height - 1) * e->stride;
-
-        for (int u = -radius; u <= radius; u++) {
-            const int d = row[rf_smaller(rf_larger(x + u, 0), e->width - 1)];
-
-            if (u * u + v * v <= radius * radius + radius / 2)
-                found = grown > 0 ? rf_smaller(found, d) : rf_larger(found, d);
-        }
-    }
-    return (uint16_t)(abs(found - own) > RF_EDGE_STEP ? found : own);
-}
-
-static void regrow_band(void *context, int band, int worker)
-{
-    const struct change *change = context;
-    const struct rf_edges *e = change->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
-
-    (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++)
-        for (int x = 0; x < e->width; x++)
-            e->spare[y * e->stride + x] = rf_edge_is_rough(e, x, y)
-                                              ? extreme(e, x, y, change->grown)
-                                              : e->map[y * e->stride + x];
-}
 
 /* A field between the middles of blocks. */
 static double between(const struct blocks *b, const double *field, int x, int y)
@@ -499,14 +463,6 @@ static void move_band(void *context, int band, int worker)
         }
 }
 
-static void regrow(struct rf_edges *e, int grown)
-{
-    struct change change = {.e = e, .grown = grown};
-
-    rf_pool_run(e->pool, regrow_band, &change, rf_edge_bands(e));
-    rf_copy_plane(e, e->map, e->spare);
-}
-
 static void move(struct rf_edges *e, const struct blocks *blocks, struct shift shift)
 {
     struct change change = {.e = e, .blocks = blocks, .shift = shift};
@@ -536,22 +492,20 @@ static void look_again(struct rf_edges *e, const struct rf_ramp_limits *limits)
 /* Makes near surfaces smaller or larger by the whole number of pixels that fits best. */
 static int undo_growth(struct rf_edges *e, double grown, const struct rf_ramp_limits *limits)
 {
-    const int sign = grown < 0 ? -1 : 1, least = (int)fabs(grown);
+    const int sign = grown < 0 ? -1 : 1, least = rf_smaller((int)fabs(grown), RF_MOST_GROWN - 1);
     double support[2];
 
     rf_copy_plane(e, e->kept, e->map);
     for (int i = 0; i < 2; i++) {
         rf_copy_plane(e, e->map, e->kept);
-        rf_find_rough_blocks(e, e->map);
-        regrow(e, sign * (least + i));
+        rf_regrow(e, sign * (least + i));
         look_again(e, limits);
         support[i] = support_in_place(e);
     }
     if (support[1] > support[0])
         return sign * (least + 1);
     rf_copy_plane(e, e->map, e->kept);
-    rf_find_rough_blocks(e, e->map);
-    regrow(e, sign * least);
+    rf_regrow(e, sign * least);
     look_again(e, limits);
     return sign * least;
 }

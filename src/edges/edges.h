@@ -169,6 +169,10 @@ void rf_find_map_edges(struct rf_edges *e, const uint16_t *plane);
  * from it: up to RF_MOST_PHOTO_EDGE. */
 int rf_photo_edge_at(const struct rf_edges *e, const struct rf_map_edge *edge, int x, int y);
 
+/* Makes near surfaces smaller by so many pixels, < 0: larger. It uses the memory of label. */
+enum { RF_MOST_GROWN = RF_EDGE_SHIFT + 1 };
+void rf_regrow(struct rf_edges *e, int grown);
+
 /* The findings of rf_align(). */
 struct rf_alignment {
     double on_photo;      /* share of the edges that lie on the photo's, 0 to 1 */
