@@ -127,47 +127,67 @@ struct change {
     struct rf_shift shift;
 };
 
-/* A field between the middles of blocks. */
-static double between(const struct rf_blocks *b, const double *field, int x, int y)
+/* The pixel at a place, rounded, or the nearest one. */
+static uint16_t pixel_at(const struct rf_edges *e, double x, double y)
 {
-    const double fx = fmin(fmax((x + 0.5) / b->side - 0.5, 0), b->across - 1);
-    const double fy = fmin(fmax((y + 0.5) / b->side - 0.5, 0), b->down - 1);
-    const int u = rf_smaller((int)fx, rf_larger(b->across - 2, 0));
-    const int v = rf_smaller((int)fy, rf_larger(b->down - 2, 0));
-    const double *at = field + (ptrdiff_t)v * b->across + u;
-    const ptrdiff_t right = b->across > 1, below = b->down > 1 ? b->across : 0;
+    enum { FAR = 64 }; /* no place is so far out: casts round down */
+    const int u = (int)(x + FAR + 0.5) - FAR, v = (int)(y + FAR + 0.5) - FAR;
 
-    return (at[0] * (1 - (fx - u)) + at[right] * (fx - u)) * (1 - (fy - v)) +
-           (at[below] * (1 - (fx - u)) + at[below + right] * (fx - u)) * (fy - v);
+    return e->map[rf_smaller(rf_larger(v, 0), e->height - 1) * e->stride +
+                  rf_smaller(rf_larger(u, 0), e->width - 1)];
 }
 
-static void move_band(void *context, int band, int worker)
+static void shift_row(void *context, int y, int worker)
+{
+    const struct change *change = context;
+    const struct rf_edges *e = change->e;
+
+    (void)worker;
+    for (int x = 0; x < e->width; x++)
+        e->spare[y * e->stride + x] = pixel_at(e, x - change->shift.x, y - change->shift.y);
+}
+
+/* A field in the middle of a column of blocks, `down` blocks below the middles of the first row. */
+static double field_at(const struct rf_blocks *b, const double *field, int column, double down)
+{
+    const int row = rf_smaller((int)down, rf_larger(b->down - 2, 0));
+    const double *at = field + (ptrdiff_t)row * b->across + rf_smaller(column, b->across - 1);
+
+    return at[0] * (1 - (down - row)) + at[b->down > 1 ? b->across : 0] * (down - row);
+}
+
+/* Moves each pixel by what is between the fields in the middles of the blocks around. */
+static void bend_row(void *context, int y, int worker)
 {
     const struct change *change = context;
     const struct rf_blocks *b = change->blocks;
     const struct rf_edges *e = change->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+    const double down = fmin(fmax((y + 0.5) / b->side - 0.5, 0), b->down - 1);
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++)
-        for (int x = 0; x < e->width; x++) {
-            int u = x - change->shift.x, v = y - change->shift.y;
+    for (int column = 0, x = 0; x < e->width; column++) {
+        const int next = (column + 1) * b->side + b->side / 2;
+        const int end = column < b->across - 2 ? rf_smaller(next, e->width) : e->width;
+        const double right = field_at(b, b->right, column, down);
+        const double below = field_at(b, b->below, column, down);
+        const double more_right = field_at(b, b->right, column + 1, down) - right;
+        const double more_below = field_at(b, b->below, column + 1, down) - below;
 
-            if (b) {
-                u = (int)floor(x - between(b, b->right, x, y) + 0.5);
-                v = (int)floor(y - between(b, b->below, x, y) + 0.5);
-            }
+        for (; x < end; x++) {
+            const double at = (x + 0.5) / b->side - 0.5 - column;
+            const double share = at < 0 ? 0 : at < 1 ? at : 1;
+
             e->spare[y * e->stride + x] =
-                e->map[rf_smaller(rf_larger(v, 0), e->height - 1) * e->stride +
-                       rf_smaller(rf_larger(u, 0), e->width - 1)];
+                pixel_at(e, x - (right + more_right * share), y - (below + more_below * share));
         }
+    }
 }
 
 static void move(struct rf_edges *e, const struct rf_blocks *blocks, struct rf_shift shift)
 {
     struct change change = {.e = e, .blocks = blocks, .shift = shift};
 
-    rf_pool_run(e->pool, move_band, &change, rf_edge_bands(e));
+    rf_pool_run(e->pool, blocks ? bend_row : shift_row, &change, e->height);
     rf_copy_plane(e, e->map, e->spare);
 }
 

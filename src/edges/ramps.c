@@ -133,19 +133,29 @@ static void climb_cells(void *context, int row, int worker)
             .step = (uint16_t)climb->step,
         };
 
-        climb->moves[row * across + column] = is_needed(climb, column, row) &&
-                                              e->kernels->climb(&cell) &&
-                                              e->rough_cell[row * across + column];
+        bool goes = false;
+
+        if (is_needed(climb, column, row))
+            goes = e->kernels->climb(&cell);
+        /* Other cells are only there for the ways that lead through them. */
+        climb->moves[row * across + column] = e->rough_cell[row * across + column] ? goes : 0;
     }
 }
 
-static void climb(struct rf_edges *e, bool down, uint16_t *end, int steps)
+/* Ways of pixels whose length is `kept` are not gone. */
+static void climb(struct rf_edges *e, bool down, uint16_t *end, int steps, int kept)
 {
     const int cells = cells_across(e) * cells_down(e);
     struct climb climb = {
         .e = e, .down = down, .end = end, .from = e->map, .steps = steps, .moved = e->rough_cell};
 
     rf_copy_plane(e, end, e->map);
+    for (int y = 0; y < e->height; y++)
+        for (int x = 0; x < e->width; x++) {
+            uint16_t *length = &e->length[y * e->stride + x];
+
+            *length = *length == kept ? kept : 0;
+        }
     for (climb.step = 1; climb.step <= steps; climb.step++) {
         climb.to = climb.step % 2 ? e->spare : e->label;
         climb.moves = e->moved[climb.step % 2];
@@ -199,11 +209,11 @@ static void follow_ramps(struct rf_edges *e, int steps)
 
     find_rough_cells(e);
     memset(e->largest, 0, bytes);
-    for (int i = 0; i < 2; i++) {
-        memset(e->length, 0, bytes);
-        climb(e, false, e->near, steps);
-        climb(e, true, e->far, steps);
-    }
+    memset(e->length, 0, bytes);
+    climb(e, false, e->near, steps, 0);
+    climb(e, true, e->far, steps, 0);
+    climb(e, false, e->near, steps, 0);
+    climb(e, true, e->far, steps, steps);
 }
 
 struct choice {

@@ -14,11 +14,11 @@ bool RF_VEC(rf_climb)(const struct rf_climb_cell *c)
         const uint16_t step = (uint16_t)(c->down ? was - next : next - was);
 
         c->to[at] = next;
-        if (c->end[at] != was || step < c->flat || step * RF_RAMP_ENDS < c->largest[at])
+        if (c->length[at] != c->step - 1 || step < c->flat || step * RF_RAMP_ENDS < c->largest[at])
             continue;
         c->end[at] = next;
         c->largest[at] = step > c->largest[at] ? step : c->largest[at];
-        c->length[at] = c->step > c->length[at] ? c->step : c->length[at];
+        c->length[at] = c->step;
         any = true;
     }
     return any;

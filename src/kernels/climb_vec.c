@@ -12,7 +12,7 @@ static RF_ALWAYS_INLINE vec_u16 climb(const struct rf_climb_cell *c, ptrdiff_t a
     const vec_u16 way =
         vec_u16_and(vec_u16_from_bytes(c->direction + at), vec_u16_set(down ? 0xf0 : 0x0f));
     const vec_u16 was = vec_u16_load(here), most = vec_u16_load(c->largest + at);
-    const vec_u16 end = vec_u16_load(c->end + at);
+    const vec_u16 end = vec_u16_load(c->end + at), length = vec_u16_load(c->length + at);
     vec_u16 next = was, step, least, goes;
 
 #pragma GCC unroll 8
@@ -25,12 +25,12 @@ static RF_ALWAYS_INLINE vec_u16 climb(const struct rf_climb_cell *c, ptrdiff_t a
     least = vec_u16_mul_high(vec_u16_sub(vec_u16_max(most, one), one), vec_u16_set(43691));
     least = vec_u16_half(vec_u16_half(vec_u16_half(least)));
     least = vec_u16_max(least, vec_u16_set((uint16_t)(c->flat - 1)));
-    goes = vec_u16_without(vec_u16_equal(end, was), vec_u16_at_most(step, least));
+    goes = vec_u16_without(vec_u16_equal(length, vec_u16_set((uint16_t)(c->step - 1))),
+                           vec_u16_at_most(step, least));
     vec_u16_store(c->to + at, next);
     vec_u16_store(c->end + at, vec_u16_select(goes, next, end));
     vec_u16_store(c->largest + at, vec_u16_max(most, vec_u16_and(step, goes)));
-    vec_u16_store(c->length + at, vec_u16_max(vec_u16_load(c->length + at),
-                                              vec_u16_and(goes, vec_u16_set(c->step))));
+    vec_u16_store(c->length + at, vec_u16_select(goes, vec_u16_set(c->step), length));
     return goes;
 }
 

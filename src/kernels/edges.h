@@ -37,9 +37,9 @@ typedef void rf_block_ranges_fn(struct rf_edge_range *range, const uint16_t *pla
  * the disparities that ways have come to before this step, and `to` receives those after it: from[]
  * of the neighbour that `direction` names, or the pixel's own. Steps are modulo 2^16. A way ends
  * before its first step that is less than `flat`, at least 1, or than largest / RF_RAMP_ENDS. So
- * where end == from and the step is neither,
+ * where length == step - 1 and the step is neither,
  *
- *     end = to, largest = max(largest, the step), length = max(length, number of the step)
+ *     end = to, largest = max(largest, the step), length = step
  *
  * Whether that was so anywhere is returned. Up to RF_CLIMB_CELL rows and columns, and of `from` the
  * elements around them, too, which `to` does not overlap.

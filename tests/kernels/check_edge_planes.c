@@ -276,13 +276,12 @@ static bool step_on(const struct rf_climb_cell *c, uint16_t *const plane[PLANES]
     const int step = (uint16_t)(c->down ? was - next : next - was);
 
     plane[TO][at] = next;
-    if (plane[END][at] != was || step < c->flat || step < plane[LARGEST][at] / 12.0)
+    if (plane[LENGTH][at] != c->step - 1 || step < c->flat || step < plane[LARGEST][at] / 12.0)
         return false;
     plane[END][at] = next;
     if (step > plane[LARGEST][at])
         plane[LARGEST][at] = (uint16_t)step;
-    if (c->step > plane[LENGTH][at])
-        plane[LENGTH][at] = c->step;
+    plane[LENGTH][at] = c->step;
     return true;
 }
 
@@ -311,7 +310,7 @@ static bool check_climb(const struct subject *subject, struct stage *s, uint32_t
     for (int i = 0; i < CELL; i++) {
         /* Half of the ways still go on; some steps are just a twelfth of the largest one. */
         if (noise(&s->seed) & 1)
-            plane[END][i] = plane[FROM][i];
+            plane[LENGTH][i] = (uint16_t)(c.step - 1);
         if (i > 0 && noise(&s->seed) & 1)
             plane[LARGEST][i] = (uint16_t)(abs(plane[FROM][i] - plane[FROM][i - 1]) % 5000 * 12 +
                                            noise_between(&s->seed, -1, 1));
