@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "depth/mixed_pixels.h"
 #include "depth/upsample.h"
 #include "edges/input.h"
 #include "support/compare.h"
@@ -107,6 +108,16 @@ uint64_t rf_place_edges_bytes(int width, int height, int columns, int rows)
     return arena.used > last.used ? arena.used : last.used;
 }
 
+/* The last step at the photo's size. Works in planes of that size. */
+static void claim_mixed_pixels(const struct rf_place_edges *place, struct rf_disparity_q16 nearer,
+                               struct rf_bytes run)
+{
+    const struct rf_mixed_pixels mixed = {place->photo, place->out, nearer, run};
+
+    if (!rf_run_cancelled(place->pool->run))
+        rf_claim_mixed_pixels(&mixed, place->pool);
+}
+
 static void upsample(const struct rf_place_edges *place, const struct rf_edges *e,
                      const struct refocus_disparity *map)
 {
@@ -122,6 +133,7 @@ static void upsample(const struct rf_place_edges *place, const struct rf_edges *
 
     rf_upsampler_lay_out(&up, &arena);
     rf_upsample(&up, place->pool);
+    claim_mixed_pixels(place, up.settled, up.sure);
 }
 
 /* ----- order of the passes ----- */
@@ -178,6 +190,8 @@ static void give_out(const struct rf_place_edges *place, const struct rf_edges *
     for (int y = 0; y < e->height; y++)
         memcpy(place->out.at + y * place->out.stride, e->map + y * e->stride,
                (size_t)e->width * sizeof *e->map);
+    claim_mixed_pixels(place, (struct rf_disparity_q16){e->near, e->stride},
+                       (struct rf_bytes){e->is_wide, e->stride});
 }
 
 bool rf_place_edges(const struct rf_place_edges *place, struct refocus_depth_edges_report *report)

@@ -1,0 +1,121 @@
+/* test_mixed_pixels.c: mixed pixels along silhouettes go to the nearer surface where the photo is
+ * soft. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+#include <refocus/refocus.h>
+
+#include "depth/mixed_pixels.h"
+
+enum { WIDTH = 203, HEIGHT = 150, RADIUS = 50, NEAR = 50000, FAR = 10000 };
+
+struct stage {
+    uint8_t rgb[3 * WIDTH * HEIGHT];
+    uint16_t before[WIDTH * HEIGHT], map[WIDTH * HEIGHT], nearer[WIDTH * HEIGHT];
+    uint8_t run[WIDTH * HEIGHT];
+};
+
+/* How far a pixel is outside of the disc, pixels. */
+static double outside(int i)
+{
+    const int x = i % WIDTH - WIDTH / 2, y = i / WIDTH - HEIGHT / 2;
+
+    return ((double)(x * x + y * y) - RADIUS * RADIUS) / (2.0 * RADIUS);
+}
+
+/* A dark disc, whose edge is a ramp of `soft` pixels in the photo and none in the map. */
+static void draw(struct stage *s, double soft, int contrast)
+{
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const double share = 0.5 - outside(i) / soft;
+        const double in = share < 0 ? 0 : share > 1 ? 1 : share;
+
+        for (int c = 0; c < 3; c++)
+            s->rgb[3 * i + c] = (uint8_t)(200 - 10 * c - contrast * in);
+        s->before[i] = s->map[i] = outside(i) < 0 ? NEAR : FAR;
+    }
+}
+
+static void run(struct stage *s, int threads)
+{
+    const struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, s->rgb, WIDTH, HEIGHT, 3 * (ptrdiff_t)WIDTH);
+    const struct rf_mixed_pixels mixed = {
+        &photo, {s->map, WIDTH}, {s->nearer, WIDTH}, {s->run, WIDTH}};
+    struct rf_pool pool;
+    struct rf_run state = {.looked_at = NULL};
+
+    atomic_init(&state.state, RF_RUN_RUNNING);
+    assert_int_equal(rf_pool_start(&pool, threads, NULL, &state), REFOCUS_OK);
+    rf_claim_mixed_pixels(&mixed, &pool);
+    rf_pool_end(&pool);
+}
+
+static struct stage *make(void)
+{
+    struct stage *s = malloc(sizeof *s);
+
+    assert_non_null(s);
+    return s;
+}
+
+/* Across a ramp of 6 pixels, those with 15 % and more of the disc are within 2.1 pixels of it. */
+static void soft_photo(void **state)
+{
+    struct stage *s = make();
+    int taken = 0;
+
+    (void)state;
+    draw(s, 6, 120);
+    run(s, 2);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        if (s->before[i] == NEAR || outside(i) > 3.2)
+            assert_int_equal(s->map[i], s->before[i]);
+        if (outside(i) >= 0 && outside(i) < 1)
+            assert_int_equal(s->map[i], NEAR);
+        taken += s->map[i] != s->before[i];
+    }
+    assert_in_range(taken, 2 * 3 * RADIUS, 3 * 7 * RADIUS);
+    free(s);
+}
+
+/* Where the photo is sharp, or does not show the edge, the map stays. */
+static void others(void **state)
+{
+    struct stage *s = make();
+
+    (void)state;
+    draw(s, 1, 120);
+    run(s, 1);
+    assert_memory_equal(s->map, s->before, sizeof s->map);
+    draw(s, 6, 10);
+    run(s, 1);
+    assert_memory_equal(s->map, s->before, sizeof s->map);
+    free(s);
+}
+
+static void threads(void **state)
+{
+    struct stage *one = make(), *three = make();
+
+    (void)state;
+    draw(one, 6, 120);
+    draw(three, 6, 120);
+    run(one, 1);
+    run(three, 3);
+    assert_memory_equal(one->map, three->map, sizeof one->map);
+    free(one);
+    free(three);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(soft_photo), cmocka_unit_test(others),
+                                       cmocka_unit_test(threads)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
