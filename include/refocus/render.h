@@ -112,7 +112,8 @@ struct refocus_renderer_params {
                                (scene.h), which they refuse */
     uint32_t depth_edges; /**< 1: with memory for REFOCUS_DEPTH_EDGES_AUTO of scene.h; not in strip
                                mode, which goes without: call refocus_depth_edges() before */
-    uint32_t reserved2;   /**< 0 */
+    uint32_t behind;      /**< 1: with memory for `behind` of struct refocus_scene, which other
+                               renderers, and strip mode, refuse */
 };
 
 static inline struct refocus_renderer_params
@@ -147,6 +148,8 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max
  *
  * params->depth_edges takes up to 16 (W + 128) (H + 64) + 64 (W + H) + 2^18 more.
  *
+ * params->behind takes up to 6 W H + 2^8 more.
+ *
  * Strip mode, params->in_place, takes no more than
  *
  *     28 (S + 63) (S + 16) + 0.78 (W + 16) (H + 64) + 4 T (W + 512) + 24 P^2 + 2^17
@@ -180,8 +183,9 @@ REFOCUS_API void refocus_renderer_destroy(struct refocus_renderer **renderer);
  * @param scene  see struct refocus_scene
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (also depth_edges without memory for it),
  *         REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED (in_place: a map of another size, or a photo of
- *         Y, U and V; a matte without params.thin, in strip mode or of a photo of Y, U and V),
- *         REFOCUS_ERR_CANCELLED. After an error nothing is prepared.
+ *         Y, U and V; a matte without params.thin or what is behind without params.behind, in strip
+ *         mode or of a photo of Y, U and V), REFOCUS_ERR_CANCELLED. After an error nothing is
+ *         prepared.
  */
 REFOCUS_API int refocus_prepare_scene(struct refocus_renderer *renderer,
                                       const struct refocus_scene *scene);

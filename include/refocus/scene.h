@@ -59,6 +59,17 @@ struct refocus_scene {
         *matte; /**< NULL, the default, or alpha of each pixel: any size, bilinear between samples;
                      0 = background, the greatest value of its bits = subject. Of photos of R, G, B,
                      to renderers with `thin` */
+    const struct refocus_image *behind; /**< NULL, the default, or what the photo hides, where that
+                                           is known: a picture of R, G, B of the photo's size, for
+                                           photos of R, G, B. Alpha 0: nothing is known there;
+                                           else all of the pixel is. What a blurred foreground
+                                           uncovers then shows it, in place of what is made up of
+                                           its surroundings. The renderer has to be made for it:
+                                           refocus_renderer_params.behind */
+    const struct refocus_disparity
+        *behind_disparity; /**< disparities of what is behind, in the units of `disparity` and of
+                              the photo's size; NULL if `behind` is. Counts where it is farther than
+                              the photo's own */
 };
 
 /** A photo and its disparities alone, which stay the caller's. */

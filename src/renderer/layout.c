@@ -61,6 +61,15 @@ static void lay_out_thin(struct rf_arena *arena, struct rf_thin_list *thin, int 
     thin->given = rf_arena_take(arena, down, sizeof *thin->given);
 }
 
+/* Lays out a second layer of a photo of this size. */
+static void lay_out_behind(struct rf_arena *arena, struct rf_behind *behind, int width, int height)
+{
+    const uint64_t pixels = (uint64_t)width * (uint64_t)height;
+
+    behind->code = rf_arena_take(arena, pixels, 4);
+    behind->disparity = rf_arena_take(arena, pixels, sizeof *behind->disparity);
+}
+
 /* Lays out the coverage that thin structures are drawn into. Its sources share memory with the
  * pyramid, which comes later. */
 static void lay_out_coverage(struct rf_arena *arena, struct rf_coverage *coverage, int width,
@@ -255,6 +264,9 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
         lay_out_coverage(arena, &r->coverage, w, h);
         lay_out_thin(arena, &r->photo.thin, w, h);
     }
+    r->has_behind = params->behind && !params->in_place;
+    if (r->has_behind)
+        lay_out_behind(arena, &r->photo.behind, w, h);
     r->range.stride = rf_range_width(across, pad);
     r->range.at =
         rf_arena_take(arena, (uint64_t)r->range.stride * (uint64_t)rf_range_width(down, pad),

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "background/behind.h"
 #include "background/inpaint.h"
 #include "background/mark.h"
 #include "highlights/highlights.h"
@@ -203,6 +204,7 @@ void rf_pass_prefilter(struct rf_frame *f)
 struct mark {
     const struct refocus_renderer *r;
     struct rf_mark pass;
+    const struct rf_behind_pass *behind; /* NULL: the scene has none */
     int levels;
 };
 
@@ -221,6 +223,9 @@ static void mark_band(void *context, int band, int worker)
 
     rf_background_mark_rows(&r->exec, &r->view, &mark->pass, rf_band_start(band),
                             rf_band_end(&r->view, band), worker);
+    if (mark->behind)
+        rf_behind_rows(&r->exec, &r->view, mark->behind, rf_band_start(band),
+                       rf_band_end(&r->view, band), worker);
     if (!r->yuv.on)
         rf_background_push_band(&r->exec, &r->pyramid, band, mark->levels);
 }
@@ -348,7 +353,15 @@ void rf_pass_weights(struct rf_frame *f)
 void rf_pass_mark_background(struct rf_frame *f, int levels)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
+    const struct rf_behind_pass behind = {.behind = &r->photo.behind,
+                                          .transfer = &r->transfer[r->blend],
+                                          .plan = &f->plan,
+                                          .above = f->prefilter_above,
+                                          .steps = RF_PREFILTER_STEPS,
+                                          .disparity = r->disparity,
+                                          .background = r->background};
     struct mark mark = {.r = r,
+                        .behind = r->photo.behind.width ? &behind : NULL,
                         .pass = {.planes = r->yuv.on ? 1 : 3,
                                  .reach = rf_mark_reach(f->plan.plain, r->view.pad),
                                  .blur = r->blur,

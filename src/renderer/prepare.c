@@ -19,6 +19,9 @@ struct scene {
     struct refocus_disparity disparity, matte;
     bool has_matte;
     uint32_t depth_edges; /* enum refocus_depth_edges */
+    bool has_behind;
+    struct refocus_image behind;
+    struct refocus_disparity behind_disparity;
 };
 
 /* Upsamples the map. */
@@ -111,6 +114,44 @@ static void take_in(struct refocus_renderer *r, const struct scene *scene)
                             rf_whole(r), &r->photo.silhouettes);
 }
 
+static int read_behind(const struct refocus_renderer *r, const struct rf_log *log,
+                       struct scene *scene, const struct refocus_scene *given)
+{
+    const struct refocus_image *photo = &scene->photo, *behind = &scene->behind;
+    const struct refocus_disparity *map = &scene->behind_disparity;
+    int status;
+
+    if ((status = rf_read_image(log, "behind", &scene->behind, given->behind)) ||
+        (status = rf_read_map(log, "behind_disparity", &scene->behind_disparity,
+                              given->behind_disparity)))
+        return status;
+    if (!r->has_behind || refocus_format_is_yuv(photo->format) ||
+        refocus_format_is_yuv(behind->format))
+        return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
+                         "behind may be there with behind = 1 of the renderer's parameters, not "
+                         "in_place, and photo and behind of R, G, B");
+    if (behind->width != photo->width || behind->height != photo->height ||
+        map->width != photo->width || map->height != photo->height)
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
+                         "behind is %d x %d and behind_disparity %d x %d, may be %d x %d, as photo",
+                         (int)behind->width, (int)behind->height, (int)map->width, (int)map->height,
+                         (int)photo->width, (int)photo->height);
+    scene->has_behind = true;
+    return REFOCUS_OK;
+}
+
+static int read_matte(const struct refocus_renderer *r, const struct rf_log *log,
+                      struct scene *scene, const struct refocus_scene *given)
+{
+    scene->has_matte = given->matte != NULL;
+    if (!scene->has_matte)
+        return REFOCUS_OK;
+    if (!r->has_thin || refocus_format_is_yuv(scene->photo.format))
+        return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
+                         "a matte may be given of a photo of R, G, B to a renderer with thin");
+    return rf_read_map(log, "matte", &scene->matte, given->matte);
+}
+
 static int read_scene(const struct refocus_renderer *r, const struct rf_log *log,
                       struct scene *scene, const struct refocus_scene *given)
 {
@@ -136,13 +177,12 @@ static int read_scene(const struct refocus_renderer *r, const struct rf_log *log
                            refocus_format_is_yuv(scene->photo.format)))
         return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
                          "with in_place the photo may be R, G, B, and disparity of its size");
-    scene->has_matte = given->matte != NULL;
-    if (!scene->has_matte)
-        return REFOCUS_OK;
-    if (!r->has_thin || refocus_format_is_yuv(scene->photo.format))
-        return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
-                         "a matte may be given of a photo of R, G, B to a renderer with thin");
-    return rf_read_map(log, "matte", &scene->matte, given->matte);
+    scene->has_behind = scene->has_matte = false;
+    if ((status = read_matte(r, log, scene, given)))
+        return status;
+    if (given->behind || given->behind_disparity)
+        return read_behind(r, log, scene, given);
+    return REFOCUS_OK;
 }
 
 static int prepare(struct refocus_renderer *r, const struct rf_log *log,
@@ -162,6 +202,7 @@ static int prepare(struct refocus_renderer *r, const struct rf_log *log,
     own->silhouettes.count = 0;
     r->edges = refocus_depth_edges_report_default();
     own->thin.has_matte = false;
+    own->behind.width = own->behind.height = 0;
     r->blend = REFOCUS_BLEND_LINEAR; /* silhouettes are always found in linear light */
     rf_yuv_begin(&r->yuv, &scene.photo, r->blend);
     rf_run_begin(r);
@@ -176,6 +217,8 @@ static int prepare(struct refocus_renderer *r, const struct rf_log *log,
         if (r->has_thin)
             rf_matte_forget(&own->thin, &r->view);
         take_in(r, &scene);
+        if (scene.has_behind && !rf_cancelled(&r->exec))
+            rf_behind_load(&r->exec, &scene.behind, &scene.behind_disparity, &own->behind);
     }
     if (rf_run_end(r))
         return REFOCUS_ERR_CANCELLED;

@@ -12,6 +12,7 @@
 #include "aperture/cat_eye.h"
 #include "aperture/cat_shape.h"
 #include "aperture/ray_set.h"
+#include "background/behind.h"
 #include "background/mark.h"
 #include "background/pyramid.h"
 #include "colour/transfer.h"
@@ -50,6 +51,7 @@ struct rf_photo {
     struct rf_highlights highlights;
     uint32_t highlights_blend; /* blend that they were found in, or RF_NO_BLEND */
     struct rf_thin_list thin;
+    struct rf_behind behind; /* width 0: the scene has none */
 };
 
 /* The pass cache: which results of the last lens setting the planes still hold (pass_cache.c). */
@@ -156,7 +158,8 @@ struct refocus_renderer {
     float weight_sigma;     /* sigma of light_weight, in weight_blend */
     uint32_t weight_blend;
 
-    bool has_thin; /* there is memory for thin structures */
+    bool has_behind; /* there is memory for a second layer */
+    bool has_thin;   /* there is memory for thin structures */
     struct rf_coverage coverage;
     struct rf_stars stars;  /* for this lens setting */
     struct rf_grain *grain; /* for this lens setting */

@@ -175,6 +175,8 @@ void rf_set_planes(struct rf_frame *f)
     f->thin.cell_most = r->cells.most;
     f->thin.cell_stride = r->cells.stride;
     f->thin.bins = r->bins;
+    f->thin.behind = r->photo.behind.width ? &r->photo.behind : NULL;
+    f->thin.transfer = &r->transfer[f->params->blend];
     f->thin.list = &r->photo.thin;
     f->thin.coverage = &r->coverage;
 }

@@ -2,6 +2,19 @@
 #include "colour/transfer.h"
 #include "thin/mixture.h"
 
+/* F is what the caller knows to be behind. */
+static void take_behind(const struct rf_thin_pass *t, struct rf_thin *thin, int tx, int ty)
+{
+    const int x = tx * RF_TILE + thin->at % RF_TILE, y = ty * RF_TILE + thin->at / RF_TILE;
+    const size_t at = (size_t)y * (size_t)t->behind->width + (size_t)x;
+
+    if (!rf_is_behind(t->behind, x, y, t->disparity.at[y * t->disparity.stride + x]))
+        return;
+    for (int c = 0; c < 3; c++)
+        thin->light[c] = t->transfer->to_light[t->behind->code[4 * at + (size_t)c]];
+    thin->far_disparity = t->behind->disparity[at];
+}
+
 static void find_band(void *context, int band, int worker)
 {
     const struct rf_thin_pass *t = context;
@@ -33,6 +46,8 @@ static void find_band(void *context, int band, int worker)
 
         for (int i = 0; i < found; i++)
             rf_fit_coverage(t, &thin[count + (uint32_t)i], tx, band);
+        for (int i = 0; i < found && t->behind; i++)
+            take_behind(t, &thin[count + (uint32_t)i], tx, band);
         list->run[(size_t)band * t->view->tiles_x + tx] =
             (struct rf_thin_run){.first = count, .count = (uint16_t)found};
         count += (uint32_t)found;

@@ -49,6 +49,7 @@
 #include <stdint.h>
 
 #include "aperture/ray_set.h"
+#include "background/behind.h"
 #include "background/pyramid.h"
 #include "colour/transfer.h"
 #include "focus/focus.h"
@@ -119,12 +120,14 @@ struct rf_thin_pass {
     const struct rf_executor *exec;
     const struct rf_viewport *view;
     const struct rf_focus_plan *plan;
-    struct rf_disparity_q16 disparity; /* read */
-    struct rf_light_q12 light;         /* read, and exchanged with the list */
-    struct rf_blur_q8 blur;            /* patched */
-    const int16_t *cell_most;          /* greatest blur of each cell */
-    ptrdiff_t cell_stride;             /* stride of rows of cells; tiles/ranges.h */
-    const struct rf_bins *bins;        /* bins of each tile */
+    struct rf_disparity_q16 disparity;  /* read */
+    struct rf_light_q12 light;          /* read, and exchanged with the list */
+    struct rf_blur_q8 blur;             /* patched */
+    const int16_t *cell_most;           /* greatest blur of each cell */
+    ptrdiff_t cell_stride;              /* stride of rows of cells; tiles/ranges.h */
+    const struct rf_bins *bins;         /* bins of each tile */
+    const struct rf_behind *behind;     /* a layer that F is known from, or NULL */
+    const struct rf_transfer *transfer; /* from its codes to light */
     struct rf_thin_list *list;
     struct rf_coverage *coverage;
     int disc_scale; /* Q8: radius of a splatted disc, as part of its blur; 0: none is splatted */

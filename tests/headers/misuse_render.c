@@ -60,6 +60,28 @@ static void prepare_scene(void)
     REFUSED(refocus_get_depth_edges, renderer, &report);
 }
 
+static void prepare_behind(const struct refocus_image *behind)
+{
+    const struct refocus_image photo = misuse_photo();
+    const struct refocus_disparity map = misuse_map();
+    struct refocus_scene scene = refocus_scene_default(&photo, &map);
+
+    scene.behind = behind;
+    scene.behind_disparity = &map;
+    REFUSED(refocus_prepare_scene, renderer, &scene);
+}
+
+static void prepare_behind_map(const struct refocus_disparity *map)
+{
+    const struct refocus_image photo = misuse_photo();
+    const struct refocus_disparity own = misuse_map();
+    struct refocus_scene scene = refocus_scene_default(&photo, &own);
+
+    scene.behind = &photo;
+    scene.behind_disparity = map;
+    REFUSED(refocus_prepare_scene, renderer, &scene);
+}
+
 static void render_out(const struct refocus_image *out)
 {
     const struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
@@ -126,7 +148,7 @@ static void creating(void)
                                  BAD(refocus_renderer_params, threads, INT32_MAX),
                                  BAD(refocus_renderer_params, cpu, UINT32_MAX),
                                  BAD(refocus_renderer_params, depth_edges, 2),
-                                 BAD(refocus_renderer_params, reserved2, 1),
+                                 BAD(refocus_renderer_params, behind, 2),
                                  BAD(refocus_renderer_params, methods, UINT32_MAX)};
     const struct refocus_renderer_params good = RETURNS(refocus_renderer_params_default, W, H, 5);
     struct refocus_renderer_params most = refocus_renderer_params_default(
@@ -230,6 +252,8 @@ void misuse_render(void **state)
     misuse_images(prepare_photo);
     misuse_maps(prepare_map);
     prepare_scene();
+    misuse_images(prepare_behind);
+    misuse_maps(prepare_behind_map);
     bad_planes();
     one_row();
     ANSWERS(REFOCUS_OK, refocus_prepare, renderer, &photo, &map);

@@ -67,6 +67,7 @@ static void bad_limits(void **state)
         BAD(refocus_renderer_params, reserved, 1),
         BAD(refocus_renderer_params, allocator.allocate, some_allocate),
         BAD(refocus_renderer_params, thin, 2),
+        BAD(refocus_renderer_params, behind, 2),
         BAD(refocus_renderer_params, allocator.release, some_release)};
 
     (void)state;

@@ -239,18 +239,21 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     enum { CAPACITY = 4 * MAX_SIDE * MAX_SIDE + 2 * GUARD };
     static uint8_t photo[4 * MAX_SIDE * MAX_SIDE], out[2][CAPACITY];
     static uint16_t disparity[MAX_SIDE * MAX_SIDE], view[MAX_SIDE * MAX_SIDE];
+    static uint16_t farther[MAX_SIDE * MAX_SIDE];
     const int width = take_in(in, 0, 1, MAX_SIDE), height = take_in(in, 0, 1, MAX_SIDE);
     const uint32_t kind = take(in, 1), out_format = 1 + take(in, 1) % 8;
     const uint32_t format =
         1 + kind % 8; /* bits 3 and 4: matrix and range; 5: edges; 6, 7: matte */
     const int bits = take(in, 1) & 1 ? 16 : 8;
     const int dw = take_in(in, 0, 1, MAX_SIDE), dh = take_in(in, 0, 1, MAX_SIDE);
-    const int same = (int)take(in, 1) & 1;
+    const uint32_t shape = take(in, 1); /* bit 1: there is something behind */
+    const int same = (int)shape & 1;
     struct refocus_image image = refocus_image_planar(format, photo, width, height);
     const struct refocus_disparity map = {
         sizeof map,         (uint32_t)bits, same ? width : dw,
         same ? height : dh, disparity,      (ptrdiff_t)(same ? width : dw) * bits / 8};
     struct refocus_scene scene = refocus_scene_default(&image, &map);
+    struct refocus_disparity behind = map;
     struct refocus_settings lens = take_lens(in, wild, most);
     struct refocus_aperture *aperture = take_aperture(in, wild);
     int status;
@@ -269,11 +272,17 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
         lens.field.shape = REFOCUS_FIELD_LENS;
     take_pixels(in, photo, sizeof photo);
     take_pixels(in, (uint8_t *)disparity, sizeof disparity);
+    for (int i = 0; i < MAX_SIDE * MAX_SIDE; i++)
+        farther[i] = disparity[i] / 2;
+    behind.samples = farther;
     scene.depth_edges = kind >> 5 & 1;
     if (kind >> 6 & 1)
         scene.matte = take_matte(in, kind >> 7 & 1, &image);
+    scene.behind = shape & 2 ? &image : NULL; /* the picture itself */
+    scene.behind_disparity = shape & 2 ? &behind : NULL;
     status = refocus_prepare_scene(renderer, &scene);
-    check(status == REFOCUS_OK || status == REFOCUS_ERR_SIZE || status == REFOCUS_ERR_UNSUPPORTED);
+    check(status == REFOCUS_OK || status == REFOCUS_ERR_SIZE || status == REFOCUS_ERR_UNSUPPORTED ||
+          (shape & 2 && status == REFOCUS_ERR_ARGUMENT));
     lens.render.aperture = aperture;
     status = render(renderer, &lens, width, height, out_format, out[0], CAPACITY);
     if (status == REFOCUS_OK) {
@@ -303,6 +312,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     limits.methods = wild_limits ? take(&in, 4) : REFOCUS_METHODS_ALL;
     limits.max_memory = 64 << 20;
     limits.thin = flags >> 2 & 1;
+    limits.behind = flags >> 3 & 1;
     status = refocus_renderer_create(&renderer, &limits);
     check((status == REFOCUS_OK) == (renderer != NULL));
     check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT || status == REFOCUS_ERR_SIZE ||

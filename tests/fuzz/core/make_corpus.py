@@ -16,14 +16,14 @@ def share(part, whole):
     return struct.pack(">H", round(65535 * part / whole))
 
 
-def limits(width, height, blur, threads):
-    return b"\0" + u16(width, 1) + u16(height, 1) + share(blur, 12) + u16(threads, 1)
+def limits(width, height, blur, threads, flags=0):
+    return bytes([flags]) + u16(width, 1) + u16(height, 1) + share(blur, 12) + u16(threads, 1)
 
 
-def picture(width, height, form, out, bits, depth=None):
+def picture(width, height, form, out, bits, depth=None, behind=False):
     dw, dh = depth or (width, height)
     return (u16(width, 1) + u16(height, 1) + bytes([form - 1, out - 1, bits == 16])
-            + u16(dw, 1) + u16(dh, 1) + bytes([depth is None]))
+            + u16(dw, 1) + u16(dh, 1) + bytes([(depth is None) | behind << 1]))
 
 
 def lens(focus, blur, most, method, rays, blend=0, sigma=128, gain=1, iterations=2, flags=(0, 0, 1),
@@ -100,6 +100,10 @@ def main():
         + lens(.1, 9, 9, 0, 64, gain=4, sigma=300) + DISC,
         "too_large": limits(10, 10, 3, 1) + picture(11, 10, 1, 1, 16) + lens(.2, 3, 3, 0, 7),
         "no_blur": limits(10, 10, 3, 1) + picture(10, 10, 1, 1, 16) + lens(.2, 0, 3, 0, 7) + DISC,
+        "behind": (limits(40, 30, 8, 2, flags=4) + picture(40, 30, 1, 1, 16, behind=True)
+                   + lens(0, 8, 8, 0, 64) + DISC),
+        "behind_thin": (limits(40, 30, 8, 1, flags=12) + picture(40, 30, 3, 3, 8, behind=True)
+                        + lens(.3, 8, 8, 0, 16) + DISC),
         "column": limits(1, 48, 12, 3) + picture(1, 48, 1, 1, 16) + lens(.6, 12, 12, 0, 64) + DISC,
         "wild_limits": b"\1" + struct.pack(">iifi", 65535, 65535, 127, 64),
         "wild_nan": b"\2" + limits(9, 9, 3, 1)[1:] + picture(9, 9, 1, 1, 16)
