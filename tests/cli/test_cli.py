@@ -36,7 +36,7 @@ class Usage(Case):
     def test_help_lists_every_option(self):
         options = {
             'render': self.PAPERS + self.CONTROLS +
-                      '-o --output --depth --depth-unit --near --far --invalid --speckle '
+                      '-o --output --depth --depth-unit --near --far --invalid --speckle --behind --behind-depth '
                       '--depth-edges --matte --focus --focus-at --focus-rectangle '
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
@@ -47,14 +47,14 @@ class Usage(Case):
                      '--far-is-large --match --strokes --stereo-file --side-by-side --view '
                      '--focus-at --blur --json -h --help',
             'sheet': self.PAPERS + self.CONTROLS +
-                     '-o --output --depth --depth-unit --near --far --invalid --speckle '
+                     '-o --output --depth --depth-unit --near --far --invalid --speckle --behind --behind-depth '
                      '--depth-edges --matte --kind --focuses --blurs --f-numbers --apertures --sigmas '
                      '--cell-width --region --focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --f-number --focal-length --sensor-width --method --rays --iterations '
                      '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin '
                      '--threads --cpu --json --settings --save-settings -h --help',
             'pull': self.PAPERS + self.CONTROLS +
-                    '-o --output --depth --depth-unit --near --far --invalid --speckle '
+                    '-o --output --depth --depth-unit --near --far --invalid --speckle --behind --behind-depth '
                     '--depth-edges --matte --from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
                     '--wiggle '
                     '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '

@@ -105,6 +105,42 @@ class Results(Case):
                    '--matte', 'absent.pgm')
         self.fails(2, re.compile('^refocus: matte.pgm: '), 'render', *command, '-o', 'matte.pgm',
                    '--matte', 'matte.pgm')
+    def test_behind(self):
+        """A bar before stripes: what it hides is shown where it melts away."""
+        width, height = 96, 64
+        bar = range(44, 52)
+        stripes = lambda x, y: (230, 230, 220) if y // 4 % 2 else (20, 30, 60)
+        pictures.ppm('bar.ppm', width, height,
+                     lambda x, y: (150, 40, 30) if x in bar else stripes(x, y))
+        pictures.ppm('stripes.ppm', width, height, stripes)
+        pictures.pgm('bar.pgm', width, height, lambda x, y: 255 if x in bar else 0)
+        pictures.pgm('wall.pgm', width, height, lambda x, y: 0)
+        pictures.pgm('small.pgm', width // 2, height, lambda x, y: 0)
+        command = ('--depth', 'bar.pgm', '--focus', '0', '--blur', '12', '--no-thin')
+        render = ('render', 'bar.ppm', *command, '-o', 'out.ppm')
+        behind = ('--behind', 'stripes.ppm', '--behind-depth')
+
+        def contrast():
+            pixels = pictures.read_bytes('out.ppm')[-3 * width * height:]
+            rows = [pixels[3 * (y * width + 48)] for y in range(16, 48)]
+            return max(rows) - min(rows)
+
+        self.succeeds(*render)
+        made_up = contrast()
+        self.succeeds(*render, *behind, 'wall.pgm')
+        self.assertGreater(contrast(), made_up + 20)
+        self.succeeds('sheet', 'bar.ppm', '--depth', 'bar.pgm', '--blur', '12', *behind, 'wall.pgm', '-o',
+                      'out.ppm')
+        self.fails(2, '--behind: it goes with --behind-depth; give that too', *render, *behind[:2])
+        self.fails(2, '--behind-depth: it goes with --behind; give that too', *render,
+                   '--behind-depth', 'wall.pgm')
+        self.fails(2, '--behind: no view shows it; leave it or --view out', *render, *behind,
+                   'wall.pgm', '--view', 'depth')
+        self.fails(2, '--behind: is what one eye cannot see; leave it or --wiggle out', 'pull',
+                   'bar.ppm', *command, *behind, 'wall.pgm', '--wiggle', '3', '-o', 'p-%d.ppm')
+        self.fails(1, "small.pgm: it is 48x64, the photo 96x64; give what is behind in the photo's "
+                   'size', *render, *behind, 'small.pgm')
+        self.fails(1, re.compile('^refocus: none.ppm: '), *render, '--behind', 'none.ppm', '--behind-depth', 'wall.pgm')
 
     def test_depth_edges_in_full(self):
         """`depth` looks at the photo with --full alone."""

@@ -32,6 +32,7 @@ static const struct option options[] = {
                   "frames-%03d.png (" OUTPUT_PICTURES ") for a picture each; or a name in "
                   ".y4m, .apng, and by the ffmpeg program .mp4, .webm or .gif"),
     SHOT_DEPTH_OPTIONS(struct settings, shot),
+    BEHIND_OPTIONS(struct settings, shot.behind),
     {.kind = OPTION_HEADING, .help = "The pull"},
     NUMBER("--from", "D", from, 0, 1, "disparity in focus at the beginning; default 1"),
     NUMBER("--to", "D", to, 0, 1, "and at the end; default 0"),
@@ -133,6 +134,9 @@ static int check(struct settings *s, const char *photo, int argc, char **argv)
         status = report_failure(EXIT_WRONG, "--wiggle",
                                 "is in place of --keys, --from, --to, --blur-from, "
                                 "--blur-to and --back; leave them out");
+    if (status == EXIT_DONE && !isnan(s->wiggle) && s->shot.behind.image)
+        status = report_failure(EXIT_WRONG, "--behind",
+                                "is what one eye cannot see; leave it or --wiggle out");
     if (status == EXIT_DONE)
         status = animation_check(s->output, inputs, count);
     if (status == EXIT_DONE && s->shot.save)

@@ -24,6 +24,7 @@ static const struct option options[] = {
                   "the picture to write: " OUTPUT_PICTURES "; keeps the photo's EXIF "
                   "data and colour profile"),
     SHOT_DEPTH_OPTIONS(struct settings, shot),
+    BEHIND_OPTIONS(struct settings, shot.behind),
     SHOT_LENS_OPTIONS(struct settings, shot),
     SHOT_METHOD_OPTIONS(struct settings, shot),
     {.kind = OPTION_NUMBERS,
@@ -71,6 +72,8 @@ static int check(struct settings *settings, const char *photo)
     if (status == EXIT_DONE && settings->view != VIEW_ANAGLYPH && !isnan(settings->parallax))
         status =
             report_failure(EXIT_WRONG, "--parallax", "goes with --view anaglyph; give that too");
+    if (status == EXIT_DONE && settings->view != VIEW_NONE && settings->shot.behind.image)
+        status = report_failure(EXIT_WRONG, "--behind", "no view shows it; leave it or --view out");
     if (status == EXIT_DONE)
         status = output_check(settings->output, OUTPUT_PICTURE, NULL, inputs, count);
     if (status == EXIT_DONE && settings->shot.save)

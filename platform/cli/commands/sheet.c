@@ -28,6 +28,7 @@ static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Files"},
     OUTPUT_OPTION(struct settings, output, "the picture to write: " OUTPUT_PICTURES),
     SHOT_DEPTH_OPTIONS(struct settings, shot),
+    BEHIND_OPTIONS(struct settings, shot.behind),
     {.kind = OPTION_HEADING, .help = "The sheet"},
     {.kind = OPTION_CHOICE,
      .name = "--kind",

@@ -118,6 +118,7 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
     params.methods = engine->methods;
     params.thin = engine->params.thin.enabled || engine->has_matte;
     params.depth_edges = engine->places_edges;
+    params.behind = engine->behind;
     engine->params.render.max_blur_radius = (float)blur;
     status = refocus_renderer_create(&engine->renderer, &params);
     engine->create_ms = report_clock_ms() - start;

@@ -159,6 +159,7 @@ struct engine {
     bool has_sides;         /* the aperture's light differs before and behind the focus */
     bool has_matte;         /* the renderer is made for scenes with a matte */
     double field_disparity; /* NAN: that in focus */
+    bool behind;            /* the renderer is made for a second layer */
     uint32_t methods;       /* methods that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
     bool places_edges; /* the renderer can put edges of a map on the photo's; before engine_create()
                         */

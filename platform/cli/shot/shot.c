@@ -63,6 +63,8 @@ int shot_inputs(const struct shot_settings *settings, const char *photo,
     inputs[count++] = photo;
     inputs[count++] = settings->depth.file;
     inputs[count++] = settings->depth.matte;
+    inputs[count++] = settings->behind.image;
+    inputs[count++] = settings->behind.depth;
     inputs[count++] = settings->engine.aperture;
     inputs[count++] = settings->engine.papers.field_map;
     inputs[count++] = settings->engine.controls.focus_map;
@@ -81,12 +83,15 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     int status;
 
     memset(&shot->input, 0, sizeof shot->input);
+    memset(&shot->behind, 0, sizeof shot->behind);
     status = engine_begin(&shot->engine, &settings->engine);
     shot->engine.name = photo;
     if (status == EXIT_DONE) {
         report_progress("reading", 0);
         status = input_read(&shot->input, photo, &settings->depth);
     }
+    if (status == EXIT_DONE)
+        status = behind_read(&shot->behind, &settings->behind, &settings->depth, &shot->input);
     if (status == EXIT_DONE)
         status = input_blur(&shot->input, &settings->lens, &blur);
     if (status != EXIT_DONE)
@@ -97,8 +102,10 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     scene = input_scene(&shot->input, &disparity);
     shot->engine.places_edges = input_has_edges_placed(&shot->input, &settings->depth);
     scene.depth_edges = shot->engine.places_edges;
+    behind_add(&shot->behind, &scene);
     report_progress("preparing", 0.15);
     shot->engine.has_matte = shot->input.matte.samples != NULL;
+    shot->engine.behind = settings->behind.image != NULL;
     status = engine_create(&shot->engine, &settings->engine, image->width, image->height,
                            fmax(blur, most_blur));
     shot->engine.params.render.max_blur_radius = (float)blur;
@@ -110,6 +117,7 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
 void shot_close(struct shot *shot)
 {
     engine_end(&shot->engine);
+    behind_free(&shot->behind);
     input_free(&shot->input);
 }
 

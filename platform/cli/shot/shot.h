@@ -2,6 +2,7 @@
 #ifndef RF_CLI_SHOT_H
 #define RF_CLI_SHOT_H
 
+#include "inputs/behind.h"
 #include "inputs/inputs.h"
 #include "inputs/lens.h"
 #include "settings/settings.h"
@@ -10,6 +11,7 @@
 /* The settings that all commands share which make pictures of a photo. */
 struct shot_settings {
     struct depth_settings depth;
+    struct behind_settings behind;
     struct lens_settings lens;
     struct engine_settings engine;
     const char *load, *save; /* files of settings, or NULL */
@@ -38,6 +40,7 @@ struct shot_settings {
 
 struct shot {
     struct input input;
+    struct behind behind;
     struct engine engine;
 };
 
@@ -50,7 +53,7 @@ int shot_check(struct shot_settings *settings, bool own_focus);
 
 /* The files that a picture is made of, some of which may be NULL, and their number: for
  * checks that none of them is written over. */
-enum { SHOT_INPUTS = 8 };
+enum { SHOT_INPUTS = 10 };
 int shot_inputs(const struct shot_settings *settings, const char *photo,
                 const char *inputs[SHOT_INPUTS]);
 
