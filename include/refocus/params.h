@@ -34,6 +34,17 @@ enum refocus_blend {
     REFOCUS_BLEND_GAMMA = 2,  /**< gamma 2.2 */
 };
 
+/** How that part of the background is made up which a blurred foreground uncovers, and the photo
+ * does not show. */
+enum refocus_inpaint {
+    REFOCUS_INPAINT_SMOOTH = 0,   /**< smoothly, from the colours around */
+    REFOCUS_INPAINT_TEXTURED = 1, /**< where it is nearly in focus (up to 4 pixels of blur), with
+                                    the texture and the edges around continued. For stills: takes
+                                    up to two seconds a megapixel by one thread, whatever the
+                                    region. Photos of Y, U and V take it as smooth */
+};
+enum { REFOCUS_INPAINT_COUNT = 2 };
+
 /** For rays: every pixel of the aperture mask. */
 enum { REFOCUS_RAYS_FULL = -1 };
 
@@ -276,6 +287,10 @@ struct refocus_render_params {
     const struct refocus_interpolated_params *interpolated;
     const struct refocus_foveated_params *foveated;
     const struct refocus_diffusion_params *diffusion;
+
+    uint32_t inpaint;  /**< enum refocus_inpaint; default smooth. The renderer has to be made for
+                         texture: refocus_renderer_params.textured */
+    uint32_t reserved; /**< 0 */
 };
 
 /** Sweep, 64 rays, plain averages in linear light of what is in the photo, a disc, the whole

@@ -114,6 +114,9 @@ struct refocus_renderer_params {
                                mode, which goes without: call refocus_depth_edges() before */
     uint32_t behind;      /**< 1: with memory for `behind` of struct refocus_scene, which other
                                renderers, and strip mode, refuse */
+    uint32_t textured;  /**< 1: with memory for REFOCUS_INPAINT_TEXTURED, which other renderers, and
+                             strip mode, take as smooth */
+    uint32_t reserved2; /**< 0 */
 };
 
 static inline struct refocus_renderer_params
@@ -148,7 +151,7 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max
  *
  * params->depth_edges takes up to 16 (W + 128) (H + 64) + 64 (W + H) + 2^18 more.
  *
- * params->behind takes up to 6 W H + 2^8 more.
+ * params->behind takes up to 6 W H + 2^8 more, params->textured up to 80000 T.
  *
  * Strip mode, params->in_place, takes no more than
  *

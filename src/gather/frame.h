@@ -81,6 +81,7 @@ struct rf_frame {
     int row_gap;                  /* rf_row_gap() of gather/tile_rows.h */
     struct rf_look look;          /* spikes of stars, and grain */
     bool look_ready;              /* `look` is computed */
+    bool textured;                /* texture is continued in the hidden background */
     bool splats;                  /* highlights are splatted, not gathered by rays */
     struct rf_splat splat;        /* valid if `splats`; its planes are rf_set_planes()'s */
     enum rf_bright bright;        /* how far light that rays gather exceeds RF_LIGHT_MAX */

@@ -66,4 +66,19 @@ typedef void rf_join2_fn(uint16_t *out, const uint16_t *first, const uint16_t *s
 typedef void rf_restore_known2_fn(uint16_t *out, const uint16_t *own, const int16_t *blur,
                                   const int16_t *background_blur, int n);
 
+/* products: the sum of the products of n x rows elements of two rectangles whose rows are `stride`
+ * apart; n times the largest product fits 31 bits. */
+typedef int64_t rf_products_fn(const int16_t *a, const int16_t *b, ptrdiff_t stride, int n,
+                               int rows);
+
+/*
+ * solve_lanes: solves n equations with n unknowns, A x = b, in each of RF_SOLVE_LANES lanes. A is
+ * symmetric, positive definite but for rounding, and given by the rows of its lower triangle, one
+ * after the other; it is overwritten. x is b before. A = L D L^T; no pivot is taken to be less than
+ * 1 / RF_SOLVE_PIVOT of the element of A in its place. Every operation is rounded to float alone,
+ * in the order of the reference, so that all instruction sets yield the same bits.
+ */
+enum { RF_SOLVE_LANES = 8, RF_SOLVE_PIVOT = 32 };
+typedef void rf_solve_lanes_fn(float (*matrix)[RF_SOLVE_LANES], float (*x)[RF_SOLVE_LANES], int n);
+
 #endif

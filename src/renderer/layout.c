@@ -264,6 +264,8 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
         lay_out_coverage(arena, &r->coverage, w, h);
         lay_out_thin(arena, &r->photo.thin, w, h);
     }
+    if (params->textured && !params->in_place)
+        r->texture = rf_arena_take(arena, (uint64_t)threads, rf_texture_scratch_bytes());
     r->has_behind = params->behind && !params->in_place;
     if (r->has_behind)
         lay_out_behind(arena, &r->photo.behind, w, h);

@@ -114,7 +114,8 @@ static void make_blur(struct rf_frame *f, bool layers)
                                     .plan = f->plan,
                                     .shift = f->scale.shift,
                                     .thin = thin_key(f),
-                                    .splat_blur = f->thin.splat_blur};
+                                    .splat_blur = f->thin.splat_blur,
+                                    .textured = f->textured};
         rf_pass_blur(f, layers);
         if (rf_thin_is_separated(&f->thin) && !rf_cancelled(&r->exec))
             rf_pass_thin(f);
@@ -325,6 +326,8 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
         parts.visible = grown(r, grown(r, region, 0, RF_TILE), r->view.pad + RF_CELL, 1);
         parts.bins = grown(r, region, r->view.pad + 2 * RF_TILE + thin_margin(f), RF_TILE);
     }
+    if (r->cache.textured != f->textured) /* smooth light has texture, too, behind thin things */
+        r->cache = (struct rf_pass_cache){0};
     if (is_there(f, &parts, layers)) {
         rf_use(r, r->cache.window);
         rf_set_planes(f);

@@ -15,6 +15,7 @@
 #include "image/border.h"
 #include "image/viewport.h"
 #include "renderer/renderer.h"
+#include "support/compare.h"
 #include "thin/thin.h"
 #include "tiles/ranges.h"
 
@@ -205,6 +206,7 @@ struct mark {
     const struct refocus_renderer *r;
     struct rf_mark pass;
     const struct rf_behind_pass *behind; /* NULL: the scene has none */
+    const struct rf_thin_pass *thin;     /* NULL: it hides nothing */
     int levels;
 };
 
@@ -223,6 +225,8 @@ static void mark_band(void *context, int band, int worker)
 
     rf_background_mark_rows(&r->exec, &r->view, &mark->pass, rf_band_start(band),
                             rf_band_end(&r->view, band), worker);
+    if (mark->thin)
+        rf_thin_hide(mark->thin, r->background.blur, band);
     if (mark->behind)
         rf_behind_rows(&r->exec, &r->view, mark->behind, rf_band_start(band),
                        rf_band_end(&r->view, band), worker);
@@ -319,6 +323,33 @@ static void weigh_band(void *context, int band, int worker)
         rf_weigh_rows(&r->view, &pass, band);
 }
 
+/* Blurs of one surface differ by 1/24 of the largest one, or a pixel. */
+static int same_surface(const struct rf_frame *f)
+{
+    return rf_larger((int)(f->params->max_blur_radius * (256.0f / 24)), 256);
+}
+
+static void take_filled_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+
+    (void)worker;
+    rf_thin_take_filled(&f->thin, rf_renderer_of(f)->background, band);
+}
+
+/* Thin structures that are splatted lie over the smooth light: what they hide is there. */
+static void pull_textured(struct rf_frame *f)
+{
+    struct refocus_renderer *r = rf_renderer_of(f);
+
+    rf_background_pull_textured(&r->exec, &r->view, &r->pyramid,
+                                &(struct rf_texture){.scratch = r->texture,
+                                                     .transfer = &r->transfer[r->blend],
+                                                     .same = same_surface(f)});
+    if (f->thin.disc_scale)
+        rf_pool_run(&r->pool, take_filled_band, f, rf_bands(&r->view));
+}
+
 void rf_pass_inpaint(struct rf_frame *f, int levels)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
@@ -330,6 +361,8 @@ void rf_pass_inpaint(struct rf_frame *f, int levels)
                                   &(struct rf_inpaint_chroma){r->chroma.size, r->blur,
                                                               r->chroma.smooth,
                                                               r->chroma.background});
+    else if (f->textured)
+        pull_textured(f);
     else
         rf_background_pull(&r->exec, &r->view, &r->pyramid, 0, levels);
     rf_plane_begin(&r->lifetimes, RF_PLANE_FOREGROUND);
@@ -350,6 +383,19 @@ void rf_pass_weights(struct rf_frame *f)
     rf_pool_run(&r->pool, weigh_band, f, rf_bands(&r->view));
 }
 
+static void mark_and_push(struct refocus_renderer *r, struct mark *mark)
+{
+    rf_plane_begin(&r->lifetimes, RF_PLANE_CONE);
+    rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_BLUR);
+    rf_plane_begin(&r->lifetimes, RF_PLANE_PYRAMID);
+    rf_pool_run(r->exec.pool, dilate_item, mark, 2);
+    /* Each row of the cone is read before the background's light is written over it. */
+    rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_LIGHT);
+    rf_pool_run(r->exec.pool, mark_band, mark, rf_bands(&r->view));
+    if (!r->yuv.on)
+        rf_background_push(&r->exec, &r->pyramid, RF_BAND_LEVELS, mark->levels);
+}
+
 void rf_pass_mark_background(struct rf_frame *f, int levels)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
@@ -362,6 +408,7 @@ void rf_pass_mark_background(struct rf_frame *f, int levels)
                                           .background = r->background};
     struct mark mark = {.r = r,
                         .behind = r->photo.behind.width ? &behind : NULL,
+                        .thin = f->textured && f->thin.disc_scale ? &f->thin : NULL,
                         .pass = {.planes = r->yuv.on ? 1 : 3,
                                  .reach = rf_mark_reach(f->plan.plain, r->view.pad),
                                  .blur = r->blur,
@@ -372,13 +419,10 @@ void rf_pass_mark_background(struct rf_frame *f, int levels)
 
     rf_plane_read(&r->lifetimes, RF_PLANE_BLUR);
     rf_plane_read(&r->lifetimes, RF_PLANE_SMOOTH);
-    rf_plane_begin(&r->lifetimes, RF_PLANE_CONE);
-    rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_BLUR);
-    rf_plane_begin(&r->lifetimes, RF_PLANE_PYRAMID);
-    rf_pool_run(r->exec.pool, dilate_item, &mark, 2);
-    /* Each row of the cone is read before the background's light is written over it. */
-    rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_LIGHT);
-    rf_pool_run(r->exec.pool, mark_band, &mark, rf_bands(&r->view));
-    if (!r->yuv.on)
-        rf_background_push(&r->exec, &r->pyramid, RF_BAND_LEVELS, levels);
+    mark_and_push(r, &mark);
+    if (mark.thin && !rf_cancelled(&r->exec) && r->pyramid.level[levels].blur.at[0] == RF_NO_BLUR) {
+        rf_thin_hide_none(&f->thin); /* all that is known lies behind thin structures */
+        mark.thin = NULL;
+        mark_and_push(r, &mark);
+    }
 }

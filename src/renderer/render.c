@@ -127,6 +127,8 @@ static void run(struct rf_frame *f, struct rf_rect region)
     const bool layers = method->layers || f->params->background;
     const enum rf_need need = pinhole ? RF_NEED_LIGHT : layers ? RF_NEED_LAYERS : RF_NEED_BLUR;
 
+    f->textured = layers && !pinhole && r->texture && !r->yuv.on &&
+                  f->params->inpaint == REFOCUS_INPAINT_TEXTURED;
     rf_set_planes(f);
     r->last_silhouettes = layers;
     if (!pinhole)
@@ -152,7 +154,7 @@ static void run(struct rf_frame *f, struct rf_rect region)
         return;
     }
     rf_run_passes(f, region, need,
-                  method->frame != NULL || r->yuv.on || (layers && !f->plan.plain));
+                  method->frame != NULL || r->yuv.on || f->textured || (layers && !f->plan.plain));
     if (rf_cancelled(&r->exec))
         return;
     if (!method->frame || pinhole) {

@@ -15,6 +15,7 @@
 #include "background/behind.h"
 #include "background/mark.h"
 #include "background/pyramid.h"
+#include "background/texture.h"
 #include "colour/transfer.h"
 #include "focus/focus.h"
 #include "gather/frame.h"
@@ -65,6 +66,7 @@ struct rf_pass_cache {
     enum rf_bright bright; /* how far boosted highlights may exceed white */
     bool boosted;          /* highlights in the pre-filtered light are boosted */
     bool background;       /* the hidden background */
+    bool textured;         /* texture is continued in it */
     bool weighted;         /* weights of `sigma` lie in place of its blur */
     bool premultiplied;    /* the light of both layers is multiplied by them */
     float sigma;
@@ -158,8 +160,9 @@ struct refocus_renderer {
     float weight_sigma;     /* sigma of light_weight, in weight_blend */
     uint32_t weight_blend;
 
-    bool has_behind; /* there is memory for a second layer */
-    bool has_thin;   /* there is memory for thin structures */
+    struct rf_texture_scratch *texture; /* NULL: there is no memory for texture */
+    bool has_behind;                    /* there is memory for a second layer */
+    bool has_thin;                      /* there is memory for thin structures */
     struct rf_coverage coverage;
     struct rf_stars stars;  /* for this lens setting */
     struct rf_grain *grain; /* for this lens setting */

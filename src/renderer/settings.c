@@ -71,6 +71,8 @@ static const struct row rows[] = {
     RENDER(RF_UNSIGNED, blend, 0, REFOCUS_BLEND_GAMMA),
     RENDER(RF_REAL, sigma, 1, INFINITY),
     RENDER(RF_UNSIGNED, prefilter, 0, 1),
+    RENDER(RF_UNSIGNED, inpaint, 0, REFOCUS_INPAINT_COUNT - 1),
+    RENDER(RF_UNSIGNED, reserved, 0, 0),
     RENDER(RF_SIGNED, region_x, INT32_MIN, INT32_MAX),
     RENDER(RF_SIGNED, region_y, INT32_MIN, INT32_MAX),
     RENDER(RF_SIGNED, region_width, INT32_MIN, INT32_MAX),

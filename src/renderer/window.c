@@ -171,6 +171,7 @@ void rf_set_planes(struct rf_frame *f)
     f->thin.plan = &f->plan;
     f->thin.disparity = r->disparity;
     f->thin.light = r->light;
+    f->thin.smooth = r->smooth;
     f->thin.blur = r->blur;
     f->thin.cell_most = r->cells.most;
     f->thin.cell_stride = r->cells.stride;

@@ -15,7 +15,7 @@ struct rf_settings {
     int32_t rays;
     uint32_t blend;
     float sigma;
-    uint32_t prefilter;
+    uint32_t prefilter, inpaint, reserved;
     int32_t region_x, region_y, region_width, region_height;
     const struct refocus_aperture *aperture;
 

@@ -1,7 +1,9 @@
 /* separate.c: chooses which mixtures are separated, and exchanges their light with that of
  * the background. */
 #include <stdlib.h>
+#include <string.h>
 
+#include "background/texture.h"
 #include "thin/mixture.h"
 
 enum { CELLS = RF_TILE / RF_CELL };
@@ -132,6 +134,68 @@ void rf_thin_separate(const struct rf_thin_pass *t)
     rf_pool_run(t->exec->pool, choose_band, (void *)t, rf_bands(t->view));
 }
 
+/* The place of a pixel in its tile. */
+static ptrdiff_t place_of(const struct rf_thin_pass *t, const struct rf_thin *thin)
+{
+    return thin->at / RF_TILE * t->view->stride + thin->at % RF_TILE;
+}
+
+/* Highlights may have been boosted. */
+static int filled_light(const struct rf_thin_pass *t, int channel, ptrdiff_t at)
+{
+    const int light = t->smooth.channel[channel][at];
+
+    return light < RF_LIGHT_MAX ? light : RF_LIGHT_MAX;
+}
+
+void rf_thin_hide(const struct rf_thin_pass *t, struct rf_blur_q8 background_blur, int band)
+{
+    for (int tx = 0; tx < t->view->tiles_x; tx++) {
+        struct rf_thin_choice *choice = rf_thin_choice_of(t, tx, band);
+        uint32_t count;
+        const struct rf_thin *thin = rf_thin_of(t, tx, band, &count);
+        int16_t *tile = background_blur.at + band * RF_TILE * background_blur.stride + tx * RF_TILE;
+
+        memset(choice->filled, 0, sizeof choice->filled);
+        for (uint32_t i = 0; i < count && choice->splats; i++) {
+            int16_t *blur = tile + place_of(t, &thin[i]);
+
+            if (!rf_has_bit(choice->splat, i) || *blur == RF_NO_BLUR ||
+                abs(*blur) >= RF_TEXTURE_BLUR)
+                continue;
+            *blur = RF_NO_BLUR;
+            choice->filled[i / 64] |= UINT64_C(1) << i % 64;
+        }
+    }
+}
+
+void rf_thin_hide_none(const struct rf_thin_pass *t)
+{
+    for (int ty = 0; ty < t->view->tiles_y; ty++)
+        for (int tx = 0; tx < t->view->tiles_x; tx++)
+            memset(rf_thin_choice_of(t, tx, ty)->filled, 0, sizeof(uint64_t[4]));
+}
+
+void rf_thin_take_filled(const struct rf_thin_pass *t, struct rf_background background, int band)
+{
+    for (int tx = 0; tx < t->view->tiles_x; tx++) {
+        const struct rf_thin_choice *choice = rf_thin_choice_of(t, tx, band);
+        uint32_t count;
+        const struct rf_thin *thin = rf_thin_of(t, tx, band, &count);
+        const ptrdiff_t tile = band * RF_TILE * t->view->stride + tx * RF_TILE;
+
+        for (uint32_t i = 0; i < count; i++) {
+            const ptrdiff_t at = tile + place_of(t, &thin[i]);
+
+            if (!rf_has_bit(choice->filled, i))
+                continue;
+            for (int c = 0; c < 3; c++)
+                t->smooth.channel[c][at] = background.light.channel[c][at];
+            background.blur.at[at] = t->blur.at[at];
+        }
+    }
+}
+
 void rf_thin_sharp_means(const struct rf_thin_pass *t, int tx, int ty,
                          uint16_t mean[3][RF_TILE * RF_TILE])
 {
@@ -149,7 +213,10 @@ void rf_thin_sharp_means(const struct rf_thin_pass *t, int tx, int ty,
         if (!is_apart(choice, i))
             continue;
         for (int c = 0; c < 3; c++)
-            mean[c][thin[i].at] = (uint16_t)(4 * thin[i].light[c]);
+            mean[c][thin[i].at] =
+                (uint16_t)(4 * (rf_has_bit(choice->filled, i)
+                                    ? filled_light(t, c, at + place_of(t, &thin[i]))
+                                    : thin[i].light[c]));
     }
 }
 

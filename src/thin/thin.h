@@ -102,6 +102,7 @@ struct rf_thin_choice {
     bool splats, mattes; /* whether any of them is */
     bool sides;          /* whether any is drawn as one of its sides */
     uint64_t splat[4], matte[4], near[4], far[4];
+    uint64_t filled[4]; /* splatted ones whose background is that of rf_thin_take_filled() */
 };
 
 /* The coverage layer that is composited over the picture; coverage.h has its parts. */
@@ -122,6 +123,7 @@ struct rf_thin_pass {
     const struct rf_focus_plan *plan;
     struct rf_disparity_q16 disparity;  /* read */
     struct rf_light_q12 light;          /* read, and exchanged with the list */
+    struct rf_light_q12 smooth;         /* written by rf_thin_take_filled(), else read */
     struct rf_blur_q8 blur;             /* patched */
     const int16_t *cell_most;           /* greatest blur of each cell */
     ptrdiff_t cell_stride;              /* stride of rows of cells; tiles/ranges.h */
@@ -203,6 +205,14 @@ void rf_coverage_splat(const struct rf_thin_pass *t);
  * pre-filter, and back after it, even if the run is cancelled. */
 void rf_thin_swap_light(const struct rf_thin_pass *t);
 void rf_thin_swap_light_back(const struct rf_thin_pass *t);
+
+/* Where texture is continued (background/texture.h) that goes for what splatted structures hide,
+ * too, where it is nearly in focus: those pixels are marked as hidden in a row of tiles, unless
+ * they are anyway; and once they are filled the smooth light gets theirs, and they are hidden no
+ * longer. */
+void rf_thin_hide(const struct rf_thin_pass *t, struct rf_blur_q8 background_blur, int band);
+void rf_thin_hide_none(const struct rf_thin_pass *t); /* takes all of that back */
+void rf_thin_take_filled(const struct rf_thin_pass *t, struct rf_background background, int band);
 
 /* Means of a tile in Q14 that no ray changes: the photo, and F where mixtures are separated. */
 void rf_thin_sharp_means(const struct rf_thin_pass *t, int tx, int ty, uint16_t mean[3][256]);

@@ -40,7 +40,7 @@ class Usage(Case):
                       '--depth-edges --matte --focus --focus-at --focus-rectangle '
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
-                      '--highlights --mirror --background --no-thin --threads --cpu --repeat --json --view '
+                      '--highlights --mirror --background --no-thin --fill --threads --cpu --repeat --json --view '
                       '--parallax --region --settings --save-settings -h --help',
             'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
                      '--depth-edges --upsample --estimate --preset --input-size --input-mean --input-scale '
@@ -51,7 +51,7 @@ class Usage(Case):
                      '--depth-edges --matte --kind --focuses --blurs --f-numbers --apertures --sigmas '
                      '--cell-width --region --focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --f-number --focal-length --sensor-width --method --rays --iterations '
-                     '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin '
+                     '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin --fill '
                      '--threads --cpu --json --settings --save-settings -h --help',
             'pull': self.PAPERS + self.CONTROLS +
                     '-o --output --depth --depth-unit --near --far --invalid --speckle --behind --behind-depth '
@@ -59,24 +59,24 @@ class Usage(Case):
                     '--wiggle '
                     '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality --aperture --blend '
-                    '--sigma --highlights --mirror --background --no-thin --threads --cpu --json '
+                    '--sigma --highlights --mirror --background --no-thin --fill --threads --cpu --json '
                     '--settings --save-settings -h --help',
             'view': self.PAPERS + self.CONTROLS +
                     '-o --output --depth --depth-unit --near --far --invalid --speckle '
                     '--depth-edges --matte --strokes --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality '
-                    '--aperture --blend --sigma --highlights --mirror --background --no-thin --threads '
+                    '--aperture --blend --sigma --highlights --mirror --background --no-thin --fill --threads '
                     '--cpu --json --settings --size --fullscreen --seconds -h --help',
             'info': '--json -h --help',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
                        '--depth-unit --near --far --depth-edges --matte --focus --focus-at --focus-rectangle '
                        '--focus-distance --blur --f-number --focal-length --sensor-width --rays --iterations '
-                       '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin '
+                       '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin --fill '
                        '--threads --cpu --repeat --json -h --help',
             'bench': self.PAPERS + '--frames --kernels --size --depth --depth-unit --near --far '
                      '--focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --method --rays --iterations --quality '
-                     '--aperture --blend --sigma --highlights --mirror --background --no-thin --threads --cpu '
+                     '--aperture --blend --sigma --highlights --mirror --background --no-thin --fill --threads --cpu '
                      '--repeat --json -h --help',
         }
         for name, expected in options.items():

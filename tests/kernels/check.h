@@ -34,6 +34,7 @@ int check_aim(const struct subject *subject);
 int check_windows(const struct subject *subject);
 int check_search(const struct subject *subject);
 int check_series(const struct subject *subject);
+int check_texture(const struct subject *subject);
 int check_discs(const struct subject *subject);
 int check_light(const struct subject *subject);
 int check_yuv(const struct subject *subject);

@@ -42,6 +42,7 @@ static const struct key {
     {"mirror", INT32, RENDER(search.mirror), NULL},
     {"background", INT32, RENDER(search.background), NULL},
     {"prefilter", INT32, RENDER(render.prefilter), NULL},
+    {"inpaint", INT32, RENDER(render.inpaint), NULL},
     {"thin", INT32, RENDER(thin.enabled), NULL},
     {"highlight", FLOAT, RENDER(highlights.gain), NULL},
     {"cell", INT32, RENDER(jittered.cell), NULL},

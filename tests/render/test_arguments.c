@@ -68,6 +68,7 @@ static void bad_limits(void **state)
         BAD(refocus_renderer_params, allocator.allocate, some_allocate),
         BAD(refocus_renderer_params, thin, 2),
         BAD(refocus_renderer_params, behind, 2),
+        BAD(refocus_renderer_params, textured, 2),
         BAD(refocus_renderer_params, allocator.release, some_release)};
 
     (void)state;
@@ -165,6 +166,8 @@ static void bad_settings(void **state)
         BAD(refocus_settings, search.mirror, 2),
         BAD(refocus_settings, search.background, 2),
         BAD(refocus_settings, render.prefilter, 2),
+        BAD(refocus_settings, render.inpaint, 2),
+        BAD(refocus_settings, render.reserved, 1),
         BAD(refocus_settings, focus.reserved, 1),
         BAD(refocus_settings, render.region_x, -1),
         BAD(refocus_settings, render.region_x, 1),

@@ -14,10 +14,19 @@ static const float highlight_gain = 4;
 static const struct {
     const char *name, *summary;
     int rays;
-    bool thin;
-} qualities[] = {{"preview", "32 rays, thin structures gathered by them", 32, false},
-                 {"standard", "64 rays, thin structures splatted", 64, true},
-                 {"best", "128 rays, thin structures splatted", 128, true}};
+    bool thin, textured;
+} qualities[] = {
+    {"preview", "32 rays, thin structures gathered by them", 32, false, false},
+    {"standard", "64 rays, thin structures splatted", 64, true, false},
+    {"best", "128 rays, thin structures splatted, texture continued behind them", 128, true, true}};
+
+enum { FILL_AUTO, FILL_SMOOTH, FILL_TEXTURED };
+static const struct {
+    const char *name, *summary;
+} fills[] = {
+    {"auto", "textured with --quality best, else smooth"},
+    {"smooth", "from the colours around"},
+    {"textured", "texture and edges around are continued; takes a second or two a megapixel"}};
 
 static const struct {
     const char *name, *summary;
@@ -35,6 +44,16 @@ const char *engine_quality_name(uint32_t index)
 const char *engine_quality_summary(uint32_t index)
 {
     return index < sizeof qualities / sizeof *qualities ? qualities[index].summary : NULL;
+}
+
+const char *engine_fill_name(uint32_t index)
+{
+    return index < sizeof fills / sizeof *fills ? fills[index].name : NULL;
+}
+
+const char *engine_fill_summary(uint32_t index)
+{
+    return index < sizeof fills / sizeof *fills ? fills[index].summary : NULL;
 }
 
 const char *engine_blend_name(uint32_t index)
@@ -79,6 +98,9 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
     params->highlights.gain =
         isnan(settings->highlights) ? highlight_gain : (float)settings->highlights;
     params->thin.enabled = qualities[settings->quality].thin && !settings->no_thin;
+    if (settings->fill == FILL_TEXTURED ||
+        (settings->fill == FILL_AUTO && qualities[settings->quality].textured))
+        params->render.inpaint = REFOCUS_INPAINT_TEXTURED;
     params->search.mirror = settings->mirror;
     params->search.background = settings->background;
     engine->methods = REFOCUS_METHOD_BIT(params->render.method);
@@ -119,6 +141,7 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
     params.thin = engine->params.thin.enabled || engine->has_matte;
     params.depth_edges = engine->places_edges;
     params.behind = engine->behind;
+    params.textured = engine->params.render.inpaint == REFOCUS_INPAINT_TEXTURED;
     engine->params.render.max_blur_radius = (float)blur;
     status = refocus_renderer_create(&engine->renderer, &params);
     engine->create_ms = report_clock_ms() - start;

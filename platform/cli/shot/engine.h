@@ -12,7 +12,7 @@
 #include "line/report.h"
 
 struct engine_settings {
-    int method, quality, blend, cpu;
+    int method, quality, blend, fill, cpu;
     double rays, iterations, sigma, highlights; /* NAN: not given */
     double threads, repeat;
     const char *aperture; /* NULL: that of the bokeh's preset */
@@ -33,6 +33,8 @@ enum { QUALITY_STANDARD = 1 };
 
 const char *engine_quality_name(uint32_t index);
 const char *engine_quality_summary(uint32_t index);
+const char *engine_fill_name(uint32_t index);
+const char *engine_fill_summary(uint32_t index);
 const char *engine_blend_name(uint32_t index);
 const char *engine_blend_summary(uint32_t index);
 
@@ -86,6 +88,14 @@ const char *engine_blend_summary(uint32_t index);
          .offset = offsetof(type, member.no_thin),                                                 \
          .help = "sweep: gather thin structures far before the focus, and in it, by rays "         \
                  "like everything else, instead of splatting them; so does quality preview",       \
+         OF_METHODS(type, member.method, OF_SWEEP)},                                               \
+        {.kind = OPTION_CHOICE,                                                                    \
+         .name = "--fill",                                                                         \
+         .argument = "HOW",                                                                        \
+         .offset = offsetof(type, member.fill),                                                    \
+         .choice = engine_fill_name,                                                               \
+         .summary = engine_fill_summary,                                                           \
+         .help = "sweep: how the background is made up that a blurred foreground uncovers",        \
          OF_METHODS(type, member.method, OF_SWEEP)},                                               \
         {.kind = OPTION_TEXT,                                                                      \
          .name = "--aperture",                                                                     \

@@ -246,7 +246,7 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
         1 + kind % 8; /* bits 3 and 4: matrix and range; 5: edges; 6, 7: matte */
     const int bits = take(in, 1) & 1 ? 16 : 8;
     const int dw = take_in(in, 0, 1, MAX_SIDE), dh = take_in(in, 0, 1, MAX_SIDE);
-    const uint32_t shape = take(in, 1); /* bit 1: there is something behind */
+    const uint32_t shape = take(in, 1); /* bit 1: there is something behind; bit 2: texture */
     const int same = (int)shape & 1;
     struct refocus_image image = refocus_image_planar(format, photo, width, height);
     const struct refocus_disparity map = {
@@ -264,6 +264,7 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
         image.plane[i] += image.stride[i] * (refocus_plane_rows(format, i, height) - 1);
         image.stride[i] = -image.stride[i];
     }
+    lens.render.inpaint = shape >> 2 & 1;
     take_extras(in, wild, &lens);
     lens.thin.enabled = kind >> 6 & 1;
     if (in->size > 0 && take(in, 1) & 1)
@@ -313,6 +314,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     limits.max_memory = 64 << 20;
     limits.thin = flags >> 2 & 1;
     limits.behind = flags >> 3 & 1;
+    limits.textured = flags >> 4 & 1;
     status = refocus_renderer_create(&renderer, &limits);
     check((status == REFOCUS_OK) == (renderer != NULL));
     check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT || status == REFOCUS_ERR_SIZE ||

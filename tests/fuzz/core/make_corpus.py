@@ -20,10 +20,10 @@ def limits(width, height, blur, threads, flags=0):
     return bytes([flags]) + u16(width, 1) + u16(height, 1) + share(blur, 12) + u16(threads, 1)
 
 
-def picture(width, height, form, out, bits, depth=None, behind=False):
+def picture(width, height, form, out, bits, depth=None, behind=False, textured=False):
     dw, dh = depth or (width, height)
     return (u16(width, 1) + u16(height, 1) + bytes([form - 1, out - 1, bits == 16])
-            + u16(dw, 1) + u16(dh, 1) + bytes([(depth is None) | behind << 1]))
+            + u16(dw, 1) + u16(dh, 1) + bytes([(depth is None) | behind << 1 | textured << 2]))
 
 
 def lens(focus, blur, most, method, rays, blend=0, sigma=128, gain=1, iterations=2, flags=(0, 0, 1),
@@ -104,6 +104,8 @@ def main():
                    + lens(0, 8, 8, 0, 64) + DISC),
         "behind_thin": (limits(40, 30, 8, 1, flags=12) + picture(40, 30, 3, 3, 8, behind=True)
                         + lens(.3, 8, 8, 0, 16) + DISC),
+        "textured": (limits(40, 30, 8, 2, flags=16) + picture(40, 30, 1, 1, 16, textured=True)
+                     + lens(0, 8, 8, 0, 64) + DISC),
         "column": limits(1, 48, 12, 3) + picture(1, 48, 1, 1, 16) + lens(.6, 12, 12, 0, 64) + DISC,
         "wild_limits": b"\1" + struct.pack(">iifi", 65535, 65535, 127, 64),
         "wild_nan": b"\2" + limits(9, 9, 3, 1)[1:] + picture(9, 9, 1, 1, 16)
