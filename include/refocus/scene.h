@@ -70,6 +70,13 @@ struct refocus_scene {
         *behind_disparity; /**< disparities of what is behind, in the units of `disparity` and of
                               the photo's size; NULL if `behind` is. Counts where it is farther than
                               the photo's own */
+    const uint8_t *confidence; /**< NULL, the default, or a byte for each sample of `disparity`: 255
+                                  = sure, 0 = a guess that counts where there is nothing else, as
+                                  in refocus_upsample(). It weighs where a map is brought to the
+                                  photo's size; of a map of that size with
+                                  REFOCUS_DEPTH_EDGES_AUTO, samples below 128 are made anew from
+                                  those up to 4 samples away. Strip mode refuses it */
+    ptrdiff_t confidence_stride; /**< bytes from a row to the next; may be negative */
 };
 
 /** A photo and its disparities alone, which stay the caller's. */

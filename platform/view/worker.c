@@ -143,6 +143,7 @@ static int make_renderer(struct rf_session *s, struct refocus_renderer **rendere
     params.threads = s->setup.threads;
     params.cpu = s->setup.cpu;
     params.thin = 1;
+    params.textured = reduction == 1 && s->setup.params.render.inpaint == REFOCUS_INPAINT_TEXTURED;
     params.papers = refocus_papers();
     return refocus_renderer_create(renderer, &params);
 }

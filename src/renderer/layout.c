@@ -92,13 +92,19 @@ static uint64_t prepare_bytes(const struct refocus_renderer_params *params)
 {
     const int w = params->max_width, h = params->max_height;
     const struct refocus_image photo = {.width = w, .height = h};
-    struct rf_upsampler up = {.photo = &photo, .columns = w, .rows = h};
+    static const uint8_t sure = 255;
+    struct rf_upsampler up = {.photo = &photo, .confidence = &sure, .columns = w, .rows = h};
     struct rf_arena arena = {NULL, 0};
     uint64_t edges;
 
     rf_upsampler_lay_out(&up, &arena);
-    edges = params->depth_edges ? rf_place_edges_bytes(w, h, w + 1, h + 1) : 0;
-    return arena.used > edges ? arena.used : edges;
+    if (!params->depth_edges)
+        return arena.used;
+    edges = rf_place_edges_bytes(w, h, w + 1, h + 1);
+    if (arena.used < edges)
+        arena.used = edges;
+    rf_arena_take(&arena, (uint64_t)w * (uint64_t)h, 2); /* a map before its edges are placed */
+    return arena.used;
 }
 
 /* Lays out the photo, and the planes that depend on the lens setting. These share their memory with

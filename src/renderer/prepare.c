@@ -19,44 +19,92 @@ struct scene {
     struct refocus_disparity disparity, matte;
     bool has_matte;
     uint32_t depth_edges; /* enum refocus_depth_edges */
+    const uint8_t *confidence;
+    ptrdiff_t confidence_stride;
     bool has_behind;
     struct refocus_image behind;
     struct refocus_disparity behind_disparity;
 };
 
-/* Upsamples the map. */
-static void upsample(struct refocus_renderer *r, const struct refocus_image *photo,
-                     const struct refocus_disparity *map)
+/* Brings the map to the photo's size, working in `arena`. */
+static void upsample(struct refocus_renderer *r, const struct scene *scene,
+                     const struct refocus_image *photo, struct rf_arena arena,
+                     struct rf_disparity_q16 out)
 {
-    struct rf_arena arena = {r->prepare_memory, 0};
     struct rf_upsampler up = {
         .kernels = r->exec.kernels,
         .photo = photo,
-        .map = map,
-        .columns = rf_upsample_samples(map->width, r->view.width),
-        .rows = rf_upsample_samples(map->height, r->view.height),
-        .out = r->disparity,
+        .map = &scene->disparity,
+        .confidence = scene->confidence,
+        .confidence_stride = scene->confidence_stride,
+        .columns = rf_upsample_samples(scene->disparity.width, r->view.width),
+        .rows = rf_upsample_samples(scene->disparity.height, r->view.height),
+        .out = out,
     };
 
     rf_upsampler_lay_out(&up, &arena);
     rf_upsample(&up, &r->pool);
 }
 
-/* Puts the edges of the map on the photo's, if the scene asks for it. Says whether it wrote the
- * disparities. */
-static bool place_edges(struct refocus_renderer *r, const struct scene *scene,
+/* Puts samples of a map of the photo's size back that are rather sure than not. */
+static void keep_sure(const struct scene *scene, struct rf_disparity_q16 out)
+{
+    const struct refocus_disparity *map = &scene->disparity;
+
+    for (int y = 0; y < map->height; y++) {
+        const uint8_t *sure = scene->confidence + y * scene->confidence_stride;
+        const uint8_t *row = (const uint8_t *)map->samples + y * map->stride;
+
+        for (int x = 0; x < map->width; x++)
+            if (sure[x] >= 128)
+                out.at[y * out.stride + x] =
+                    (uint16_t)(map->bits == 16 ? ((const uint16_t *)row)[x] : row[x] * 257);
+    }
+}
+
+/* The map as its edges are looked for in: where there is confidence, one of the photo's size that
+ * is taken from `arena`. */
+static struct refocus_disparity settle(struct refocus_renderer *r, const struct scene *scene,
+                                       const struct refocus_image *photo, struct rf_arena *arena)
+{
+    const int width = r->view.width, height = r->view.height;
+    struct rf_disparity_q16 out = {NULL, width};
+
+    if (!scene->confidence || scene->depth_edges != REFOCUS_DEPTH_EDGES_AUTO)
+        return scene->disparity;
+    out.at = rf_arena_take(arena, (uint64_t)width * (uint64_t)height, 2);
+    upsample(r, scene, photo, *arena, out);
+    if (scene->disparity.width == width && scene->disparity.height == height)
+        keep_sure(scene, out);
+    return refocus_disparity16(out.at, width, height, 2 * (ptrdiff_t)width);
+}
+
+/* Writes the disparities. */
+static void take_in_map(struct refocus_renderer *r, const struct scene *scene,
                         const struct refocus_image *photo)
 {
+    struct rf_arena arena = {r->prepare_memory, 0};
+    const struct refocus_disparity map = settle(r, scene, photo, &arena);
     const struct rf_place_edges place = {
         .kernels = r->exec.kernels,
         .pool = &r->pool,
         .photo = photo,
-        .map = &scene->disparity,
-        .memory = r->prepare_memory,
+        .map = &map,
+        .memory = arena.base + arena.used,
         .out = r->disparity,
     };
 
-    return scene->depth_edges == REFOCUS_DEPTH_EDGES_AUTO && rf_place_edges(&place, &r->edges);
+    if (rf_cancelled(&r->exec))
+        return;
+    if (scene->depth_edges == REFOCUS_DEPTH_EDGES_AUTO && rf_place_edges(&place, &r->edges))
+        return;
+    if (rf_cancelled(&r->exec))
+        return;
+    if (map.width == r->view.width && map.height == r->view.height)
+        /* A map that was made here has no steps, and lies where they would be smoothed. */
+        rf_load_disparity(r, &map, arena.used ? 0 : rf_code_step(&map), 0, 0);
+    else
+        upsample(r, scene, photo, arena, r->disparity);
 }
 
 /* A picture in RGB8, in the memory of disparities and in the bytes beside the codes of U and V. */
@@ -100,12 +148,7 @@ static void take_in(struct refocus_renderer *r, const struct scene *scene)
 
     rf_planes_end(&r->lifetimes);
     rf_load_light(r, photo, guided ? &guide : NULL);
-    if (!place_edges(r, scene, &guide) && !rf_cancelled(&r->exec)) {
-        if (same_size)
-            rf_load_disparity(r, map, rf_code_step(map), 0, 0);
-        else
-            upsample(r, &guide, map);
-    }
+    take_in_map(r, scene, &guide);
     if (scene->has_matte && !rf_cancelled(&r->exec))
         take_in_matte(r, &scene->matte);
     if (!rf_cancelled(&r->exec))
@@ -177,6 +220,15 @@ static int read_scene(const struct refocus_renderer *r, const struct rf_log *log
                            refocus_format_is_yuv(scene->photo.format)))
         return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
                          "with in_place the photo may be R, G, B, and disparity of its size");
+    scene->confidence = given->confidence;
+    scene->confidence_stride = given->confidence_stride;
+    if (given->confidence && r->in_place.on)
+        return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED, "with in_place there is no confidence");
+    if (given->confidence &&
+        !rf_good_stride(given->confidence_stride, scene->disparity.width, scene->disparity.height))
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
+                         "confidence_stride is %lld, may be a row or more either way",
+                         (long long)given->confidence_stride);
     scene->has_behind = scene->has_matte = false;
     if ((status = read_matte(r, log, scene, given)))
         return status;

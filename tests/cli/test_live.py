@@ -159,6 +159,7 @@ class Live(unittest.TestCase):
                              (12, 'YUYV' if form == 'UYVY' else form))
             self.assertIsNotNone(r['stages_ms']['steady'])
         self.fails(2, '--steady', '--camera', 'replay:', '--depth', DEPTH, '--steady', '0.99')
+        self.fails(2, '--fill', '--camera', 'replay:', '--depth', DEPTH, '--fill', 'textured')
 
     def test_live_is_what_render_makes(self):
         self.report('--camera', 'replay::format RGB24;size 64x48;frames 1', '--depth', DEPTH,

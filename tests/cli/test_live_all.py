@@ -52,7 +52,7 @@ GROUPS = [
     ['--rays', '4', '--frames', '3'],  # the newest wins; from files to files each frame
     [*FEW, '--steady', '0.9', '--near', '0.5', '--far', 'inf', '--depth-unit', 'mm', '--focus',
      '0.7', '--blur-most', '9', '--threads', '1', '--cpu', 'c', '--no-thin', '--no-commands',
-     '--patience', '1', '--highlights', 'off', '--depth-edges', 'auto'],
+     '--patience', '1', '--highlights', 'off', '--depth-edges', 'auto', '--fill', 'smooth'],
     [*EVERY, '--focus-at', '3,3', '--quality', 'preview', '--aperture', 'polygon:5', '--blend',
      'gamma', '--sigma', '100', '--fps', '25', '--size', '17x11', '--format', 'any',
      '--calibration', 'calibration.json', '--socket', 'socket'],

@@ -33,13 +33,21 @@ static void prepare_scene(void)
 {
     const struct refocus_image photo = misuse_photo();
     const struct refocus_disparity map = misuse_map();
-    const struct misuse bad[] = {
-        BAD(refocus_scene, struct_size, 0), BAD(refocus_scene, struct_size, UINT32_MAX),
-        BAD(refocus_scene, depth_edges, 1), BAD(refocus_scene, depth_edges, UINT32_MAX)};
+    const struct misuse bad[] = {BAD(refocus_scene, struct_size, 0),
+                                 BAD(refocus_scene, struct_size, UINT32_MAX),
+                                 BAD(refocus_scene, depth_edges, 1),
+                                 BAD(refocus_scene, depth_edges, UINT32_MAX),
+                                 BAD(refocus_scene, confidence_stride, W - 1),
+                                 BAD(refocus_scene, confidence_stride, PTRDIFF_MIN),
+                                 BAD(refocus_scene, confidence_stride, PTRDIFF_MAX)};
+    static const uint8_t confidence[W * H];
     const struct refocus_render_params params = refocus_render_params_default(0.5f, 5);
     struct refocus_depth_edges_report report = refocus_depth_edges_report_default();
-    const struct refocus_scene good = RETURNS(refocus_scene_default, &photo, &map);
+    struct refocus_scene good = RETURNS(refocus_scene_default, &photo, &map);
 
+    good.confidence = confidence;
+    good.confidence_stride = -W;
+    good.confidence += (H - 1) * W;
     REFUSED(refocus_prepare_scene, NULL, &good);
     for (size_t i = 0; i < COUNT(bad); i++) {
         struct refocus_scene scene = good;

@@ -141,6 +141,75 @@ static void memory_for_edges(void **state)
     }
 }
 
+/* Prepares the drawing and returns its disparities. */
+static const uint16_t *prepared(uint32_t edges, const uint8_t *confidence, ptrdiff_t stride)
+{
+    static uint16_t view[WIDTH * HEIGHT];
+    struct refocus_renderer *renderer = make(1, 2);
+    struct refocus_scene scene = refocus_scene_default(&drawing.photo, &drawing.disparity);
+
+    scene.depth_edges = edges;
+    scene.confidence = confidence;
+    scene.confidence_stride = stride;
+    assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_OK);
+    take_view(renderer, view);
+    refocus_renderer_destroy(&renderer);
+    return view;
+}
+
+/* 3 x 3 samples on the disc that are no more than a guess, and wrong. */
+static void spoil(uint8_t *confidence, int columns, int rows)
+{
+    memset(confidence, 255, (size_t)columns * (size_t)rows);
+    for (int y = rows / 2 - 1; y <= rows / 2 + 1; y++)
+        for (int x = columns / 2 - 1; x <= columns / 2 + 1; x++) {
+            confidence[y * columns + x] = 0;
+            drawing.map[y * columns + x] = 2000;
+        }
+}
+
+static void guesses_count_least(void **state)
+{
+    static uint8_t confidence[WIDTH * HEIGHT];
+    static uint16_t alone[WIDTH * HEIGHT], placed[WIDTH * HEIGHT], without[WIDTH * HEIGHT];
+    const struct refocus_disparity upsampled = refocus_disparity16(alone, WIDTH, HEIGHT, 2 * WIDTH);
+    const struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
+    struct refocus_upsample_params upsample = refocus_upsample_params_default();
+    const int middle = HEIGHT / 2 * WIDTH + WIDTH / 2;
+    const uint16_t *view;
+
+    (void)state;
+    for (int columns = 50; columns <= WIDTH; columns += 25) {
+        const int rows = columns * HEIGHT / WIDTH;
+
+        draw(columns == 50 ? REFOCUS_FORMAT_NV12 : REFOCUS_FORMAT_RGB8, columns, rows, 0, 1);
+        spoil(confidence, columns, rows);
+        view = prepared(REFOCUS_DEPTH_EDGES_AUTO, confidence, columns);
+        assert_in_range(view[middle], 45000, 55000);
+        view = prepared(REFOCUS_DEPTH_EDGES_AUTO, NULL, 0);
+        assert_true(view[middle] < 5000);
+        if (columns == 50 || columns == WIDTH)
+            continue;
+        upsample.confidence = confidence;
+        upsample.confidence_stride = columns;
+        assert_int_equal(
+            refocus_upsample(&drawing.photo, &drawing.disparity, &upsample, alone, 2 * WIDTH),
+            REFOCUS_OK);
+        view = prepared(REFOCUS_DEPTH_EDGES_AS_GIVEN, confidence, columns);
+        assert_memory_equal(view, alone, sizeof alone);
+        assert_int_equal(
+            refocus_depth_edges(&drawing.photo, &upsampled, &params, placed, 2 * WIDTH, NULL),
+            REFOCUS_OK);
+        view = prepared(REFOCUS_DEPTH_EDGES_AUTO, confidence, columns);
+        assert_memory_equal(view, placed, sizeof placed);
+    }
+    /* A map of the photo's size, all sure: nothing changes, whichever way its rows lie. */
+    memcpy(without, prepared(REFOCUS_DEPTH_EDGES_AUTO, NULL, 0), sizeof without);
+    memset(confidence, 255, sizeof confidence);
+    view = prepared(REFOCUS_DEPTH_EDGES_AUTO, confidence + (HEIGHT - 1) * WIDTH, -WIDTH);
+    assert_memory_equal(view, without, sizeof without);
+}
+
 /* Pictures of all sizes through one renderer: nothing stays of the one before. */
 static void one_after_the_other(void **state)
 {
@@ -170,9 +239,9 @@ static void one_after_the_other(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_as_alone),
-                                       cmocka_unit_test(memory_for_edges),
-                                       cmocka_unit_test(one_after_the_other)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(same_as_alone), cmocka_unit_test(memory_for_edges),
+        cmocka_unit_test(guesses_count_least), cmocka_unit_test(one_after_the_other)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

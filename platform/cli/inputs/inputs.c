@@ -129,13 +129,22 @@ bool input_has_edges_placed(const struct input *input, const struct depth_settin
            input->photo->image->plane[0];
 }
 
-static bool worth_enlarging(const struct input *input, const struct depth_settings *settings)
+static bool has_other_size(const struct input *input)
 {
     return input->photo && input->photo->image->plane[0] &&
            (input->photo->image->width != input->width ||
-            input->photo->image->height != input->height) &&
-           ((settings->full && !input_has_edges_placed(input, settings)) ||
-            input->report.unknown + input->report.specks > 0);
+            input->photo->image->height != input->height);
+}
+
+static bool has_guesses(const struct input *input)
+{
+    return input->report.unknown + input->report.specks > 0;
+}
+
+static bool worth_enlarging(const struct input *input, const struct depth_settings *settings)
+{
+    return settings->full && has_other_size(input) &&
+           (!input_has_edges_placed(input, settings) || has_guesses(input));
 }
 
 /* Put the edges of the disparities on the photo's. */
@@ -344,6 +353,10 @@ struct refocus_scene input_scene(const struct input *input, const struct refocus
     struct refocus_scene scene = refocus_scene_default(input->photo->image, map);
 
     scene.matte = input->matte.samples ? &input->matte : NULL;
+    if (has_other_size(input) && has_guesses(input)) {
+        scene.confidence = input->confidence;
+        scene.confidence_stride = input->width;
+    }
     return scene;
 }
 

@@ -288,6 +288,9 @@ int live_check_settings(struct live_settings *settings)
     if (!isnan(settings->lens.focus) && !isnan(settings->lens.focus_at[0]))
         return report_failure(EXIT_WRONG, "--focus-at",
                               "the focus is given twice; give --focus or --focus-at");
+    if (settings->engine.fill == FILL_TEXTURED)
+        return report_failure(EXIT_WRONG, "--fill",
+                              "texture takes too long for live; give smooth, or leave it out");
     status = check_sources(settings);
     if (status != EXIT_DONE)
         return status;

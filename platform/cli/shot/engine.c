@@ -20,7 +20,6 @@ static const struct {
     {"standard", "64 rays, thin structures splatted", 64, true, false},
     {"best", "128 rays, thin structures splatted, texture continued behind them", 128, true, true}};
 
-enum { FILL_AUTO, FILL_SMOOTH, FILL_TEXTURED };
 static const struct {
     const char *name, *summary;
 } fills[] = {

@@ -33,6 +33,7 @@ enum { QUALITY_STANDARD = 1 };
 
 const char *engine_quality_name(uint32_t index);
 const char *engine_quality_summary(uint32_t index);
+enum engine_fill { FILL_AUTO, FILL_SMOOTH, FILL_TEXTURED };
 const char *engine_fill_name(uint32_t index);
 const char *engine_fill_summary(uint32_t index);
 const char *engine_blend_name(uint32_t index);

@@ -22,9 +22,7 @@ const char *view_summary(uint32_t index)
         "the disparities over the photo",
         "the photo in grey, its edges in focus in green",
         "what two eyes see, for glasses of red and cyan",
-        "the photo in grey, where edges of the depth map were moved in orange (nearer than the "
-        "map's) "
-        "and blue (farther)"};
+        "the photo in grey; orange and blue where edges of the depth went nearer and farther"};
     return index < sizeof summaries / sizeof *summaries ? summaries[index] : NULL;
 }
 
