@@ -43,15 +43,15 @@ default.'''
 ONE_PICTURE = '''`refocus depth PHOTO --estimate` with the small TCMonoDepth network: Pearson's correlation with
 the depth that is known of the photo.'''
 
-FAULTY = '''`refocus-depth-quality --faults SCENE...`: the exact disparities of the reference scenes,
-spoilt as those of phones, sensors and networks are, and what is left of it after
-`refocus_depth_edges()` (*edges put right*). *Soft* is a Gaussian blur. *Quarter size* is the means
-of 4x4 pixels, which `refocus_prepare()` upsamples by itself. *Grown* and *shrunk* are the greatest
-and the least of a disc of radius 4. *Shifted* is to the right. *Displaced* is by a random field of
-vectors, 2 px long as a root mean square, smoothed by a Gaussian of sigma 12; the nearest sample is
-taken. PSNR: sweep, 64 rays, no light given back to highlights, mean of all views without blades,
-against the path-traced references; *to exact* is the difference to rendering with the exact
-disparities.'''
+FAULTY = '''`refocus-depth-quality --faults SCENE...`: the exact disparities of the reference scenes, spoilt as
+those of phones, sensors and networks are, and what is left of it after `refocus_depth_edges()`
+(*edges put right*). *Soft* is a Gaussian blur. *Quarter size* is the means of 4x4 pixels, which
+`refocus_prepare()` upsamples by itself. *Grown* and *shrunk* are the greatest and the least of a
+disc of radius 4. *Shifted* is to the right. *Displaced* is by a random field of vectors, 2 px long
+as a root mean square, smoothed by a Gaussian of sigma 12; the nearest sample is taken. *Noise* is
+the standard deviation of Gaussian noise, as a share of the range. PSNR: sweep, 64 rays, no light
+given back to highlights, mean of all views without blades, against the path-traced references; *to
+exact* is the difference to rendering with the exact disparities.'''
 
 DECIMATED = '''`refocus-depth-quality --truth NAME PHOTO TRUTH...`: every fourth row and column of the
 disparities of a Middlebury pair's left picture (2014 and 2006), brought back to all pixels; the

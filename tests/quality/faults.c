@@ -190,6 +190,40 @@ static int displaced(const uint16_t *exact, int width, int height, uint16_t *out
     return result;
 }
 
+/* ----- noise ----- */
+
+/* Noise of this standard deviation, a share of the range: a sum of twelve even ones. */
+static int noise(const uint16_t *exact, int width, int height, uint16_t *out, double deviation)
+{
+    uint32_t seed = 3;
+
+    for (int i = 0; i < width * height; i++) {
+        double sum = -6;
+
+        for (int k = 0; k < 12; k++) {
+            seed = seed * 1664525u + 1013904223u;
+            sum += (seed >> 8) / 16777216.0;
+        }
+        out[i] = (uint16_t)lrint(fmin(fmax(exact[i] + 65535 * deviation * sum, 0), 65535));
+    }
+    return 0;
+}
+
+static int noise1(const uint16_t *exact, int width, int height, uint16_t *out)
+{
+    return noise(exact, width, height, out, 0.01);
+}
+
+static int noise2(const uint16_t *exact, int width, int height, uint16_t *out)
+{
+    return noise(exact, width, height, out, 0.02);
+}
+
+static int noise5(const uint16_t *exact, int width, int height, uint16_t *out)
+{
+    return noise(exact, width, height, out, 0.05);
+}
+
 const struct fault faults[] = {
     {"exact", same, 1},
     {"8 bits", eight_bits, 1},
@@ -200,5 +234,8 @@ const struct fault faults[] = {
     {"shrunk by 4 px", shrunk, 1},
     {"shifted by 3 px", shifted, 1},
     {"displaced by 2 px", displaced, 1},
+    {"noise of 1 %", noise1, 1},
+    {"noise of 2 %", noise2, 1},
+    {"noise of 5 %", noise5, 1},
     {NULL, NULL, 0},
 };
