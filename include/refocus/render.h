@@ -7,7 +7,8 @@
  *
  * A renderer is reentrant: one thread at a time may call into one renderer,
  * except refocus_cancel(), which any thread may call. The result does not depend
- * on the number of threads, on the processor or on earlier calls.
+ * on the number of threads, on the processor or, but for REFOCUS_DEPTH_EDGES_STEADY of
+ * scene.h, on earlier calls.
  */
 #ifndef REFOCUS_RENDER_H
 #define REFOCUS_RENDER_H
@@ -149,7 +150,7 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max
  *
  * params->thin takes up to 8 (W + 16) (H + 16) + 2^12 more, 6 bytes a pixel for large pictures.
  *
- * params->depth_edges takes up to 16 (W + 128) (H + 64) + 64 (W + H) + 2^18 more.
+ * params->depth_edges takes up to 20 (W + 128) (H + 64) + 64 (W + H) + 2^18 more.
  *
  * params->behind takes up to 6 W H + 2^8 more, params->textured up to 80000 T.
  *

@@ -18,6 +18,9 @@ enum refocus_depth_edges {
                                            soft, coarse or beside the photo, its edges go to the
                                            photo's. Renderers whose parameters have depth_edges
                                            alone have the memory for it */
+    REFOCUS_DEPTH_EDGES_STEADY = 2,   /**< AUTO for frames of a video: where the scene before
+                                           was prepared so too and was of this size, decisions that
+                                           are close stay as they were in it */
 };
 
 /**

@@ -32,7 +32,24 @@ static const double ON_PHOTO = 0.75;  /* share of edges: the map needs nothing *
 static const double FITS = 1.4;       /* support in place: blocks are unsure, not wrong */
 static const double UNRELATED = 1.06; /* less support in place: it is the photo of something else */
 static const double CLEARLY = 1.15;   /* times better */
+static const double STICKS = 0.05;    /* in a video both limits lean so far to the last decision */
 static const double SOFTEST = 3.2;    /* pixels: softer edges say little of their place */
+
+/* 1 or -1: the last frame's edges were moved, or were not; 0: there is none. */
+static int was_moved(const struct rf_edges *e)
+{
+    return !e->last ? 0 : e->last->aligned ? 1 : -1;
+}
+
+static double on_photo(const struct rf_edges *e)
+{
+    return ON_PHOTO + STICKS * was_moved(e);
+}
+
+static double clearly(const struct rf_edges *e)
+{
+    return CLEARLY - STICKS * was_moved(e);
+}
 
 /* ----- what is common to all edges ----- */
 
@@ -244,7 +261,7 @@ static bool bend(struct rf_edges *e, const struct rf_blocks *large,
     rf_ask_blocks(&small, 0.05);
     move(e, &small, (struct rf_shift){0, 0});
     look_again(e, limits);
-    if (support_in_place(e) > CLEARLY * before)
+    if (support_in_place(e) > clearly(e) * before)
         return true;
     rf_copy_plane(e, e->map, e->kept);
     find_ramps(e, limits);
@@ -264,10 +281,10 @@ struct rf_alignment rf_align(struct rf_edges *e, double softness,
         return found;
     rf_find_photo_gradient(e);
     found.on_photo = rf_ask_blocks(&large, 0.1);
-    if (found.on_photo >= ON_PHOTO || rf_run_cancelled(e->pool->run))
+    if (found.on_photo >= on_photo(e) || rf_run_cancelled(e->pool->run))
         return found;
     whole = ask_whole(&large);
-    if (whole.worth > CLEARLY * whole.zero) {
+    if (whole.worth > clearly(e) * whole.zero) {
         if (fabs(whole.grown) >= 1.5 && (softness == 0 || fabs(whole.grown) > softness))
             found.grown = undo_growth(e, whole.grown, limits);
         else if (rf_shift_length(whole.shift) >= 2) {
@@ -279,7 +296,7 @@ struct rf_alignment rf_align(struct rf_edges *e, double softness,
         found.on_photo = rf_ask_blocks(&large, 0.1);
     }
     is_related = whole.zero > UNRELATED || found.grown || found.shift_x || found.shift_y;
-    if (found.on_photo < ON_PHOTO && softness < SOFTEST && whole.zero < FITS && is_related)
+    if (found.on_photo < on_photo(e) && softness < SOFTEST && whole.zero < FITS && is_related)
         found.bent = bend(e, &large, limits);
     return found;
 }

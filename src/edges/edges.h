@@ -14,6 +14,7 @@
  *     settle       of a soft map, gives what lies beside a ramp the disparity that its surface has
  *                  farther in
  *     thin         of a soft map, gives thin surfaces back the disparity that the softness took
+ *     steady       of a video, leaves the result as it was where the map is that of the last frame
  *
  * Most of a map is smooth: blocks without an edge are passed by as early as can be. Of a sharp map
  * that lies on the photo no more is made than samples of its ramps, its edges and what the photo
@@ -61,6 +62,18 @@ struct rf_edge_blocks {
     double *right, *below, *weight;
 };
 
+/* The frame of a video before this one: decisions that are close calls stay as they were. Planes
+ * are of the size that work is done at, without padding. */
+struct rf_last_edges {
+    int width, height; /* 0: there is none */
+    uint16_t *result;
+    uint8_t *map;    /* as it came in, upper eight bits */
+    uint8_t *still;  /* whether it is the same in this frame */
+    double softness; /* pixels of this size */
+    bool parted;     /* it was soft */
+    bool aligned;    /* edges were moved */
+};
+
 /* Everything that the passes work on: planes of width x height, all of the same stride. The map has
  * a border of one pixel, which repeats its sides. Results that are never needed at once share
  * memory, in this order of their lives:
@@ -96,6 +109,7 @@ struct rf_edges {
     struct rf_map_edge *edge;
     int edges, most_edges;
     struct rf_edge_blocks blocks;
+    const struct rf_last_edges *last; /* NULL: there is none */
 };
 
 static inline int rf_edge_bands(const struct rf_edges *e)
@@ -201,6 +215,12 @@ void rf_vote(struct rf_edges *e, double softness);
 
 /* Takes overshoot beside ramps out of label; writes is_wide. */
 void rf_settle(struct rf_edges *e, double softness);
+
+/* Notes where the map is that of the last frame, which it replaces. */
+void rf_find_still(const struct rf_edges *e, struct rf_last_edges *last);
+
+/* Where it is, the result stays that of the last frame, or follows it slowly; it replaces that. */
+void rf_hold_still(struct rf_edges *e, struct rf_last_edges *last);
 
 /* Restores the disparity of thin surfaces in label, of which the map holds a softened copy. */
 void rf_restore_thin(struct rf_edges *e, double softness);

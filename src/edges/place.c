@@ -1,6 +1,7 @@
 /* place.c: memory for the edges of a disparity map, and the order of the passes over them. */
 #include "edges/place.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "depth/mixed_pixels.h"
@@ -138,6 +139,20 @@ static void upsample(const struct rf_place_edges *place, const struct rf_edges *
 
 /* ----- order of the passes ----- */
 
+/* In a video softness follows slowly what is measured, unless it is another map. */
+static double steady(const struct rf_edges *e, double softness)
+{
+    const double last = e->last ? e->last->softness : 0;
+
+    return last > 0 && fabs(softness - last) < last / 4 ? (3 * last + softness) / 4 : softness;
+}
+
+/* Maps are parted from this softness on; in a video it leans to what the last frame was. */
+static double least_soft(const struct rf_edges *e)
+{
+    return !e->last ? SOFT : e->last->parted ? SOFT - 0.1 : SOFT + 0.1;
+}
+
 /* Works on job->edges and leaves the result in its map; says whether it differs from the samples.
  */
 static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_report *report)
@@ -150,10 +165,10 @@ static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_repor
     bool soft;
 
     rf_find_steepest(e);
-    softness = rf_measure_softness(e);
+    softness = steady(e, rf_measure_softness(e));
+    soft = job->enlarged || softness >= least_soft(e);
     if (job->enlarged && softness < SOFT) /* straight lines between samples are ramps */
         softness = SOFT;
-    soft = softness >= SOFT;
     /* A ramp of a Gaussian is 4 standard deviations long. */
     limits =
         (struct rf_ramp_limits){.steps = (int)(4 * softness + 2.5), .contrast = LEAST_CONTRAST};
@@ -175,6 +190,21 @@ static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_repor
     report->parted = soft;
     report->noise = (float)job->noise / 65535;
     return soft || job->noise || found.bent || found.grown || found.shift_x || found.shift_y;
+}
+
+static bool fits(const struct rf_last_edges *last, const struct rf_edges *e)
+{
+    return last && last->width == e->width && last->height == e->height;
+}
+
+/* Keeps the result for the next frame, and holds it where nothing changes. */
+static void keep(struct rf_edges *e, struct rf_last_edges *last, const struct rf_edge_job *job,
+                 const struct refocus_depth_edges_report *found)
+{
+    rf_hold_still(e, last);
+    last->softness = (double)found->softness / job->reduced;
+    last->parted = found->parted;
+    last->aligned = found->bent || found->grown != 0 || found->shift_x != 0 || found->shift_y != 0;
 }
 
 /* Brings the result to the photo's size. */
@@ -207,6 +237,7 @@ bool rf_place_edges(const struct rf_place_edges *place, struct refocus_depth_edg
     lay_out(&job, &arena);
     e->kernels = place->kernels;
     e->pool = place->pool;
+    e->last = fits(place->last, e) ? place->last : NULL;
     job.sample = (struct rf_disparity_q16){e->near, e->stride};
     if (job.enlarged) {
         const double softness = rf_softness_of_samples(&job);
@@ -214,15 +245,21 @@ bool rf_place_edges(const struct rf_place_edges *place, struct refocus_depth_edg
         if (softness < MIXED) {
             report->softness = (float)(softness * photo->width / job.columns);
             report->parted = 1;
+            if (place->last)
+                place->last->width = 0;
             upsample(place, e, map);
             return true;
         }
     }
     rf_load_edge_photo(&job);
     rf_load_edge_map(&job);
+    if (place->last)
+        rf_find_still(e, place->last);
     changed = run_passes(&job, report);
     if (rf_run_cancelled(place->pool->run))
         return false;
+    if (place->last)
+        keep(e, place->last, &job, report);
     report->changed = changed ? rf_share_changed(&job) : 0;
     if (changed || job.enlarged)
         give_out(place, e);

@@ -9,6 +9,7 @@
 #include <refocus/depth_edges.h>
 #include <refocus/image.h>
 
+#include "edges/edges.h"
 #include "image/planes.h"
 #include "kernels/kernels.h"
 #include "support/pool.h"
@@ -18,6 +19,7 @@ struct rf_place_edges {
     struct rf_pool *pool;
     const struct refocus_image *photo; /* packed: R, G and B */
     const struct refocus_disparity *map;
+    struct rf_last_edges *last;  /* the frame before, which this one replaces; NULL: a still */
     void *memory;                /* rf_place_edges_bytes(), aligned to RF_ARENA_ALIGN */
     struct rf_disparity_q16 out; /* is of the photo's size, apart from the map and from memory */
 };

@@ -131,6 +131,13 @@ static uint64_t lay_out_whole(struct refocus_renderer *r,
         photo->disparity = first + 3 * photo->pitch;
     }
     lay_out_lists(arena, photo, w, h);
+    if (params->depth_edges) {
+        const uint64_t pixels = (uint64_t)w * (uint64_t)h;
+
+        r->last_edges.result = rf_arena_take(arena, pixels, 2);
+        r->last_edges.map = rf_arena_take(arena, pixels, 1);
+        r->last_edges.still = rf_arena_take(arena, pixels, 1);
+    }
     prepare = *arena;
     r->prepare_memory = rf_arena_take(&prepare, prepare_bytes(params), 1);
     r->has_edges = params->depth_edges;

@@ -26,6 +26,11 @@ struct scene {
     struct refocus_disparity behind_disparity;
 };
 
+static bool places_edges(const struct scene *scene)
+{
+    return scene->depth_edges != REFOCUS_DEPTH_EDGES_AS_GIVEN;
+}
+
 /* Brings the map to the photo's size, working in `arena`. */
 static void upsample(struct refocus_renderer *r, const struct scene *scene,
                      const struct refocus_image *photo, struct rf_arena arena,
@@ -70,7 +75,7 @@ static struct refocus_disparity settle(struct refocus_renderer *r, const struct 
     const int width = r->view.width, height = r->view.height;
     struct rf_disparity_q16 out = {NULL, width};
 
-    if (!scene->confidence || scene->depth_edges != REFOCUS_DEPTH_EDGES_AUTO)
+    if (!scene->confidence || !places_edges(scene))
         return scene->disparity;
     out.at = rf_arena_take(arena, (uint64_t)width * (uint64_t)height, 2);
     upsample(r, scene, photo, *arena, out);
@@ -90,13 +95,14 @@ static void take_in_map(struct refocus_renderer *r, const struct scene *scene,
         .pool = &r->pool,
         .photo = photo,
         .map = &map,
+        .last = scene->depth_edges == REFOCUS_DEPTH_EDGES_STEADY ? &r->last_edges : NULL,
         .memory = arena.base + arena.used,
         .out = r->disparity,
     };
 
     if (rf_cancelled(&r->exec))
         return;
-    if (scene->depth_edges == REFOCUS_DEPTH_EDGES_AUTO && rf_place_edges(&place, &r->edges))
+    if (places_edges(scene) && rf_place_edges(&place, &r->edges))
         return;
     if (rf_cancelled(&r->exec))
         return;
@@ -143,12 +149,14 @@ static void take_in(struct refocus_renderer *r, const struct scene *scene)
     const struct refocus_image *photo = &scene->photo;
     const struct refocus_disparity *map = &scene->disparity;
     const bool same_size = map->width == r->view.width && map->height == r->view.height;
-    const bool guided = !same_size || scene->depth_edges == REFOCUS_DEPTH_EDGES_AUTO;
+    const bool guided = !same_size || places_edges(scene);
     const struct refocus_image guide = r->yuv.on ? yuv_guide(r) : *photo;
 
     rf_planes_end(&r->lifetimes);
     rf_load_light(r, photo, guided ? &guide : NULL);
     take_in_map(r, scene, &guide);
+    if (scene->depth_edges != REFOCUS_DEPTH_EDGES_STEADY || rf_cancelled(&r->exec))
+        r->last_edges.width = 0;
     if (scene->has_matte && !rf_cancelled(&r->exec))
         take_in_matte(r, &scene->matte);
     if (!rf_cancelled(&r->exec))
@@ -201,8 +209,8 @@ static int read_scene(const struct refocus_renderer *r, const struct rf_log *log
     int status;
 
     scene->depth_edges = given->depth_edges;
-    if (given->depth_edges > REFOCUS_DEPTH_EDGES_AUTO)
-        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "depth_edges is %u, may be 0 to 1",
+    if (given->depth_edges > REFOCUS_DEPTH_EDGES_STEADY)
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "depth_edges is %u, may be 0 to 2",
                          (unsigned)given->depth_edges);
     if (given->depth_edges && !r->has_edges)
         return rf_refuse(log, REFOCUS_ERR_ARGUMENT,

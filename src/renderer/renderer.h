@@ -17,6 +17,7 @@
 #include "background/pyramid.h"
 #include "background/texture.h"
 #include "colour/transfer.h"
+#include "edges/edges.h"
 #include "focus/focus.h"
 #include "gather/frame.h"
 #include "gather/work_memory.h"
@@ -153,6 +154,7 @@ struct refocus_renderer {
     void *prepare_memory; /* for upsampling and for edges; ends with the first render */
     bool has_edges;       /* there is enough of it for edges */
     struct refocus_depth_edges_report edges; /* about the prepared photo */
+    struct rf_last_edges last_edges;         /* for the next frame, if they are placed steadily */
 
     struct rf_transfer transfer[RF_BLEND_COUNT];
     uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q15 */

@@ -128,7 +128,7 @@ static void memory_for_edges(void **state)
         struct refocus_renderer_params params =
             refocus_renderer_params_default(sides[i / 3][0], sides[i / 3][1], blurs[i % 3]);
         const double without = (double)refocus_renderer_memory(&params);
-        const double most = 16 * (w + 128) * (h + 64) + 64 * (w + h) + 262144;
+        const double most = 20 * (w + 128) * (h + 64) + 64 * (w + h) + 262144;
 
         params.depth_edges = 1;
         const double with = (double)refocus_renderer_memory(&params);
@@ -210,6 +210,91 @@ static void guesses_count_least(void **state)
     assert_memory_equal(view, without, sizeof without);
 }
 
+/* A frame of a video: a soft disc that lies `at` pixels to the right, and a photo with noise. */
+static void draw_frame(uint32_t format, int columns, int at, uint32_t seed)
+{
+    draw(format, columns, columns * HEIGHT / WIDTH, 0, 5);
+    for (int plane = 0; plane < refocus_format_planes(format); plane++) {
+        const int bytes = (int)drawing.photo.stride[plane];
+
+        for (int y = 0; y < refocus_plane_rows(format, plane, HEIGHT); y++) {
+            uint8_t *row = drawing.photo.plane[plane] + y * bytes;
+
+            memmove(row + at * bytes / WIDTH, row, (size_t)(bytes - at * bytes / WIDTH));
+            for (int x = 0; x < bytes; x++) {
+                seed = seed * 1664525 + 1013904223;
+                row[x] = (uint8_t)(row[x] + (seed >> 24) % 13);
+            }
+        }
+    }
+    for (int y = 0; y < drawing.disparity.height; y++) {
+        uint16_t *row = drawing.map + y * columns;
+
+        memmove(row + at * columns / WIDTH, row,
+                (size_t)(columns - at * columns / WIDTH) * sizeof *row);
+    }
+}
+
+static void prepare_edges(struct refocus_renderer *renderer, uint32_t edges, uint16_t *view)
+{
+    struct refocus_scene scene = refocus_scene_default(&drawing.photo, &drawing.disparity);
+
+    scene.depth_edges = edges;
+    assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_OK);
+    take_view(renderer, view);
+}
+
+static int count_other(const uint16_t *a, const uint16_t *b)
+{
+    int count = 0;
+
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        count += abs(a[i] - b[i]) > 1024;
+    return count;
+}
+
+/* Noise of the photo turns no decision while the map stays, and what moves is as if it were alone.
+ */
+static void video_is_steady(void **state)
+{
+    static const uint32_t formats[] = {REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_NV12};
+    static uint16_t first[WIDTH * HEIGHT], steady[WIDTH * HEIGHT], alone[WIDTH * HEIGHT];
+
+    (void)state;
+    for (int run = 0; run < 4; run++) {
+        const uint32_t format = formats[run % 2];
+        const int columns = run < 2 ? WIDTH : WIDTH / 2;
+        struct refocus_renderer *renderer = make(1, 2), *other = make(1, 1);
+        int turned = 0;
+
+        draw_frame(format, columns, 0, 1);
+        prepare_edges(renderer, REFOCUS_DEPTH_EDGES_STEADY, first);
+        prepare_edges(other, REFOCUS_DEPTH_EDGES_AUTO, alone);
+        assert_memory_equal(first, alone, sizeof first);
+        for (uint32_t frame = 2; frame < 8; frame++) {
+            draw_frame(format, columns, 0, frame);
+            prepare_edges(renderer, REFOCUS_DEPTH_EDGES_STEADY, steady);
+            prepare_edges(other, REFOCUS_DEPTH_EDGES_AUTO, alone);
+            assert_true(columns != WIDTH || count_other(steady, first) == 0);
+            assert_true(count_other(steady, first) <= count_other(alone, first));
+            turned += count_other(alone, first);
+        }
+        assert_true(columns != WIDTH || turned > 100);
+        for (int at = 4; at <= 20; at += 4) {
+            draw_frame(format, columns, at, 9);
+            prepare_edges(renderer, REFOCUS_DEPTH_EDGES_STEADY, steady);
+        }
+        prepare_edges(other, REFOCUS_DEPTH_EDGES_AUTO, alone);
+        assert_true(count_other(steady, alone) < WIDTH * HEIGHT / 20);
+        /* Another scene between two frames, and nothing is left of the first. */
+        prepare_edges(renderer, REFOCUS_DEPTH_EDGES_AS_GIVEN, steady);
+        prepare_edges(renderer, REFOCUS_DEPTH_EDGES_STEADY, steady);
+        assert_memory_equal(steady, alone, sizeof steady);
+        refocus_renderer_destroy(&renderer);
+        refocus_renderer_destroy(&other);
+    }
+}
+
 /* Pictures of all sizes through one renderer: nothing stays of the one before. */
 static void one_after_the_other(void **state)
 {
@@ -241,7 +326,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_as_alone), cmocka_unit_test(memory_for_edges),
-        cmocka_unit_test(guesses_count_least), cmocka_unit_test(one_after_the_other)};
+        cmocka_unit_test(guesses_count_least), cmocka_unit_test(video_is_steady),
+        cmocka_unit_test(one_after_the_other)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -53,8 +53,8 @@ const struct option live_options[] = {
      .offset = offsetof(struct live_settings, depth.edges),
      .choice = edges_name,
      .summary = edges_summary,
-     .help =
-         "the edges of the depth, each frame for itself; default as-given, which takes no time"},
+     .help = "the edges of the depth, steady from frame to frame; default as-given, which takes no "
+             "time"},
     {.kind = OPTION_TEXT,
      .name = "--calibration",
      .argument = "FILE",

@@ -87,7 +87,7 @@ static int refocus(struct live *live, const struct live_picture *picture,
         refocus_disparity16(map->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
     scene = refocus_scene_default(&picture->image, &disparity);
     if (live->settings->depth.edges == EDGES_AUTO)
-        scene.depth_edges = REFOCUS_DEPTH_EDGES_AUTO;
+        scene.depth_edges = REFOCUS_DEPTH_EDGES_STEADY;
     status = refocus_prepare_scene(live->engine->renderer, &scene);
     if (status != REFOCUS_OK)
         return status;

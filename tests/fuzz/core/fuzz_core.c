@@ -276,7 +276,7 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     for (int i = 0; i < MAX_SIDE * MAX_SIDE; i++)
         farther[i] = disparity[i] / 2;
     behind.samples = farther;
-    scene.depth_edges = kind >> 5 & 1;
+    scene.depth_edges = (kind >> 5 & 1) * (1 + (kind & 1));
     if (kind >> 6 & 1)
         scene.matte = take_matte(in, kind >> 7 & 1, &image);
     scene.behind = shape & 2 ? &image : NULL; /* the picture itself */
