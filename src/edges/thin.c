@@ -22,6 +22,7 @@
 enum {
     WHOLE = 65536,
     MOST_OWN = WHOLE * 85 / 100, /* a surface that has this much of the window is not thin */
+    CRUMB = 8,     /* so much closer to one surface than to another is no surface of its own */
     LEAST_OWN = 2, /* percent: too little is seen of a surface whose mean of B^2 is less */
 };
 
@@ -104,7 +105,26 @@ static void mark_thin(void *context, int band, int worker)
             thin->is_looked_at[y * e->stride + x] = !e->is_wide[y * e->stride + x];
 }
 
-/* The disparity that explains the map best, or the label where the surface is wide. */
+/* Wide surfaces around a pixel, by how much they differ from it. */
+struct wide {
+    int least, most; /* INT32_MAX and 0: there is none */
+    uint16_t closest;
+};
+
+static void note_wide(struct wide *wide, int label, int surface)
+{
+    const int off = abs(label - surface);
+
+    if (off < wide->least) {
+        wide->least = off;
+        wide->closest = (uint16_t)label;
+    }
+    wide->most = rf_larger(wide->most, off);
+}
+
+/* The disparity that explains the map best, or the label where the surface is wide. What is much
+ * closer to one wide surface around than to another is a crumb of that, left by overshoot, which
+ * would be explained by a disparity far beyond both. */
 static uint16_t explain(const struct thin *thin, int x, int y)
 {
     const struct rf_edges *e = thin->e;
@@ -112,6 +132,7 @@ static uint16_t explain(const struct thin *thin, int x, int y)
     const int y1 = rf_smaller(y + reach, e->height - 1), x0 = rf_larger(x - reach, 0);
     const int x1 = rf_smaller(x + reach, e->width - 1);
     int64_t product = 0, square = 0, value;
+    struct wide wide = {.least = INT32_MAX};
     int pixels = 0;
 
     for (int v = rf_larger(y - reach, 0); v <= y1; v++)
@@ -119,14 +140,19 @@ static uint16_t explain(const struct thin *thin, int x, int y)
             const ptrdiff_t at = v * e->stride + u;
             const int64_t own = thin->own[at];
 
-            if (abs(e->label[at] - surface) >= RF_EDGE_STEP)
+            if (abs(e->label[at] - surface) >= RF_EDGE_STEP) {
+                if (e->is_wide[at])
+                    note_wide(&wide, e->label[at], surface);
                 continue;
+            }
             if (own > MOST_OWN)
                 return (uint16_t)surface;
             product += own * (e->map[at] - thin->other[at]);
             square += own * own;
             pixels++;
         }
+    if (wide.least < wide.most / CRUMB)
+        return wide.closest;
     if ((square >> 16) * 100 <= (int64_t)WHOLE * LEAST_OWN * pixels)
         return (uint16_t)surface;
     value = product * WHOLE / square;
