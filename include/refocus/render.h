@@ -111,8 +111,9 @@ struct refocus_renderer_params {
     uint32_t thin;        /**< 1: with memory for struct refocus_thin_params, which other
                                renderers, and strip mode, take as not enabled, and for a matte
                                (scene.h), which they refuse */
-    uint32_t depth_edges; /**< 1: with memory for REFOCUS_DEPTH_EDGES_AUTO of scene.h; not in strip
-                               mode, which goes without: call refocus_depth_edges() before */
+    uint32_t depth_edges; /**< enum refocus_depth_edges of scene.h, up to which there is memory: 0,
+                               the default, AUTO or STEADY; not in strip mode, which goes without:
+                               call refocus_depth_edges() before */
     uint32_t behind;      /**< 1: with memory for `behind` of struct refocus_scene, which other
                                renderers, and strip mode, refuse */
     uint32_t textured;  /**< 1: with memory for REFOCUS_INPAINT_TEXTURED, which other renderers, and
@@ -150,7 +151,8 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max
  *
  * params->thin takes up to 8 (W + 16) (H + 16) + 2^12 more, 6 bytes a pixel for large pictures.
  *
- * params->depth_edges takes up to 20 (W + 128) (H + 64) + 64 (W + H) + 2^18 more.
+ * params->depth_edges takes up to 16 (W + 128) (H + 64) + 64 (W + H) + 2^18 more, and STEADY up to
+ * 4 W H + 2^8 on top of it.
  *
  * params->behind takes up to 6 W H + 2^8 more, params->textured up to 80000 T.
  *

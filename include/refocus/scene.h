@@ -16,8 +16,8 @@ enum refocus_depth_edges {
     REFOCUS_DEPTH_EDGES_AS_GIVEN = 0, /**< every disparity as the map has it */
     REFOCUS_DEPTH_EDGES_AUTO = 1,     /**< refocus_depth_edges() of depth_edges.h: where the map is
                                            soft, coarse or beside the photo, its edges go to the
-                                           photo's. Renderers whose parameters have depth_edges
-                                           alone have the memory for it */
+                                           photo's. A renderer has to be made for it:
+                                           refocus_renderer_params.depth_edges */
     REFOCUS_DEPTH_EDGES_STEADY = 2,   /**< AUTO for frames of a video: where the scene before
                                            was prepared so too and was of this size, decisions that
                                            are close stay as they were in it */

@@ -68,10 +68,10 @@ struct rf_last_edges {
     int width, height; /* 0: there is none */
     uint16_t *result;
     uint8_t *map;    /* as it came in, upper eight bits */
-    uint8_t *still;  /* whether it is the same in this frame */
+    uint8_t *still;  /* 1 where this frame's map is the same */
     double softness; /* pixels of this size */
-    bool parted;     /* it was soft */
-    bool aligned;    /* edges were moved */
+    bool parted;     /* the last map was soft */
+    bool aligned;    /* the last map was moved */
 };
 
 /* Everything that the passes work on: planes of width x height, all of the same stride. The map has
@@ -105,7 +105,7 @@ struct rf_edges {
     struct rf_edge_range *range; /* one for each block that is looked at or left alone together */
     uint8_t *rough;              /* one for each block: whether there may be an edge */
     uint8_t *rough_cell;         /* one for each cell of ramps.c: whether a block of it is */
-    uint8_t *moved[2];           /* whether ways in a cell still go on */
+    uint8_t *moved[2];           /* 1: ways in this cell still go on */
     struct rf_map_edge *edge;
     int edges, most_edges;
     struct rf_edge_blocks blocks;

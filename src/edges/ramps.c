@@ -81,7 +81,7 @@ struct climb {
     uint16_t *to;
     int step, steps;
     const uint8_t *moved; /* one for each cell: whether ways from there went on by the last step */
-    uint8_t *moves;       /* whether they go on by this one */
+    uint8_t *moves;       /* 1: ways go on by this step */
 };
 
 static int cells_across(const struct rf_edges *e)

@@ -35,7 +35,7 @@ static const struct rf_rule rules[] = {
     RULE(RF_UNSIGNED, reserved, 0, 0),
     RULE(RF_UNSIGNED, in_place, 0, 1),
     RULE(RF_UNSIGNED, thin, 0, 1),
-    RULE(RF_UNSIGNED, depth_edges, 0, 1),
+    RULE(RF_UNSIGNED, depth_edges, 0, REFOCUS_DEPTH_EDGES_STEADY),
     RULE(RF_UNSIGNED, behind, 0, 1),
     RULE(RF_UNSIGNED, textured, 0, 1),
     RULE(RF_UNSIGNED, reserved2, 0, 0),

@@ -131,7 +131,7 @@ static uint64_t lay_out_whole(struct refocus_renderer *r,
         photo->disparity = first + 3 * photo->pitch;
     }
     lay_out_lists(arena, photo, w, h);
-    if (params->depth_edges) {
+    if (params->depth_edges == REFOCUS_DEPTH_EDGES_STEADY) {
         const uint64_t pixels = (uint64_t)w * (uint64_t)h;
 
         r->last_edges.result = rf_arena_take(arena, pixels, 2);
@@ -140,7 +140,7 @@ static uint64_t lay_out_whole(struct refocus_renderer *r,
     }
     prepare = *arena;
     r->prepare_memory = rf_arena_take(&prepare, prepare_bytes(params), 1);
-    r->has_edges = params->depth_edges;
+    r->most_edges = params->depth_edges;
     r->smooth_group = rf_arena_take(arena, size, 2);
     r->background_group = rf_arena_take(arena, size, 2);
     return prepare.used;

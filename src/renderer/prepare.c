@@ -212,7 +212,7 @@ static int read_scene(const struct refocus_renderer *r, const struct rf_log *log
     if (given->depth_edges > REFOCUS_DEPTH_EDGES_STEADY)
         return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "depth_edges is %u, may be 0 to 2",
                          (unsigned)given->depth_edges);
-    if (given->depth_edges && !r->has_edges)
+    if (given->depth_edges > r->most_edges)
         return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
                          "depth_edges is %u, which the renderer was not made for",
                          (unsigned)given->depth_edges);

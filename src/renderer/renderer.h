@@ -152,7 +152,7 @@ struct refocus_renderer {
     struct rf_bins *bins; /* one for each tile */
 
     void *prepare_memory; /* for upsampling and for edges; ends with the first render */
-    bool has_edges;       /* there is enough of it for edges */
+    uint32_t most_edges;  /* enum refocus_depth_edges that there is enough of it for */
     struct refocus_depth_edges_report edges; /* about the prepared photo */
     struct rf_last_edges last_edges;         /* for the next frame, if they are placed steadily */
 

@@ -100,7 +100,7 @@ struct rf_thin_list {
 /* Mixtures of a tile that are separated, a bit each. */
 struct rf_thin_choice {
     bool splats, mattes; /* whether any of them is */
-    bool sides;          /* whether any is drawn as one of its sides */
+    bool sides;          /* one or more are drawn as one of their sides */
     uint64_t splat[4], matte[4], near[4], far[4];
     uint64_t filled[4]; /* splatted ones whose background is that of rf_thin_take_filled() */
 };

@@ -67,7 +67,7 @@ class Extremes(Case):
                         ('render', '--view', 'anaglyph'),
                         ('sheet', '--kind', 'before-after', '--cell-width', '1500')):
             codes = set()
-            for more in range(0, 140000, 5000):
+            for more in range(0, 110000, 5000):
                 out = 'out%d.png' % more
                 result = self.run_it(command[0], 'black.png', *command[1:], '--depth',
                                      'depth.pgm', '--blur', '9', '--threads', '1', '--rays',

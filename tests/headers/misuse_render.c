@@ -155,7 +155,7 @@ static void creating(void)
                                  BAD(refocus_renderer_params, threads, INT32_MIN),
                                  BAD(refocus_renderer_params, threads, INT32_MAX),
                                  BAD(refocus_renderer_params, cpu, UINT32_MAX),
-                                 BAD(refocus_renderer_params, depth_edges, 2),
+                                 BAD(refocus_renderer_params, depth_edges, 3),
                                  BAD(refocus_renderer_params, behind, 2),
                                  BAD(refocus_renderer_params, textured, 2),
                                  BAD(refocus_renderer_params, reserved2, 1),

@@ -123,17 +123,23 @@ static void memory_for_edges(void **state)
     scene.depth_edges = REFOCUS_DEPTH_EDGES_AUTO;
     assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_ERR_ARGUMENT);
     refocus_renderer_destroy(&renderer);
+    renderer = make(REFOCUS_DEPTH_EDGES_AUTO, 1);
+    scene.depth_edges = REFOCUS_DEPTH_EDGES_STEADY;
+    assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_ERR_ARGUMENT);
+    refocus_renderer_destroy(&renderer);
     for (int i = 0; i < 6 * 3; i++) {
         const double w = sides[i / 3][0], h = sides[i / 3][1];
         struct refocus_renderer_params params =
             refocus_renderer_params_default(sides[i / 3][0], sides[i / 3][1], blurs[i % 3]);
         const double without = (double)refocus_renderer_memory(&params);
-        const double most = 20 * (w + 128) * (h + 64) + 64 * (w + h) + 262144;
+        const double most = 16 * (w + 128) * (h + 64) + 64 * (w + h) + 262144;
 
         params.depth_edges = 1;
         const double with = (double)refocus_renderer_memory(&params);
         if (with < without || with - without > most)
             fail_msg("%.0f x %.0f: %.0f bytes more, header %.0f", w, h, with - without, most);
+        params.depth_edges = REFOCUS_DEPTH_EDGES_STEADY;
+        assert_true((double)refocus_renderer_memory(&params) - with <= 4 * w * h + 256);
         params.in_place = 1;
         const uint64_t strips = refocus_renderer_memory(&params);
         params.depth_edges = 0;
@@ -264,7 +270,7 @@ static void video_is_steady(void **state)
     for (int run = 0; run < 4; run++) {
         const uint32_t format = formats[run % 2];
         const int columns = run < 2 ? WIDTH : WIDTH / 2;
-        struct refocus_renderer *renderer = make(1, 2), *other = make(1, 1);
+        struct refocus_renderer *renderer = make(2, 2), *other = make(1, 1);
         int turned = 0;
 
         draw_frame(format, columns, 0, 1);

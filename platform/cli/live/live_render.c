@@ -19,7 +19,8 @@ static bool fit_renderer(struct live *live, int width, int height)
     params.cpu = (uint32_t)live->settings->engine.cpu;
     params.papers = refocus_papers();
     params.methods = live->engine->methods;
-    params.depth_edges = live->settings->depth.edges == EDGES_AUTO;
+    if (live->settings->depth.edges == EDGES_AUTO)
+        params.depth_edges = REFOCUS_DEPTH_EDGES_STEADY;
     status = refocus_renderer_create(&live->engine->renderer, &params);
     live->create_ms = (double)(live_now_ns() - begin) / 1e6;
     if (status != REFOCUS_OK) {

@@ -309,7 +309,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     limits.threads = take_in(&in, wild_limits, 1, 3);
     limits.papers = refocus_papers();
-    limits.depth_edges = 1;
+    limits.depth_edges = REFOCUS_DEPTH_EDGES_STEADY;
     limits.methods = wild_limits ? take(&in, 4) : REFOCUS_METHODS_ALL;
     limits.max_memory = 64 << 20;
     limits.thin = flags >> 2 & 1;
