@@ -57,6 +57,11 @@ struct refocus_highlight_params {
                                where one channel of R, G, B alone is clipped. Of a disc or an
                                iris, and with sigma from 1e6 on, drawn over the area of the
                                aperture times s^2; else rays meet it */
+    float estimate; /**< 0, the default: by gain. Above 0, up to 4: how much light each clipped
+                               pixel has lost, up to 15 times white, is estimated from what the
+                               lens spread around it, from its colour and from how bright the photo
+                               is, and this many times that is given back; gain is not looked at.
+                       Strip mode needs refocus_renderer_params.estimate */
 };
 
 static inline struct refocus_highlight_params refocus_highlight_params_default(void)

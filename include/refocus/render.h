@@ -116,9 +116,11 @@ struct refocus_renderer_params {
                                call refocus_depth_edges() before */
     uint32_t behind;      /**< 1: with memory for `behind` of struct refocus_scene, which other
                                renderers, and strip mode, refuse */
-    uint32_t textured;  /**< 1: with memory for REFOCUS_INPAINT_TEXTURED, which other renderers, and
-                             strip mode, take as smooth */
-    uint32_t reserved2; /**< 0 */
+    uint32_t textured; /**< 1: with memory for REFOCUS_INPAINT_TEXTURED, which other renderers, and
+                            strip mode, take as smooth */
+    uint32_t estimate; /**< 1: in strip mode, with memory for `estimate` of struct
+                            refocus_highlight_params, which strip mode takes as a gain of 1
+                            without. Renderers of whole photos always have it */
 };
 
 static inline struct refocus_renderer_params
@@ -161,7 +163,8 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max
  *     28 (S + 63) (S + 16) + 0.78 (W + 16) (H + 64) + 4 T (W + 512) + 24 P^2 + 2^17
  *
  * with S = 144 + 2N - M + max(M, 2P), M = P + 28 and N = max(M, 2P + 9), M and N rounded up to
- * multiples of 16: 1920x1080 with K = 40 takes less than 6,000,000 bytes.
+ * multiples of 16: 1920x1080 with K = 40 takes less than 6,000,000 bytes. params->estimate takes up
+ * to 24 min(W, 512) min(H, 512) + 2^16 more there.
  *
  * @return 0 if a parameter is out of its range. Thread-safe.
  */

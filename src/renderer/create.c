@@ -38,7 +38,7 @@ static const struct rf_rule rules[] = {
     RULE(RF_UNSIGNED, depth_edges, 0, REFOCUS_DEPTH_EDGES_STEADY),
     RULE(RF_UNSIGNED, behind, 0, 1),
     RULE(RF_UNSIGNED, textured, 0, 1),
-    RULE(RF_UNSIGNED, reserved2, 0, 0),
+    RULE(RF_UNSIGNED, estimate, 0, 1),
 };
 
 /* The log that a caller's parameters name, as far as they reach: for words on what is wrong with

@@ -6,6 +6,7 @@
 
 #include "depth/upsample.h"
 #include "edges/place.h"
+#include "highlights/estimate.h"
 #include "renderer/methods.h"
 #include "support/arena.h"
 #include "tiles/ranges.h"
@@ -114,7 +115,7 @@ static uint64_t lay_out_whole(struct refocus_renderer *r,
 {
     struct rf_photo *photo = &r->photo;
     const int w = params->max_width, h = params->max_height;
-    struct rf_arena prepare;
+    struct rf_arena prepare, estimate;
     uint64_t size;
 
     photo->pad = rf_padding_for(params->max_blur_radius);
@@ -140,6 +141,10 @@ static uint64_t lay_out_whole(struct refocus_renderer *r,
     }
     prepare = *arena;
     r->prepare_memory = rf_arena_take(&prepare, prepare_bytes(params), 1);
+    estimate = *arena;
+    r->estimate_memory = rf_arena_take(&estimate, rf_estimate_bytes(w, h), 1);
+    if (prepare.used < estimate.used)
+        prepare.used = estimate.used;
     r->most_edges = params->depth_edges;
     r->smooth_group = rf_arena_take(arena, size, 2);
     r->background_group = rf_arena_take(arena, size, 2);
@@ -173,12 +178,15 @@ static void shape_blocks(struct rf_in_place *in_place, int pad)
 static void lay_out_blocks(struct refocus_renderer *r, const struct refocus_renderer_params *params,
                            struct rf_arena *arena)
 {
+    struct rf_arena estimate = *arena;
     const int w = params->max_width, h = params->max_height;
     struct rf_in_place *in_place = &r->in_place;
     struct rf_photo *photo = &r->photo;
     uint64_t size;
     int side;
 
+    if (params->estimate)
+        r->estimate_memory = rf_arena_take(&estimate, rf_estimate_bytes(w, h), 1);
     shape_blocks(in_place, rf_padding_for(params->max_blur_radius));
     photo->pad = rf_padding_for(params->max_blur_radius);
     side = rf_block_side(in_place);
@@ -189,6 +197,7 @@ static void lay_out_blocks(struct refocus_renderer *r, const struct refocus_rend
     r->smooth_group = rf_arena_take(arena, size, 2);
     r->background_group = rf_arena_take(arena, size, 2);
     photo->alpha = rf_arena_take(arena, (uint64_t)side * (uint64_t)side, 1);
+    arena->used = arena->used > estimate.used ? arena->used : estimate.used;
     lay_out_lists(arena, photo, w, h);
     in_place->known.stride = (w + 7) / 8;
     in_place->known.bits = rf_arena_take(arena, (uint64_t)in_place->known.stride * (uint64_t)h, 1);

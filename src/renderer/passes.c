@@ -8,6 +8,7 @@
 #include "background/behind.h"
 #include "background/inpaint.h"
 #include "background/mark.h"
+#include "highlights/estimate.h"
 #include "highlights/highlights.h"
 #include "passes/coc.h"
 #include "passes/prefilter.h"
@@ -51,17 +52,35 @@ void rf_set_weights(struct rf_frame *f)
     f->premultiplied = r->keep_codes && may_premultiply(f);
 }
 
+/* Works in the planes of a lens setting, whose contents end. */
+static void estimate_highlights(struct refocus_renderer *r, const struct rf_photo_source *source,
+                                float scale)
+{
+    struct rf_arena arena = {r->estimate_memory, 0};
+    struct rf_light_grid grid = {.exec = &r->exec, .photo = source, .channels = r->yuv.on ? 1 : 3};
+
+    rf_planes_end(&r->lifetimes);
+    r->cache = (struct rf_pass_cache){0};
+    rf_estimate_highlights(&grid, &arena, &r->transfer[REFOCUS_BLEND_LINEAR], scale,
+                           &r->photo.highlights);
+}
+
 void rf_pass_highlights(struct rf_frame *f)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
     struct rf_photo *photo = &r->photo;
     const struct rf_photo_source source = rf_photo_source(r);
+    const float estimate = r->estimate_memory ? f->params->highlight_estimate : 0;
 
     if ((f->params->highlight_gain <= 1 && !f->look.has_stars) ||
-        photo->highlights_blend == r->blend)
+        (photo->highlights_blend == r->blend && photo->highlights_estimate == estimate))
         return;
     photo->highlights_blend = RF_NO_BLEND;
-    rf_detect_highlights(&r->exec, &source, &photo->highlights);
+    photo->highlights_estimate = estimate;
+    if (estimate > 0)
+        estimate_highlights(r, &source, estimate);
+    else
+        rf_detect_highlights(&r->exec, &source, &photo->highlights);
     photo->highlights_blend = rf_cancelled(&r->exec) ? RF_NO_BLEND : r->blend;
 }
 

@@ -186,6 +186,8 @@ static int read_arguments(struct rf_frame *f, const struct refocus_render_params
         (status = read_region(&log, r, &settings, &f->region)) ||
         (status = rf_read_image(&log, "out", own_out, out)))
         return status;
+    if (settings.highlight_estimate > 0 && !r->estimate_memory)
+        settings.highlight_gain = 1;
     if (own_out->width != f->region.x1 - f->region.x0 ||
         own_out->height != f->region.y1 - f->region.y0)
         return rf_refuse(&log, REFOCUS_ERR_ARGUMENT,

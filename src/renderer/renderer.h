@@ -52,6 +52,7 @@ struct rf_photo {
     struct rf_silhouettes silhouettes;
     struct rf_highlights highlights;
     uint32_t highlights_blend; /* blend that they were found in, or RF_NO_BLEND */
+    float highlights_estimate; /* times the estimate that they were found by; 0: by their shape */
     struct rf_thin_list thin;
     struct rf_behind behind; /* width 0: the scene has none */
 };
@@ -151,8 +152,9 @@ struct refocus_renderer {
     struct rf_range_plane range;
     struct rf_bins *bins; /* one for each tile */
 
-    void *prepare_memory; /* for upsampling and for edges; ends with the first render */
-    uint32_t most_edges;  /* enum refocus_depth_edges that there is enough of it for */
+    void *prepare_memory;  /* for upsampling and for edges; ends with the first render */
+    void *estimate_memory; /* for estimating lost light, in planes of a lens setting, or NULL */
+    uint32_t most_edges;   /* enum refocus_depth_edges that there is enough of it for */
     struct refocus_depth_edges_report edges; /* about the prepared photo */
     struct rf_last_edges last_edges;         /* for the next frame, if they are placed steadily */
 

@@ -78,6 +78,7 @@ static const struct row rows[] = {
     RENDER(RF_SIGNED, region_width, INT32_MIN, INT32_MAX),
     RENDER(RF_SIGNED, region_height, INT32_MIN, INT32_MAX),
     ROW(RF_REAL, highlights, gain, highlight_gain, 1, RF_MOST_GAIN),
+    ROW(RF_REAL, highlights, estimate, highlight_estimate, 0, 4),
     ROW(RF_UNSIGNED, thin, enabled, thin, 0, 1),
     ROW(RF_REAL, look, cat_eye, cat_eye, 0, 0.9),
     ROW(RF_REAL, look, fringe, fringe, -0.5, 0.5),
@@ -211,6 +212,8 @@ int rf_read_settings(const struct rf_log *log, struct rf_settings *s,
     if (status)
         return status;
     s->aperture = all.render.aperture;
+    if (s->highlight_estimate > 0)
+        s->highlight_gain = RF_MOST_GAIN;
     if ((status = read_bands(log, s, &all.focus)) || (status = read_maps(log, s, &all)))
         return status;
     if (s->most_disparity < s->least_disparity)

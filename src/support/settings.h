@@ -19,7 +19,8 @@ struct rf_settings {
     int32_t region_x, region_y, region_width, region_height;
     const struct refocus_aperture *aperture;
 
-    float highlight_gain;
+    float highlight_gain;     /* RF_MOST_GAIN where light is estimated */
+    float highlight_estimate; /* times the estimate, or 0 */
     uint32_t thin;
 
     float cat_eye, fringe, grain;

@@ -205,9 +205,9 @@ class Limits(Case):
                       'with a photo; give one', 'bench', '--depth', 'depth.pgm')
 
     def test_light_is_given_back_with_care(self):
-        # two stops: paper and petals are found as often as highlights in photos of cameras
-        self.assertEqual(self.reports(*self.render())['highlights'], 4)
-        self.assertEqual(self.reports(*self.render('--sigma', '60'))['highlights'], 4)
+        self.assertEqual(self.reports(*self.render())['highlights'], 'auto')
+        self.assertEqual(self.reports(*self.render('--highlights', 'auto'))['highlights'], 'auto')
+        self.assertEqual(self.reports(*self.render('--highlights', '4'))['highlights'], 4)
         self.assertEqual(self.reports(*self.render('--highlights', 'off'))['highlights'], 1)
 
     def test_what_would_change_nothing(self):

@@ -178,8 +178,8 @@ class Bokeh(Controls):
         self.check('--grain', ['0', '4'], ['-0.1', '4.1'] + nonsense, 'a number from 0 to 4')
         self.check('--highlight-stops', ['0', '4', '2.5'], ['-1', '4.1'] + nonsense,
                    'a number from 0 to 4')
-        self.check('--highlights', ['1', '16', 'off'], ['0.9', '16.1'] + nonsense,
-                   "a number from 1 to 16, or 'off'")
+        self.check('--highlights', ['1', '16', 'off', 'auto'], ['0', '0.9', '16.1'] + nonsense,
+                   "a number from 1 to 16, or 'off', or 'auto'")
         self.check('--open-f-number', ['0.1', '2'], ['0', '-1', '1001'] + nonsense,
                    'a number above 0, at most 1000', '--f-number', '2', '--near', '1', '--far',
                    '2', '--focal-length', '50', '--aperture', 'polygon:6')

@@ -158,7 +158,7 @@ static void creating(void)
                                  BAD(refocus_renderer_params, depth_edges, 3),
                                  BAD(refocus_renderer_params, behind, 2),
                                  BAD(refocus_renderer_params, textured, 2),
-                                 BAD(refocus_renderer_params, reserved2, 1),
+                                 BAD(refocus_renderer_params, estimate, 2),
                                  BAD(refocus_renderer_params, methods, UINT32_MAX)};
     const struct refocus_renderer_params good = RETURNS(refocus_renderer_params_default, W, H, 5);
     struct refocus_renderer_params most = refocus_renderer_params_default(

@@ -45,6 +45,7 @@ static const struct key {
     {"inpaint", INT32, RENDER(render.inpaint), NULL},
     {"thin", INT32, RENDER(thin.enabled), NULL},
     {"highlight", FLOAT, RENDER(highlights.gain), NULL},
+    {"estimate", FLOAT, RENDER(highlights.estimate), NULL},
     {"cell", INT32, RENDER(jittered.cell), NULL},
     {"seed", INT32, RENDER(jittered.seed), NULL},
     {"spread", INT32, RENDER(scatter.spread), NULL},

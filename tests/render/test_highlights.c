@@ -379,29 +379,6 @@ static void petals(void **state)
 /* Highlights, tubes and signs anywhere, across the blocks of strip mode and each other. */
 enum { NIGHT_W = 330, NIGHT_H = 290 };
 
-static struct picture night(uint32_t seed, int w, int h)
-{
-    struct picture p = picture_make(w, h, seed);
-
-    for (int i = 0; i < 3 * w * h; i++)
-        p.rgb[i] /= 5;
-    for (int i = 0; i < 150; i++) {
-        struct thing t = {.light = {8, 8, 8}};
-        double x, y;
-
-        seed = seed * 1664525 + 1013904223;
-        t.kind = seed >> 8 & 1 ? ELLIPSE : seed >> 9 & 1 ? BOX : DIAMOND;
-        t.wide = 1 + (seed >> 10 & 15);
-        t.high = (seed >> 14 & 7) == 0 ? 70 : 1 + (seed >> 17 & 31);
-        t.light[seed >> 22 & 1] = 0.6;
-        seed = seed * 1664525 + 1013904223;
-        x = (double)((seed >> 8) % (uint32_t)w);
-        y = (double)((seed >> 18) % (uint32_t)h);
-        draw_thing(&p, &t, x, y);
-    }
-    return p;
-}
-
 /* Renders the night by a renderer for blurs up to `most`. */
 static void render_night(const struct picture *p, float blur, float most, uint32_t in_place,
                          int threads, uint8_t *out)

@@ -184,6 +184,11 @@ static void formula_of_modes(void **state)
             if (bytes <= 0 || bytes > stated_in_place(w, h, blurs[k], threads))
                 fail_msg("%d x %d, K = %g: strip mode takes %.0f bytes, header %.0f", w, h,
                          (double)blurs[k], bytes, stated_in_place(w, h, blurs[k], threads));
+            params.estimate = 1;
+            bytes = (double)refocus_renderer_memory(&params) - bytes;
+            if (bytes < 0 || bytes > 24 * fmin(w, 512) * fmin(h, 512) + 65536)
+                fail_msg("%d x %d, K = %g: the estimate takes %.0f bytes in strip mode", w, h,
+                         (double)blurs[k], bytes);
         }
     }
 }

@@ -20,4 +20,7 @@ double share_of_thing(const struct thing *t, double x, double y);
 /* Over what the picture has, centred at (cx, cy), pixels. */
 void draw_thing(struct picture *p, const struct thing *t, double cx, double cy);
 
+/* A dark picture of noise with 150 lights of all shapes and sizes. */
+struct picture night(uint32_t seed, int w, int h);
+
 #endif

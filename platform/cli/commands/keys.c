@@ -307,5 +307,8 @@ void keys_apply(const struct keys *keys, double time, struct refocus_settings *p
 
         if (!isnan(value))
             *(float *)((char *)params + parameters[p].offset) = (float)value;
+        if (!isnan(value) &&
+            parameters[p].offset == offsetof(struct refocus_settings, highlights.gain))
+            params->highlights.estimate = 0;
     }
 }

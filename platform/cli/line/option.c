@@ -93,7 +93,9 @@ const char *options_range(const struct option *option, char text[OPTION_RANGE_LE
         n += snprintf(text + n, (size_t)(OPTION_RANGE_LENGTH - n), " of at least %.9g",
                       option->least);
     if (option->word)
-        snprintf(text + n, (size_t)(OPTION_RANGE_LENGTH - n), ", or '%s'", option->word);
+        n += snprintf(text + n, (size_t)(OPTION_RANGE_LENGTH - n), ", or '%s'", option->word);
+    if (option->other_word)
+        snprintf(text + n, (size_t)(OPTION_RANGE_LENGTH - n), ", or '%s'", option->other_word);
     return text;
 }
 
@@ -137,6 +139,10 @@ static int parse_numbers(const struct option *option, const char *name, const ch
 
     if (option->word && strcmp(text, option->word) == 0) {
         *values = option->word_value;
+        return OPTIONS_PARSED;
+    }
+    if (option->other_word && strcmp(text, option->other_word) == 0) {
+        *values = option->other_value;
         return OPTIONS_PARSED;
     }
     for (int i = 0; i < count; i++) {

@@ -27,10 +27,12 @@ struct option {
                                beforehand and still afterwards were not given */
     double least, greatest; /* bounds of numbers; least is not allowed itself when above is set */
     bool above;
-    int count;                              /* number of OPTION_NUMBERS */
-    const char *word;                       /* one word that stands for a number, or
-                                               NULL */
-    double word_value;                      /* the number it stands for */
+    int count;              /* number of OPTION_NUMBERS */
+    const char *word;       /* one word that stands for a number, or
+                               NULL */
+    double word_value;      /* the number it stands for */
+    const char *other_word; /* another one, or NULL */
+    double other_value;
     const char *(*choice)(uint32_t index);  /* words of OPTION_CHOICE, some of OPTION_TEXT;
                                                NULL ends them */
     const char *(*summary)(uint32_t index); /* a line on each word, or NULL */

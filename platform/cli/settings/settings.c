@@ -220,6 +220,8 @@ static json_t *member_of(const struct option *option, const void *settings, int 
             return NULL;
         if (option->word && *number == option->word_value)
             json = json_string(option->word);
+        else if (option->other_word && *number == option->other_value)
+            json = json_string(option->other_word);
         else
             json = isinf(*number) ? json_string("inf") : number_json(*number, digits);
         break;

@@ -275,8 +275,10 @@ int bokeh_apply(const struct bokeh_settings *s, bool highlights_given,
     params->look.cat_eye = (float)or_else(s->cat_eye, preset->cat_eye);
     params->look.fringe = (float)or_else(s->fringe, preset->fringe);
     params->look.grain = (float)or_else(s->grain, 0);
-    if (!isnan(s->highlight_stops))
+    if (!isnan(s->highlight_stops)) {
         params->highlights.gain = (float)exp2(s->highlight_stops);
+        params->highlights.estimate = 0;
+    }
     if (preset->star && params->look.star_spikes == 0)
         params->look.star_spikes = preset->star;
     return EXIT_DONE;

@@ -6,11 +6,6 @@
 #include "shot/engine.h"
 #include "line/interrupt.h"
 
-/* Two stops. Highlights of path-traced scenes have lost more, but the highlights that are detected
- * in photos of cameras are as often paper or a petal as a light: there 9.5 scores no better than
- * this, and shows 7 to 11 times as many discs where there is no light. */
-static const float highlight_gain = 4;
-
 static const struct {
     const char *name, *summary;
     int rays;
@@ -94,8 +89,10 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
         params->search.iterations = (int32_t)settings->iterations;
     if (!isnan(settings->sigma))
         params->render.sigma = (float)settings->sigma;
-    params->highlights.gain =
-        isnan(settings->highlights) ? highlight_gain : (float)settings->highlights;
+    if (isnan(settings->highlights) || settings->highlights == HIGHLIGHTS_ESTIMATED)
+        params->highlights.estimate = 1;
+    else
+        params->highlights.gain = (float)settings->highlights;
     params->thin.enabled = qualities[settings->quality].thin && !settings->no_thin;
     if (settings->fill == FILL_TEXTURED ||
         (settings->fill == FILL_AUTO && qualities[settings->quality].textured))
@@ -266,16 +263,19 @@ json_t *engine_json(const struct engine *engine)
                                                             : json_integer(params->render.rays);
 
     return json_pack(
-        "{s:s, s:o, s:s, s:o, s:f, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:o, s:I, "
+        "{s:s, s:o, s:s, s:o, s:o, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:o, s:I, "
         "s:I}",
         "method", refocus_method_name(params->render.method), "rays", rays, "blend",
         engine_blend_name(params->render.blend), "sigma",
         params->render.sigma < 1e30f ? json_real(params->render.sigma) : json_string("off"),
-        "highlights", (double)params->highlights.gain, "iterations", (int)params->search.iterations,
-        "blur", (double)params->render.max_blur_radius, "focus",
-        (double)params->render.focus_disparity, "threads", (int)engine->info.threads, "cpu",
-        refocus_cpu_name(engine->info.cpu), "create_ms", engine->create_ms, "prepare_ms",
-        engine->prepare_ms, "render_ms", report_spread_json(engine->render_ms), "cpu_ms",
-        report_spread_json(engine->cpu_ms), "renderer_bytes", (json_int_t)engine->info.memory,
-        "peak_rss_kib", (json_int_t)report_peak_rss_kib());
+        "highlights",
+        params->highlights.estimate > 0 ? json_string("auto")
+                                        : json_real((double)params->highlights.gain),
+        "iterations", (int)params->search.iterations, "blur",
+        (double)params->render.max_blur_radius, "focus", (double)params->render.focus_disparity,
+        "threads", (int)engine->info.threads, "cpu", refocus_cpu_name(engine->info.cpu),
+        "create_ms", engine->create_ms, "prepare_ms", engine->prepare_ms, "render_ms",
+        report_spread_json(engine->render_ms), "cpu_ms", report_spread_json(engine->cpu_ms),
+        "renderer_bytes", (json_int_t)engine->info.memory, "peak_rss_kib",
+        (json_int_t)report_peak_rss_kib());
 }

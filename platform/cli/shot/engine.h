@@ -24,6 +24,8 @@ struct engine_settings {
 
 enum { QUALITY_STANDARD = 1 };
 
+enum { HIGHLIGHTS_ESTIMATED = 0 }; /* `highlights`: no gain, which is 1 or more */
+
 #define ENGINE_SETTINGS_NONE(repeat_default)                                                       \
     {                                                                                              \
         .quality = QUALITY_STANDARD, .rays = NAN, .iterations = NAN, .sigma = NAN,                 \
@@ -126,9 +128,9 @@ const char *engine_blend_summary(uint32_t index);
     {                                                                                              \
         .kind = OPTION_NUMBER, .name = "--highlights", .argument = "GAIN",                         \
         .offset = offsetof(type, member.highlights), .least = 1, .greatest = 16, .word = "off",    \
-        .word_value = 1,                                                                           \
-        .help = "sweep: light given back to small clipped highlights, up to GAIN times "           \
-                "white; default 4",                                                                \
+        .word_value = 1, .other_word = "auto", .other_value = HIGHLIGHTS_ESTIMATED,                \
+        .help = "sweep: light given back to clipped highlights: auto = as much as the photo "      \
+                "tells, the default; up to GAIN times white to small ones",                        \
         OF_METHODS(type, member.method, OF_SWEEP)                                                  \
     }
 #define RUN_OPTIONS(type, member)                                                                  \

@@ -179,6 +179,7 @@ static struct refocus_settings take_lens(struct input *in, int wild, float most)
     p.render.blend = (uint32_t)take_in(in, wild, 0, 2);
     p.render.sigma = 1 + take_fraction(in, wild, 300);
     p.highlights.gain = 1 + take_fraction(in, wild, 15);
+    p.highlights.estimate = p.highlights.gain > 8 ? take_fraction(in, wild, 4) : 0;
     p.search.iterations = take_in(in, wild, 1, 8);
     p.search.mirror = (uint8_t)take_in(in, wild, 0, 1);
     p.search.background = (uint8_t)take_in(in, wild, 0, 1);

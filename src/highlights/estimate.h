@@ -1,0 +1,40 @@
+/* estimate.h: an estimate of the light that the photo's white point cut off. */
+#ifndef RF_ESTIMATE_H
+#define RF_ESTIMATE_H
+
+#include "highlights/highlights.h"
+#include "highlights/light_grid.h"
+
+/* The light that each cell has lost, as times the light that its clipped pixels have; below 0
+ * where nothing is clipped. */
+struct rf_estimate {
+    const struct rf_light_grid *grid;
+    float *lost;
+};
+
+/* Bytes that rf_estimate_highlights() works in, for photos of at most this size. */
+uint64_t rf_estimate_bytes(int max_width, int max_height);
+void rf_estimate_lay_out(struct rf_estimate *lost, struct rf_arena *arena);
+
+/* Lists the highlights of a photo anew, by an estimate of the light that they lost, times `scale`.
+ * Exec, photo and channels of the grid are set; works in `arena`. What a cancelled run leaves is of
+ * no use. */
+void rf_estimate_highlights(struct rf_light_grid *grid, struct rf_arena *arena,
+                            const struct rf_transfer *linear, float scale,
+                            struct rf_highlights *highlights);
+
+/* Estimates it from the grid's measures, times `scale`. */
+void rf_estimate_make(const struct rf_estimate *lost, float scale);
+
+/* The estimate for a pixel, between the middles of cells in proportion; 0 where nothing around is
+ * clipped. */
+float rf_estimate_at(const struct rf_estimate *estimate, int x, int y);
+
+/* The hue of the light around the clipped pixels of a cell, as times its luminance: of what
+ * exceeds the surroundings. Returns false if there is hardly any. */
+bool rf_skirt_hue(const struct rf_light_grid *grid, int x, int y, float hue[3]);
+
+/* How many pixels the clipped area around a cell is wide, or so. */
+int rf_clipped_size(const struct rf_light_grid *grid, int x, int y);
+
+#endif

@@ -1,0 +1,363 @@
+/* light_grid.c: measures the means that lost light is estimated from. */
+#include "highlights/light_grid.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "kernels/kernels.h"
+#include "support/compare.h"
+#include "support/log2.h"
+
+enum { RUN = 64 }; /* pixels of a row that are looked at together for clipped ones */
+
+static const struct {
+    int first, last;
+} scales[RF_GRID_MEASURES] = {
+    [RF_GRID_CLIPPED] = {0, 6}, [RF_GRID_UNCLIPPED] = {0, 6}, [RF_GRID_LOG] = {1, 6},
+    [RF_GRID_GREY] = {1, 1},    [RF_GRID_PLATEAU] = {1, 1},   [RF_GRID_WHITE] = {1, 1},
+    [RF_GRID_RED] = {1, 4},     [RF_GRID_GREEN] = {1, 4},     [RF_GRID_BLUE] = {1, 4},
+};
+
+static void lay_out(struct rf_light_grid *grid, struct rf_arena *arena)
+{
+    grid->tables = rf_arena_take(arena, 1, sizeof *grid->tables);
+    for (int i = 0; i < RF_GRID_MEASURES; i++) {
+        grid->plane[i].first = scales[i].first;
+        grid->plane[i].last = scales[i].last;
+        for (int k = scales[i].first; k <= scales[i].last; k++)
+            grid->plane[i].scale[k] = rf_arena_take(arena,
+                                                    (uint64_t)rf_grid_size(grid->width, k) *
+                                                        (uint64_t)rf_grid_size(grid->height, k),
+                                                    sizeof(float));
+    }
+}
+
+uint64_t rf_light_grid_bytes(int max_width, int max_height)
+{
+    struct rf_light_grid grid = {.width = rf_smaller(max_width, RF_GRID_SIDE),
+                                 .height = rf_smaller(max_height, RF_GRID_SIDE)};
+    struct rf_arena arena = {NULL, 0};
+
+    lay_out(&grid, &arena);
+    return arena.used;
+}
+
+void rf_light_grid_lay_out(struct rf_light_grid *grid, struct rf_arena *arena)
+{
+    const int width = grid->photo->width, height = grid->photo->height;
+    const int longer = rf_larger(width, height), side = rf_smaller(longer, RF_GRID_SIDE);
+
+    grid->width = rf_larger((width * side + longer / 2) / longer, 1);
+    grid->height = rf_larger((height * side + longer / 2) / longer, 1);
+    grid->step = rf_larger(longer / side / 4, 1);
+    lay_out(grid, arena);
+}
+
+/* The first pixel of a cell, of `pixels` in `cells`. */
+static int first_of(int cell, int pixels, int cells)
+{
+    return (int)(((int64_t)cell * pixels + cells - 1) / cells);
+}
+
+void rf_grid_colour(const struct rf_light_grid *grid, int x, int y, int colour[3])
+{
+    const struct rf_photo_source *p = grid->photo;
+
+    if (rf_has_planes(p)) {
+        for (int c = 0; c < 3; c++)
+            colour[c] = p->light.channel[c < grid->channels ? c : 0][y * p->light.stride + x];
+    } else {
+        const struct rf_order o = rf_order_of(p->image->format);
+        const uint8_t *code = p->image->plane[0] + y * p->image->stride[0] + (ptrdiff_t)x * o.bytes;
+
+        colour[0] = p->transfer->to_light[code[o.r]];
+        colour[1] = p->transfer->to_light[code[o.g]];
+        colour[2] = p->transfer->to_light[code[o.b]];
+    }
+}
+
+bool rf_grid_may_be_clipped(const struct rf_light_grid *grid, int x, int y, int n)
+{
+    const struct rf_light_q12 *light = &grid->photo->light;
+    const ptrdiff_t at = y * light->stride + x;
+
+    if (!rf_has_planes(grid->photo))
+        return true;
+    return grid->exec->kernels->brightest(
+               light->channel[0] + at, light->channel[grid->channels > 1 ? 1 : 0] + at,
+               light->channel[grid->channels > 1 ? 2 : 0] + at, n) > grid->tables->clipped;
+}
+
+static int greatest(const int v[3])
+{
+    return rf_larger(v[0], rf_larger(v[1], v[2]));
+}
+
+static int least(const int v[3])
+{
+    return rf_smaller(v[0], rf_smaller(v[1], v[2]));
+}
+
+static int part(int code, int from, int to)
+{
+    return code <= from ? 0 : code >= to ? 256 : 256 * (code - from) / (to - from);
+}
+
+/* Sets the tables for the photo's blend. */
+static void set_tables(struct rf_light_grid *grid, const struct rf_transfer *linear)
+{
+    struct rf_grid_tables *t = grid->tables;
+    const struct rf_transfer *own = grid->photo->transfer;
+
+    t->clipped = 0;
+    for (int i = 0; i < RF_CODES_OF_LIGHT; i++) {
+        const int code = own->to_code[4 * i], v = part(code, 242, 254);
+
+        t->linear[i] = own == linear ? (uint16_t)i : linear->to_light[code];
+        t->soft[i] = (uint16_t)((v * v * (768 - 2 * v) + (1 << 15)) >> 16);
+        t->plateau[i] = (uint16_t)part(code, 250, 255);
+        t->white[i] = (uint16_t)part(code, 246, 255);
+        t->log[i] = (uint16_t)floor((rf_log2(i / 4095.0 + 0.003) + 9) * 256 + 0.5);
+        if (t->soft[i] == 0)
+            t->clipped = i;
+    }
+}
+
+static float *cell_of(const struct rf_light_grid *grid, enum rf_grid_measure measure, int x, int y)
+{
+    const struct rf_grid_plane *plane = &grid->plane[measure];
+
+    return &plane->scale[plane->first]
+                        [(y >> plane->first) * rf_grid_size(grid->width, plane->first) +
+                         (x >> plane->first)];
+}
+
+static void add(const struct rf_light_grid *grid, enum rf_grid_measure measure, int x, int y,
+                int sum)
+{
+    *cell_of(grid, measure, x, y) += (float)sum;
+}
+
+/* Adds up light that is not clipped, in one row of cell row cy. */
+static void add_unclipped(const struct rf_light_grid *grid, int y, int cy)
+{
+    const struct rf_grid_tables *t = grid->tables;
+    int x = 0;
+
+    for (int cx = 0; cx < grid->width; cx++) {
+        const int end = first_of(cx + 1, grid->photo->width, grid->width);
+        int sum[3] = {0}, luminance = 0, log = 0;
+
+        for (; x < end; x += grid->step) {
+            int colour[3], left, own;
+
+            rf_grid_colour(grid, x, y, colour);
+            left = 256 - t->soft[greatest(colour)];
+            for (int c = 0; c < 3; c++) {
+                colour[c] = t->linear[colour[c]];
+                sum[c] += (left * colour[c]) >> 8;
+            }
+            own = (218 * colour[0] + 732 * colour[1] + 74 * colour[2]) >> 10;
+            luminance += (left * own) >> 8;
+            log += t->log[own];
+        }
+        add(grid, RF_GRID_UNCLIPPED, cx, cy, luminance);
+        add(grid, RF_GRID_LOG, cx, cy, log);
+        for (int c = 0; c < 3; c++)
+            add(grid, RF_GRID_RED + (unsigned)c, cx, cy, sum[c]);
+    }
+}
+
+/* Adds up what is clipped of n pixels of a row. */
+static void add_clipped(const struct rf_light_grid *grid, int x, int y, int n, int cy)
+{
+    const struct rf_grid_tables *t = grid->tables;
+
+    for (const int end = x + n; x < end; x++) {
+        int colour[3], most, cx, soft;
+
+        rf_grid_colour(grid, x, y, colour);
+        most = greatest(colour);
+        soft = t->soft[most];
+        if (soft == 0)
+            continue;
+        cx = (int)((int64_t)x * grid->width / grid->photo->width);
+        add(grid, RF_GRID_CLIPPED, cx, cy, soft);
+        add(grid, RF_GRID_GREY, cx, cy, 16 * soft * t->linear[least(colour)] / t->linear[most]);
+        add(grid, RF_GRID_PLATEAU, cx, cy, t->plateau[most]);
+        add(grid, RF_GRID_WHITE, cx, cy, t->white[least(colour)]);
+    }
+}
+
+static int multiples_in(int from, int to, int step)
+{
+    return (to + step - 1) / step - (from + step - 1) / step;
+}
+
+/* Makes means of the sums in a row of cells at its plane's first scale. */
+static void divide(const struct rf_light_grid *grid, enum rf_grid_measure measure, int row,
+                   float unit, bool sampled)
+{
+    const struct rf_grid_plane *plane = &grid->plane[measure];
+    const int k = plane->first, width = grid->photo->width, height = grid->photo->height;
+    const int across = rf_grid_size(grid->width, k), step = sampled ? grid->step : 1;
+    float *at = plane->scale[k] + (ptrdiff_t)row * across;
+    const int y0 = first_of(row << k, height, grid->height);
+    const int y1 = first_of(rf_smaller((row + 1) << k, grid->height), height, grid->height);
+
+    for (int x = 0; x < across; x++) {
+        const int x0 = first_of(x << k, width, grid->width);
+        const int x1 = first_of(rf_smaller((x + 1) << k, grid->width), width, grid->width);
+
+        at[x] = at[x] / ((float)(multiples_in(x0, x1, step) * multiples_in(y0, y1, step)) * unit);
+    }
+}
+
+/* Measures two rows of cells. */
+static void measure_rows(void *context, int item, int worker)
+{
+    const struct rf_light_grid *grid = context;
+    const int width = grid->photo->width, height = grid->photo->height;
+
+    (void)worker;
+    for (int i = 0; i < RF_GRID_MEASURES; i++) {
+        const int k = grid->plane[i].first, rows = k ? 1 : 2;
+        const int across = rf_grid_size(grid->width, k);
+
+        for (int row = rows * item; row < rows * (item + 1) && row < rf_grid_size(grid->height, k);
+             row++)
+            memset(grid->plane[i].scale[k] + (ptrdiff_t)row * across, 0,
+                   (size_t)across * sizeof(float));
+    }
+    for (int cy = 2 * item; cy < rf_smaller(2 * item + 2, grid->height); cy++) {
+        const int end = first_of(cy + 1, height, grid->height);
+
+        for (int y = first_of(cy, height, grid->height); y < end; y++) {
+            if (rf_cancelled(grid->exec))
+                return;
+            if (y % grid->step == 0)
+                add_unclipped(grid, y, cy);
+            if (!rf_grid_may_be_clipped(grid, 0, y, width))
+                continue;
+            for (int x = 0; x < width; x += RUN)
+                if (rf_grid_may_be_clipped(grid, x, y, rf_smaller(width - x, RUN)))
+                    add_clipped(grid, x, y, rf_smaller(width - x, RUN), cy);
+        }
+        divide(grid, RF_GRID_CLIPPED, cy, 256, false);
+        divide(grid, RF_GRID_UNCLIPPED, cy, 4095, true);
+    }
+    divide(grid, RF_GRID_LOG, item, 256, true);
+    divide(grid, RF_GRID_GREY, item, 4096, false);
+    divide(grid, RF_GRID_PLATEAU, item, 256, false);
+    divide(grid, RF_GRID_WHITE, item, 256, false);
+    for (int c = 0; c < 3; c++)
+        divide(grid, RF_GRID_RED + (unsigned)c, item, 4095, true);
+}
+
+/* Means of 2 x 2 of a level make the next one. */
+static void halve(const float *fine, int width, int height, float *out)
+{
+    const int across = (width + 1) / 2, down = (height + 1) / 2;
+
+    for (int y = 0; y < down; y++) {
+        const float *a = fine + (ptrdiff_t)(2 * y) * width;
+        const float *b = fine + (ptrdiff_t)rf_smaller(2 * y + 1, height - 1) * width;
+
+        for (int x = 0; x < across; x++) {
+            const int x1 = rf_smaller(2 * x + 1, width - 1);
+
+            out[(ptrdiff_t)y * across + x] = (a[2 * x] + a[x1] + b[2 * x] + b[x1]) * 0.25f;
+        }
+    }
+}
+
+/* Smooths a level by 1 2 1 in rows and columns; its sides repeat. */
+static void smooth(float *at, int width, int height)
+{
+    float above[RF_GRID_SIDE], own[RF_GRID_SIDE];
+
+    for (int y = 0; y < height; y++) {
+        float *row = at + (ptrdiff_t)y * width, before = row[0];
+
+        for (int x = 0; x < width; x++) {
+            const float v = row[x], after = row[rf_smaller(x + 1, width - 1)];
+
+            row[x] = (before + 2 * v + after) * 0.25f;
+            before = v;
+        }
+    }
+    memcpy(above, at, (size_t)width * sizeof *at);
+    for (int y = 0; y < height; y++) {
+        float *row = at + (ptrdiff_t)y * width;
+        const float *below = at + (ptrdiff_t)rf_smaller(y + 1, height - 1) * width;
+
+        memcpy(own, row, (size_t)width * sizeof *at);
+        for (int x = 0; x < width; x++)
+            row[x] = (above[x] + 2 * own[x] + below[x]) * 0.25f;
+        memcpy(above, own, (size_t)width * sizeof *at);
+    }
+}
+
+static void blur_plane(void *context, int item, int worker)
+{
+    const struct rf_light_grid *grid = context;
+    const struct rf_grid_plane *plane = &grid->plane[item];
+
+    (void)worker;
+    for (int k = plane->first; k < plane->last; k++)
+        halve(plane->scale[k], rf_grid_size(grid->width, k), rf_grid_size(grid->height, k),
+              plane->scale[k + 1]);
+    for (int k = plane->first; k <= plane->last && !rf_cancelled(grid->exec); k++)
+        smooth(plane->scale[k], rf_grid_size(grid->width, k), rf_grid_size(grid->height, k));
+}
+
+static bool any_clipped(const struct rf_light_grid *grid)
+{
+    for (int y = 0; y < grid->photo->height; y++)
+        if (rf_grid_may_be_clipped(grid, 0, y, grid->photo->width))
+            return true;
+    return false;
+}
+
+static double mean_of(const float *at, int count)
+{
+    double sum = 0;
+
+    for (int i = 0; i < count; i++)
+        sum += (double)at[i];
+    return sum / count;
+}
+
+bool rf_light_grid_measure(struct rf_light_grid *grid, const struct rf_transfer *linear)
+{
+    const int down = rf_grid_size(grid->height, 1);
+
+    set_tables(grid, linear);
+    if (!any_clipped(grid))
+        return false;
+    rf_pool_run(grid->exec->pool, measure_rows, grid, down);
+    if (rf_cancelled(grid->exec))
+        return false;
+    grid->mean_log =
+        mean_of(grid->plane[RF_GRID_LOG].scale[1], rf_grid_size(grid->width, 1) * down) - 9;
+    rf_pool_run(grid->exec->pool, blur_plane, grid, RF_GRID_MEASURES);
+    return !rf_cancelled(grid->exec);
+}
+
+float rf_grid_at(const struct rf_light_grid *grid, enum rf_grid_measure measure, int scale, int x,
+                 int y)
+{
+    const float *at = grid->plane[measure].scale[scale];
+    const int across = rf_grid_size(grid->width, scale), down = rf_grid_size(grid->height, scale);
+    const float unit = 1 / (float)(1 << scale);
+    const float u = ((float)x + 0.5f) * unit - 0.5f, v = ((float)y + 0.5f) * unit - 0.5f;
+    const int x0 = u < 0 ? -1 : (int)u, y0 = v < 0 ? -1 : (int)v;
+    const float right = u - (float)x0, low = v - (float)y0;
+    const int xa = rf_larger(x0, 0), xb = rf_smaller(x0 + 1, across - 1);
+    const float *above = at + (ptrdiff_t)rf_larger(y0, 0) * across;
+    const float *below = at + (ptrdiff_t)rf_smaller(y0 + 1, down - 1) * across;
+    const float upper = above[xa] + right * (above[xb] - above[xa]);
+    const float lower = below[xa] + right * (below[xb] - below[xa]);
+
+    return upper + low * (lower - upper);
+}

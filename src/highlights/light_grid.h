@@ -1,0 +1,90 @@
+/* light_grid.h: what the light that clipping took is estimated from: means of the photo over the
+ * cells of a grid, and Gaussian blurs of these at seven scales.
+ *
+ * The grid has 512 cells along the longer side of the photo, or one for each pixel of a smaller
+ * one. A pixel counts as clipped to the part
+ *
+ *     s = smoothstep((m - 242) / 12),  m its greatest code,
+ *
+ * and as not clipped to the part 1 - s. Scale k is a blur of standard deviation 0.8 2^k cells, or
+ * nearly so: a pyramid of means of 2 x 2, each level smoothed by a binomial 1 2 1 and read between
+ * its cells in proportion, so that nothing steps where a highlight moves by a pixel.
+ */
+#ifndef RF_LIGHT_GRID_H
+#define RF_LIGHT_GRID_H
+
+#include <stdint.h>
+
+#include "image/photo_source.h"
+#include "support/arena.h"
+#include "support/executor.h"
+
+enum { RF_GRID_SIDE = 512, RF_GRID_SCALES = 7, RF_CODES_OF_LIGHT = RF_LIGHT_MAX + 1 };
+
+/* The means. Linear light is 0 to 1. */
+enum rf_grid_measure {
+    RF_GRID_CLIPPED,   /* s */
+    RF_GRID_UNCLIPPED, /* (1 - s) Y, Y luminance */
+    RF_GRID_LOG,       /* log2(Y + 0.003), clipped or not */
+    RF_GRID_GREY,      /* s min(R, G, B) / max(R, G, B) */
+    RF_GRID_PLATEAU,   /* how much of the greatest code goes from 250 to 255, as a part */
+    RF_GRID_WHITE,     /* how much of the least code goes from 246 to 255 */
+    RF_GRID_RED,       /* (1 - s) R, G, B */
+    RF_GRID_GREEN,
+    RF_GRID_BLUE,
+    RF_GRID_MEASURES
+};
+
+/* A mean at the scales from `first` to `last`. */
+struct rf_grid_plane {
+    int first, last;
+    float *scale[RF_GRID_SCALES];
+};
+
+/* Tables by Q12 light in the blend of the photo's planes. */
+struct rf_grid_tables {
+    uint16_t linear[RF_CODES_OF_LIGHT];                            /* linear light, Q12 */
+    uint16_t soft[RF_CODES_OF_LIGHT];                              /* s of a greatest channel, Q8 */
+    uint16_t plateau[RF_CODES_OF_LIGHT], white[RF_CODES_OF_LIGHT]; /* Q8 */
+    uint16_t log[RF_CODES_OF_LIGHT]; /* by linear light: (log2(light + 0.003) + 9), Q8 */
+    int clipped;                     /* s is 0 of light up to this one */
+};
+
+struct rf_light_grid {
+    const struct rf_executor *exec;
+    const struct rf_photo_source *photo;
+    int channels;      /* 3, or 1: the photo's planes hold luminance alone */
+    int width, height; /* cells */
+    int step;          /* light that is not clipped is looked at in every step-th row and column */
+    struct rf_grid_tables *tables;
+    struct rf_grid_plane plane[RF_GRID_MEASURES];
+    double mean_log; /* mean of RF_GRID_LOG over the whole photo */
+};
+
+/* Bytes that a grid of photos of at most this size takes. */
+uint64_t rf_light_grid_bytes(int max_width, int max_height);
+
+/* Lays the grid of a photo out; exec, photo and channels are set. */
+void rf_light_grid_lay_out(struct rf_light_grid *grid, struct rf_arena *arena);
+
+/* Measures the photo, whose light is in the blend that `photo->transfer` is of; `linear` is the
+ * transfer of linear light. Returns false if nothing is clipped, and nothing was measured then. */
+bool rf_light_grid_measure(struct rf_light_grid *grid, const struct rf_transfer *linear);
+
+/* Cells across and down at a scale. */
+static inline int rf_grid_size(int cells, int scale)
+{
+    return (cells + (1 << scale) - 1) >> scale;
+}
+
+/* A mean around the middle of cell (x, y), at a scale of its plane. */
+float rf_grid_at(const struct rf_light_grid *grid, enum rf_grid_measure measure, int scale, int x,
+                 int y);
+
+/* The channels of a pixel, Q12 in the photo's blend. */
+void rf_grid_colour(const struct rf_light_grid *grid, int x, int y, int colour[3]);
+
+/* Whether any of n pixels of a row may be clipped. */
+bool rf_grid_may_be_clipped(const struct rf_light_grid *grid, int x, int y, int n);
+
+#endif

@@ -1,0 +1,130 @@
+/* list_estimate.c: lists the pixels that have lost much of their light to clipping, row by row, as
+ * highlights. */
+#include <string.h>
+
+#include "highlights/detect.h"
+#include "highlights/estimate.h"
+#include "highlights/highlights.h"
+#include "support/compare.h"
+
+enum { RUN = 64 /* pixels that are looked at together */, LEAST = RF_LIGHT_MAX / 16 };
+
+struct listing {
+    const struct rf_estimate *estimate;
+    struct rf_highlights *highlights;
+};
+
+/* A run in the making. */
+struct open {
+    struct rf_highlight run;
+    float light[3]; /* Q12, of all its pixels */
+};
+
+/* The light that a pixel has lost, Q12. Half of it has the hue of
+ * what is around the clipped pixels, half their own. */
+static bool lost_at(const struct rf_estimate *estimate, int x, int y, float light[3])
+{
+    const struct rf_light_grid *grid = estimate->grid;
+    const int cx = (int)((int64_t)x * grid->width / grid->photo->width);
+    const int cy = (int)((int64_t)y * grid->height / grid->photo->height);
+    int colour[3], most = 0;
+    float gain, hue[3], luminance;
+
+    rf_grid_colour(grid, x, y, colour);
+    for (int c = 0; c < 3; c++)
+        most = rf_larger(most, colour[c]);
+    if (most <= grid->tables->clipped)
+        return false;
+    gain = rf_estimate_at(estimate, x, y) * ((float)grid->tables->soft[most] * (1 / 256.0f));
+    if (gain * (float)most < (float)LEAST)
+        return false;
+    luminance =
+        (218 * (float)colour[0] + 732 * (float)colour[1] + 74 * (float)colour[2]) * (1 / 1024.0f);
+    if (grid->channels == 1 || !rf_skirt_hue(grid, cx, cy, hue))
+        for (int c = 0; c < 3; c++)
+            light[c] = gain * (float)colour[c];
+    else
+        for (int c = 0; c < 3; c++)
+            light[c] = gain * 0.5f * ((float)colour[c] + luminance * hue[c]);
+    return true;
+}
+
+static void close_run(const struct listing *listing, struct open *open)
+{
+    struct rf_highlight_list *list = &listing->highlights->part[open->run.y / RF_HIGHLIGHT_ROWS];
+
+    if (open->run.count && list->count < list->capacity) {
+        for (int c = 0; c < 3; c++) {
+            /* A gain of RF_MOST_GAIN adds a third of this RF_MOST_GAIN - 1 times. */
+            const float each = open->light[c] * (3.0f / (RF_MOST_GAIN - 1)) / open->run.count;
+
+            open->run.boost[c] =
+                (uint16_t)(each < 3 * RF_LIGHT_MAX ? each + 0.5f : 3.0f * RF_LIGHT_MAX);
+        }
+        list->run[list->count++] = open->run;
+    }
+    memset(open, 0, sizeof *open);
+}
+
+static void list_pixel(const struct listing *listing, struct open *open, int x, int y)
+{
+    const struct rf_light_grid *grid = listing->estimate->grid;
+    float light[3];
+
+    if (open->run.count &&
+        (open->run.x + open->run.count != x || open->run.count == RF_HIGHLIGHT_RUN))
+        close_run(listing, open);
+    if (!lost_at(listing->estimate, x, y, light))
+        return;
+    if (!open->run.count) {
+        open->run.x = (uint16_t)x;
+        open->run.y = (uint16_t)y;
+        open->run.size =
+            (uint8_t)rf_clipped_size(grid, (int)((int64_t)x * grid->width / grid->photo->width),
+                                     (int)((int64_t)y * grid->height / grid->photo->height));
+    }
+    open->run.count++;
+    for (int c = 0; c < 3; c++)
+        open->light[c] += light[c];
+}
+
+/* A part of the list. */
+static void list_part(void *context, int item, int worker)
+{
+    const struct listing *listing = context;
+    const struct rf_light_grid *grid = listing->estimate->grid;
+    const int width = grid->photo->width;
+    const int end = rf_smaller((item + 1) * RF_HIGHLIGHT_ROWS, grid->photo->height);
+
+    (void)worker;
+    for (int y = item * RF_HIGHLIGHT_ROWS; y < end && !rf_cancelled(grid->exec); y++) {
+        struct open open = {.run = {.count = 0}};
+
+        for (int x = 0; x < width; x += RUN) {
+            const int n = rf_smaller(width - x, RUN);
+
+            if (!rf_grid_may_be_clipped(grid, x, y, n))
+                continue;
+            for (int i = 0; i < n; i++)
+                list_pixel(listing, &open, x + i, y);
+        }
+        close_run(listing, &open);
+    }
+}
+
+void rf_estimate_highlights(struct rf_light_grid *grid, struct rf_arena *arena,
+                            const struct rf_transfer *linear, float scale,
+                            struct rf_highlights *highlights)
+{
+    struct rf_estimate estimate = {.grid = grid};
+    struct listing listing = {&estimate, highlights};
+    const int parts = (grid->photo->height + RF_HIGHLIGHT_ROWS - 1) / RF_HIGHLIGHT_ROWS;
+
+    rf_clear_highlights(highlights);
+    rf_light_grid_lay_out(grid, arena);
+    rf_estimate_lay_out(&estimate, arena);
+    if (!rf_light_grid_measure(grid, linear))
+        return;
+    rf_estimate_make(&estimate, scale);
+    rf_pool_run(grid->exec->pool, list_part, &listing, parts);
+}

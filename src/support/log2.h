@@ -1,0 +1,33 @@
+/* log2.h: logarithms and powers of 2 with the same bits everywhere. */
+#ifndef RF_LOG2_H
+#define RF_LOG2_H
+
+#include <math.h>
+
+#include "support/exp_minus.h"
+
+/* log2(x) of 0 < x < infinity from IEEE operations alone, as rf_exp_minus(): x is m 2^e with m
+ * between 0.7 and 1.5, and log2(m) a series in (m - 1) / (m + 1), good to 1e-9. */
+static inline double rf_log2(double x)
+{
+    int exponent;
+    double m = frexp(x, &exponent), t, u; /* 0.5 to 1, exact */
+
+    if (m < 0.75) {
+        m *= 2;
+        exponent--;
+    }
+    t = (m - 1) / (m + 1);
+    u = t * t;
+    return exponent +
+           2.8853900817779268 * t *
+               (1 + u * (1.0 / 3 + u * (1.0 / 5 + u * (1.0 / 7 + u * (1.0 / 9 + u / 11)))));
+}
+
+/* 2^x of 0 <= x <= 64. */
+static inline double rf_exp2(double x)
+{
+    return 1 / rf_exp_minus(x * 0.69314718055994531);
+}
+
+#endif

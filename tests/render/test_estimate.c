@@ -1,0 +1,239 @@
+/* test_estimate.c: the estimate of the light that clipping took: lamps by night get theirs back,
+ * what is white by day stays as it is, and nothing else changes it. */
+#include "pictures.h"
+#include "things.h"
+
+enum { W = 320, H = 240, CX = W / 2, CY = H / 2, BEHIND = 6554, K = 24 };
+
+/* A flat picture with a thing in the middle, whose lens leaves a skirt of light around it: a share
+ * of it falls off with the square of the distance, and light above white is cut off. */
+static struct picture with_skirt(const double surround[3], const struct thing *t, double dx,
+                                 double share)
+{
+    struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, BEHIND);
+    const double area = t->wide * t->high * (t->kind == ELLIPSE ? 0.785 : 1);
+
+    for (int y = 0; y < H; y++) {
+        for (int x = 0; x < W; x++) {
+            const double away = hypot(x + 0.5 - CX - dx, y + 0.5 - CY) / 2;
+            const double own = share_of_thing(t, x - CX - dx, y - CY);
+            const double skirt = share * area / (12 * pow(1 + away * away, 1.5));
+
+            for (int c = 0; c < 3; c++)
+                p.rgb[3 * (y * W + x) + c] = picture_code(
+                    surround[c] + own * (t->light[c] - surround[c]) + skirt * t->light[c]);
+        }
+    }
+    return p;
+}
+
+static void render(const struct picture *p, const struct refocus_highlight_params *highlights,
+                   uint32_t in_place, int threads, float most, uint8_t *out)
+{
+    struct refocus_renderer_params limits =
+        refocus_renderer_params_default(p->width, p->height, most);
+    const struct refocus_image photo = picture_image(p);
+    const struct refocus_disparity disparity = picture_disparity(p);
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, p->width, p->height, 3 * p->width);
+    struct refocus_settings params = refocus_settings_default(0.5f, K);
+    struct refocus_renderer *renderer;
+
+    limits.threads = threads;
+    limits.in_place = limits.estimate = in_place;
+    params.highlights = *highlights;
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+    refocus_renderer_destroy(&renderer);
+}
+
+static struct refocus_highlight_params estimated(float estimate)
+{
+    struct refocus_highlight_params params = refocus_highlight_params_default();
+
+    params.estimate = estimate;
+    return params;
+}
+
+/* Light of each channel in all of a picture as it is rendered. */
+static void light_of(const struct picture *p, float estimate, double light[3])
+{
+    const struct refocus_highlight_params highlights = estimated(estimate);
+    uint8_t *out = malloc(3 * (size_t)p->width * (size_t)p->height);
+
+    assert_non_null(out);
+    render(p, &highlights, 0, 2, K, out);
+    for (int c = 0; c < 3; c++) {
+        light[c] = 0;
+        for (int i = c; i < 3 * p->width * p->height; i += 3)
+            light[c] += picture_light(out[i]);
+    }
+    free(out);
+}
+
+/* The light that the estimate adds, as a part of what the thing has when it is cut off at white. */
+static void added(const double surround[3], const struct thing *t, double dx, double share,
+                  float estimate, double part[3])
+{
+    struct picture p = with_skirt(surround, t, dx, share);
+    const double area = t->wide * t->high * (t->kind == ELLIPSE ? 0.785 : 1);
+    double with[3], without[3];
+
+    light_of(&p, 0, without);
+    light_of(&p, estimate, with);
+    for (int c = 0; c < 3; c++)
+        part[c] = (with[c] - without[c]) / (area * fmin(t->light[c], 1));
+    picture_free(&p);
+}
+
+static const double black[3] = {0.004, 0.004, 0.005}, dull[3] = {0.35, 0.35, 0.35};
+
+/* A lamp of eight times white has lost seven times what is left of it. */
+static void lamps(void **state)
+{
+    (void)state;
+    for (int wide = 4; wide <= 12; wide += 4) {
+        const struct thing lamp = {ELLIPSE, wide, wide, {8, 8, 8}};
+        double part[3];
+
+        added(black, &lamp, 0, 0.05, 1, part);
+        if (part[1] < 1 || part[1] > 14)
+            fail_msg("a lamp of %d pixels gets %.2f of its light, not about 7", wide, part[1]);
+    }
+}
+
+static void day(void **state)
+{
+    static const struct thing thing[] = {
+        {BOX, 60, 40, {1.02, 1.02, 1.02}},
+        {BOX, 9, 7, {1.05, 1.05, 1}},
+        {ELLIPSE, 200, 150, {1.3, 1.3, 1.5}},
+        {ELLIPSE, 5, 5, {1.1, 0.3, 0.3}},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof thing / sizeof *thing; i++) {
+        double part[3];
+
+        added(dull, &thing[i], 0, 0.002, 1, part);
+        for (int c = 0; c < 3; c++)
+            if (part[c] > 0.1 || part[c] < -0.01)
+                fail_msg("thing %zu by day gets %.3f of its light in channel %d", i, part[c], c);
+    }
+}
+
+/* An orange lamp stays orange. */
+static void colours(void **state)
+{
+    const struct thing lamp = {ELLIPSE, 8, 8, {8, 3, 0.4}};
+    double part[3];
+
+    (void)state;
+    added(black, &lamp, 0, 0.05, 1, part);
+    assert_true(part[0] > 0.3);
+    assert_true(part[0] * 1 > part[1] * 1 * 0.9);
+    assert_true(part[1] * 1 > 2 * part[2] * 0.4);
+}
+
+static void scales(void **state)
+{
+    const struct thing lamp = {ELLIPSE, 8, 8, {6, 6, 6}};
+    double half[3], one[3];
+
+    (void)state;
+    added(black, &lamp, 0, 0.05, 0.25f, half);
+    added(black, &lamp, 0, 0.05, 0.5f, one);
+    if (half[1] < 0.4 * one[1] || half[1] > 0.6 * one[1])
+        fail_msg("half the estimate adds %.2f, the whole %.2f", half[1], one[1]);
+}
+
+/* A lamp that moves by parts of a pixel is not another lamp. */
+static void steady(void **state)
+{
+    const struct thing lamp = {ELLIPSE, 7, 7, {6, 6, 6}};
+    double least = 1e9, most = 0;
+
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        double part[3];
+
+        added(black, &lamp, i / 8.0, 0.05, 1, part);
+        least = fmin(least, part[1]);
+        most = fmax(most, part[1]);
+    }
+    if (most > 1.25 * least)
+        fail_msg("a moving lamp gets %.2f to %.2f of its light", least, most);
+}
+
+/* Where nothing is clipped, every byte stays. */
+static void unclipped(void **state)
+{
+    const struct refocus_highlight_params off = refocus_highlight_params_default();
+    const struct refocus_highlight_params on = estimated(1);
+    struct picture p = picture_make(W, H, 5);
+    uint8_t *a = malloc(3 * W * H), *b = malloc(3 * W * H);
+
+    (void)state;
+    assert_non_null(a);
+    assert_non_null(b);
+    for (int i = 0; i < 3 * W * H; i++)
+        p.rgb[i] = p.rgb[i] > 242 ? 242 : p.rgb[i];
+    render(&p, &off, 0, 2, K, a);
+    render(&p, &on, 0, 2, K, b);
+    assert_same_pixels(b, a, W, H, "nothing clipped");
+    free(a);
+    free(b);
+    picture_free(&p);
+}
+
+/* Threads, blocks, larger renderers and earlier renders change nothing. */
+static void same_bytes(void **state)
+{
+    const struct refocus_highlight_params on = estimated(1);
+    struct refocus_settings params = refocus_settings_default(0.5f, K);
+
+    (void)state;
+    for (uint32_t seed = 1; seed <= 4; seed++) {
+        const int w = seed == 4 ? 1441 : 331, h = seed == 4 ? 391 : 289;
+        struct picture p = night(seed, w, h);
+        uint8_t *whole = malloc(3 * (size_t)w * (size_t)h), *is = malloc(3 * (size_t)w * (size_t)h);
+        const struct refocus_image image =
+            refocus_image_packed(REFOCUS_FORMAT_RGB8, is, w, h, 3 * w);
+        struct refocus_renderer *renderer;
+
+        assert_non_null(whole);
+        assert_non_null(is);
+        render(&p, &on, 0, 1, K, whole);
+        render(&p, &on, 0, 4, K, is);
+        assert_same_pixels(is, whole, w, h, "estimated by four threads");
+        render(&p, &on, 1, 2, K, is);
+        assert_same_pixels(is, whole, w, h, "estimated in blocks");
+        render(&p, &on, 0, 2, 127, is);
+        assert_same_pixels(is, whole, w, h, "estimated by a renderer for larger blurs");
+        renderer = prepared(&p, K, 2);
+        for (int i = 0; i < 3; i++) {
+            params.highlights = refocus_highlight_params_default();
+            params.highlights.gain = i == 1 ? 4 : 1;
+            assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+            params.highlights = on;
+            assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+            assert_same_pixels(is, whole, w, h, "estimated after another render");
+        }
+        refocus_renderer_destroy(&renderer);
+        free(whole);
+        free(is);
+        picture_free(&p);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lamps),      cmocka_unit_test(day),    cmocka_unit_test(colours),
+        cmocka_unit_test(scales),     cmocka_unit_test(steady), cmocka_unit_test(unclipped),
+        cmocka_unit_test(same_bytes),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
