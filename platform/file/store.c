@@ -80,25 +80,54 @@ static int open_temporary(struct rf_store *store, size_t folder)
     return -1;
 }
 
-/* Take the owner, group and mode of the file that is replaced. Only root may give files away:
- * others keep the group where they are in it, and else take from the group what
- * everybody does not have, as it is another one. Where a file system has no owners and
- * modes there is nothing to keep. */
-static void take_over(int file, const char *path)
+/* Only files are replaced: a pipe or device would be a file afterwards, and a link that goes round
+ * in a circle none. */
+static int check_place(const char *place, struct refocus_reason *reason)
+{
+    struct stat old;
+
+    if (stat(place, &old) != 0) {
+        return errno == ENOENT ? REFOCUS_OK
+                               : rf_fail_errno(reason, errno, "cannot write in its folder");
+    }
+    if (S_ISDIR(old.st_mode)) {
+        return rf_fail(reason, REFOCUS_ERR_IO, "it is a folder; give the name of a file");
+    }
+    if (!S_ISREG(old.st_mode)) {
+        return rf_fail(reason, REFOCUS_ERR_IO,
+                       "it is a pipe, socket or device; give the name of a file");
+    }
+    return REFOCUS_OK;
+}
+
+/* Take the owner, group and mode of the file that is replaced. Only root may give files away.
+ * Others keep the group where they are in it, and else take from the group what everybody does
+ * not have, as it is another one. Where a file system has no owners and modes there is nothing
+ * to keep. */
+static int take_over(int file, const char *path, struct refocus_reason *reason)
 {
     struct stat old, new;
     mode_t mode;
 
-    if (stat(path, &old) != 0 || !S_ISREG(old.st_mode) || fstat(file, &new) != 0) {
-        return;
+    if (stat(path, &old) != 0) {
+        return REFOCUS_OK;
+    }
+    if (fstat(file, &new) != 0) {
+        return rf_fail_errno(reason, errno, "cannot write in its folder");
     }
     mode = old.st_mode & 0777;
-    if ((new.st_uid != old.st_uid || new.st_gid != old.st_gid) &&
-        fchown(file, old.st_uid, old.st_gid) != 0 && new.st_gid != old.st_gid &&
-        fchown(file, (uid_t)-1, old.st_gid) != 0) {
+    if (new.st_uid != old.st_uid && fchown(file, old.st_uid, (gid_t)-1) != 0) {
+        return rf_fail(reason, REFOCUS_ERR_IO,
+                       "it belongs to another user, which replacing it would change; remove it "
+                       "first or give another name");
+    }
+    if (new.st_gid != old.st_gid && fchown(file, (uid_t)-1, old.st_gid) != 0) {
         mode &= (mode & 07) << 3 | 0707;
     }
-    fchmod(file, mode);
+    if ((new.st_mode & 0777) != mode && fchmod(file, mode) != 0) {
+        return rf_fail_errno(reason, errno, "cannot keep its mode");
+    }
+    return REFOCUS_OK;
 }
 
 /* Returns 0 or errno. A file that cannot be synced, such as a pipe, is not on a disk. */
@@ -132,37 +161,42 @@ static void sync_folder(char *path)
 int rf_store_open(struct rf_store *store, const char *path, struct refocus_reason *reason)
 {
     size_t folder;
-    int file, error;
+    int file = -1, status;
 
     memset(store, 0, sizeof *store);
     store->path = refocus_file_place(path);
     if (!store->path) {
         return rf_fail_memory(reason);
     }
+    status = check_place(store->path, reason);
     folder = folder_of(store->path);
-    store->temporary = malloc(folder + 64);
-    if (!store->temporary) {
-        free(store->path);
-        return rf_fail_memory(reason);
+    if (status == REFOCUS_OK) {
+        store->temporary = malloc(folder + 64);
+        status = store->temporary ? REFOCUS_OK : rf_fail_memory(reason);
     }
-    memcpy(store->temporary, store->path, folder);
-    file = open_temporary(store, folder);
-    error = errno;
-    if (file >= 0) {
-        take_over(file, store->path);
+    if (status == REFOCUS_OK) {
+        memcpy(store->temporary, store->path, folder);
+        file = open_temporary(store, folder);
+        status =
+            file >= 0 ? REFOCUS_OK : rf_fail_errno(reason, errno, "cannot write in its folder");
+    }
+    if (status == REFOCUS_OK) {
+        status = take_over(file, store->path, reason);
+    }
+    if (status == REFOCUS_OK) {
         store->stream = fdopen(file, "wb");
-        error = errno;
-        if (!store->stream) {
+        status =
+            store->stream ? REFOCUS_OK : rf_fail_errno(reason, errno, "cannot write in its folder");
+    }
+    if (status != REFOCUS_OK) {
+        if (file >= 0) {
             close(file);
             unlink(store->temporary);
         }
-    }
-    if (!store->stream) {
         free(store->path);
         free(store->temporary);
-        return rf_fail_errno(reason, error, "cannot write in its folder");
     }
-    return REFOCUS_OK;
+    return status;
 }
 
 void rf_store_write(struct rf_store *store, const void *bytes, size_t size)
@@ -232,7 +266,7 @@ int refocus_file_move(const char *temporary, const char *path, struct refocus_re
 {
     struct refocus_reason unused;
     char *place;
-    int file, error = 0;
+    int file, status, error = 0;
 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
@@ -243,20 +277,24 @@ int refocus_file_move(const char *temporary, const char *path, struct refocus_re
     if (!place) {
         return rf_fail_memory(reason);
     }
-    file = open(temporary, O_RDONLY | O_CLOEXEC);
-    if (file < 0) {
-        error = errno;
-    } else {
-        take_over(file, place);
-        error = sync_file(file);
+    status = check_place(place, reason);
+    file = status == REFOCUS_OK ? open(temporary, O_RDONLY | O_CLOEXEC) : -1;
+    if (file >= 0) {
+        status = take_over(file, place, reason);
+        error = status == REFOCUS_OK ? sync_file(file) : 0;
         close(file);
-    }
-    if (error == 0 && rename(temporary, place) != 0) {
+    } else if (status == REFOCUS_OK) {
         error = errno;
     }
-    if (error == 0) {
+    if (status == REFOCUS_OK && error == 0 && rename(temporary, place) != 0) {
+        error = errno;
+    }
+    if (error != 0) {
+        status = rf_fail_errno(reason, error, "cannot write it");
+    }
+    if (status == REFOCUS_OK) {
         sync_folder(place);
     }
     free(place);
-    return error ? rf_fail_errno(reason, error, "cannot write it") : REFOCUS_OK;
+    return status;
 }

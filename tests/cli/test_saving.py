@@ -215,6 +215,19 @@ class Saving(Case):
             shutil.rmtree('there')
             self.remove_all()
 
+    def test_only_files_are_replaced(self):
+        """Devices least of all: for root they would be files from then on."""
+        why = 'it is a pipe, socket or device; give the name of a file'
+        for name, command in self.COMMANDS:
+            os.mkfifo(name)
+            line = name.replace('f-1', 'f-%d') + ': ' + why
+            self.fails(1, line, *command)
+            os.remove(name)
+            os.symlink('/dev/null', name)
+            self.fails(1, line, *command)
+            self.assertTrue(stat.S_ISCHR(os.stat('/dev/null').st_mode))
+            self.remove_all()
+
     @unittest.skipUnless(shutil.which('strace'), 'no strace to count what is synced')
     def test_files_are_synced(self):
         """The file, then its name, then its folder."""

@@ -211,9 +211,10 @@ static inline struct refocus_write_options refocus_write_options_default(void)
  *
  * The file is written beside its place under a temporary name and moved there when
  * whole and on the disk: on an error what was there before is untouched and nothing
- * partial is left, nor after a loss of power. A file that is replaced passes its mode on,
- * and its owner and group as far as the process may; a symbolic link stays, and the file
- * that it points at is replaced.
+ * partial is left, nor after a loss of power. A file that is replaced passes its owner and
+ * mode on, else it is not replaced; its group as far as the process may. A symbolic link
+ * stays, and the file that it points at is replaced. A folder, pipe, socket or device is
+ * refused.
  * Alpha is kept in PNG and dropped elsewhere.
  *
  * @param reason  receives words on an error and, on success, what had to be left out:

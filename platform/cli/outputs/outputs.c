@@ -99,6 +99,9 @@ int output_check(const char *path, unsigned kinds, const char *const *others,
         return report_failure(EXIT_FAILED, path,
                               "it is a folder; give the name of a "
                               "file");
+    if (!S_ISREG(out.st_mode))
+        return report_failure(EXIT_FAILED, path,
+                              "it is a pipe, socket or device; give the name of a file");
     for (int i = 0; i < input_count; i++)
         if (inputs[i] && stat(inputs[i], &in) == 0 && in.st_dev == out.st_dev &&
             in.st_ino == out.st_ino)

@@ -2,6 +2,7 @@
  * fsync() and rename() are counted on their way to the system. */
 #include "check.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -224,9 +225,65 @@ static void owner_is_kept(void **state)
     }
 }
 
-/* A user who may write in the folder and does not own the file replaces it: it becomes theirs, and
- * their group gets no more than everybody had. */
+static void assert_unchanged(const struct stat *was)
+{
+    const struct stat facts = facts_of("a.ppm");
+
+    assert_int_equal(facts.st_ino, was->st_ino);
+    assert_int_equal(facts.st_uid, was->st_uid);
+    assert_int_equal(facts.st_gid, was->st_gid);
+    assert_int_equal(facts.st_mode, was->st_mode);
+}
+
+static int entries(void)
+{
+    DIR *const directory = opendir(".");
+    int n = 0;
+
+    assert_non_null(directory);
+    while (readdir(directory)) {
+        n++;
+    }
+    closedir(directory);
+    return n;
+}
+
+/* A user who may write in the folder but does not own the file is refused, and nothing is left
+ * beside it. */
 static void owner_that_cannot_be_kept(void **state)
+{
+    struct stat was;
+    int saved, moved, files;
+
+    (void)state;
+    if (geteuid() != 0) {
+        print_message("not root: nobody else to be\n");
+        skip();
+    }
+    assert_int_equal(save("a.ppm", NULL), REFOCUS_OK);
+    count = 0;
+    assert_int_equal(refocus_file_write("tmp", "new", 3, NULL), REFOCUS_OK);
+    assert_int_equal(chown("tmp", 4714, 4713), 0);
+    assert_int_equal(chown("a.ppm", 4711, 4712), 0);
+    assert_int_equal(chmod("a.ppm", 0664), 0);
+    assert_int_equal(chmod(".", 0777), 0);
+    was = facts_of("a.ppm");
+    files = entries();
+    assert_int_equal(setegid(4713), 0);
+    assert_int_equal(seteuid(4714), 0);
+    saved = save("a.ppm", NULL);
+    moved = refocus_file_move("tmp", "a.ppm", NULL);
+    assert_int_equal(seteuid(0), 0);
+    assert_int_equal(setegid(0), 0);
+    assert_int_equal(saved, REFOCUS_ERR_IO);
+    assert_int_equal(moved, REFOCUS_ERR_IO);
+    assert_unchanged(&was);
+    assert_int_equal(entries(), files);
+}
+
+/* The owner stays but is not in the file's group any more: it is another group's file, which gets
+ * no more than everybody had. */
+static void group_that_cannot_be_kept(void **state)
 {
     struct stat facts;
 
@@ -236,7 +293,7 @@ static void owner_that_cannot_be_kept(void **state)
         skip();
     }
     assert_int_equal(save("a.ppm", NULL), REFOCUS_OK);
-    assert_int_equal(chown("a.ppm", 4711, 4712), 0);
+    assert_int_equal(chown("a.ppm", 4714, 4712), 0);
     assert_int_equal(chmod("a.ppm", 0664), 0);
     assert_int_equal(chmod(".", 0777), 0);
     assert_int_equal(setegid(4713), 0);
@@ -249,6 +306,34 @@ static void owner_that_cannot_be_kept(void **state)
     assert_int_equal(facts.st_uid, 4714);
     assert_int_equal(facts.st_gid, 4713);
     assert_int_equal(facts.st_mode & 07777, 0644);
+}
+
+/* A pipe is no file, and neither are folders, devices and links that go round in a circle. */
+static void only_files_are_replaced(void **state)
+{
+    static const char *const names[] = {"pipe.ppm", "folder.ppm", "null.ppm", "circle.ppm"};
+    int files;
+
+    (void)state;
+    assert_int_equal(mkfifo("pipe.ppm", 0600), 0);
+    assert_int_equal(mkdir("folder.ppm", 0700), 0);
+    assert_int_equal(symlink("/dev/null", "null.ppm"), 0);
+    assert_int_equal(symlink("circle.ppm", "circle.ppm"), 0);
+    assert_int_equal(refocus_file_write("tmp", "new", 3, NULL), REFOCUS_OK);
+    files = entries();
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        struct refocus_reason reason;
+        const mode_t was = facts_of(names[i]).st_mode;
+
+        assert_int_equal(save(names[i], NULL), REFOCUS_ERR_IO);
+        assert_int_equal(refocus_file_move("tmp", names[i], &reason), REFOCUS_ERR_IO);
+        assert_string_not_equal(reason.text, "");
+        assert_int_equal(facts_of(names[i]).st_mode, was);
+    }
+    assert_int_equal(entries(), files);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        assert_int_equal(remove(names[i]), 0);
+    }
 }
 
 /* The file that a link points at is replaced, there or not, and the link stays. */
@@ -276,9 +361,6 @@ static void links_stay(void **state)
     place = refocus_file_place("link.ppm");
     assert_string_equal(place, "sub/a.ppm");
     free(place);
-    assert_int_equal(unlink("link.ppm"), 0);
-    assert_int_equal(symlink("link.ppm", "link.ppm"), 0); /* round and round */
-    assert_int_equal(save("link.ppm", NULL), REFOCUS_OK);
 }
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
@@ -294,6 +376,8 @@ int main(void)
         TEST(mode_is_kept),
         TEST(owner_is_kept),
         TEST(owner_that_cannot_be_kept),
+        TEST(group_that_cannot_be_kept),
+        TEST(only_files_are_replaced),
         TEST(links_stay),
     };
 
