@@ -26,7 +26,9 @@
 #include "support/compare.h"
 #include "support/log2.h"
 
-enum { FEATURES = 25, MOST = 4 /* log2 of the largest gain */ };
+enum { FEATURES = 25 };
+#define MOST_STOPS    4.0    /* a gain of 16 */
+#define LEAST_STOPS   0.5    /* less is nothing, all of it counts from 1 on */
 #define LEAST_CLIPPED 0.005f /* the least part of a cell that is clipped, for an estimate */
 
 static const struct {
@@ -119,9 +121,7 @@ static void set_looks(const struct rf_light_grid *grid, int x, int y, double *fe
     feature[3] = (double)rf_grid_at(grid, RF_GRID_WHITE, 1, x, y) / clipped;
 }
 
-/* Sets the features of a cell; returns C_3 and U_4. */
-static void set_features(const struct rf_light_grid *grid, int x, int y, double feature[FEATURES],
-                         double *c3, double *u4)
+static void set_features(const struct rf_light_grid *grid, int x, int y, double feature[FEATURES])
 {
     double c[RF_GRID_SCALES], u[RF_GRID_SCALES];
 
@@ -138,8 +138,6 @@ static void set_features(const struct rf_light_grid *grid, int x, int y, double 
                                  rf_grid_at(grid, RF_GRID_LOG, 6, x, y)) -
                   9;
     set_looks(grid, x, y, feature + 21);
-    *c3 = c[3];
-    *u4 = u[4];
 }
 
 static double softplus(double z)
@@ -147,22 +145,21 @@ static double softplus(double z)
     return fmax(z, 0) + rf_log2(1 + rf_exp_minus(fabs(z))) * 0.69314718055994531;
 }
 
-static void estimate_cell(const struct rf_estimate *estimate, int x, int y, double scale)
+/* The estimate of a cell; most of them are nothing by day, and need no model then. */
+static double lost_of(const struct rf_light_grid *grid, int x, int y)
 {
-    const ptrdiff_t at = (ptrdiff_t)y * estimate->grid->width + x;
-    double feature[FEATURES], c3, u4, z = constant, stops, night, small;
+    const double night = within((0.30 - unclipped(grid, RF_GRID_UNCLIPPED, 4, x, y)) / 0.24, 0, 1);
+    const double most = 0.5 + 5 * night * night, part = 0.5 + 0.5 * night;
+    const double large = smoothstep((double)rf_grid_at(grid, RF_GRID_CLIPPED, 3, x, y), 0.6, 0.9);
+    double feature[FEATURES], z = constant, stops;
 
-    estimate->lost[at] = -1;
-    if (estimate->grid->plane[RF_GRID_CLIPPED].scale[0][at] < LEAST_CLIPPED)
-        return;
-    set_features(estimate->grid, x, y, feature, &c3, &u4);
+    if (most * part <= LEAST_STOPS || large >= 1)
+        return 0;
+    set_features(grid, x, y, feature);
     for (int i = 0; i < FEATURES; i++)
         z += model[i].weight * within((feature[i] - model[i].mean) / model[i].deviation, -3, 3);
-    night = within((0.30 - u4) / 0.24, 0, 1);
-    stops = fmin(softplus(4 * z) / 4, 0.5 + 5 * night * night) * (0.5 + 0.5 * night);
-    stops = fmin(stops, MOST);
-    small = smoothstep(stops, 0.5, 1) * (1 - smoothstep(c3, 0.6, 0.9));
-    estimate->lost[at] = (float)((rf_exp2(stops) - 1) * scale * small);
+    stops = fmin(fmin(softplus(4 * z) / 4, most) * part, MOST_STOPS);
+    return (rf_exp2(stops) - 1) * smoothstep(stops, LEAST_STOPS, 1) * (1 - large);
 }
 
 struct job {
@@ -173,10 +170,15 @@ struct job {
 static void estimate_row(void *context, int item, int worker)
 {
     const struct job *job = context;
+    const struct rf_light_grid *grid = job->estimate->grid;
 
     (void)worker;
-    for (int x = 0; x < job->estimate->grid->width && !rf_cancelled(job->estimate->grid->exec); x++)
-        estimate_cell(job->estimate, x, item, job->scale);
+    for (int x = 0; x < grid->width && !rf_cancelled(grid->exec); x++) {
+        const ptrdiff_t at = (ptrdiff_t)item * grid->width + x;
+        const bool clipped = grid->plane[RF_GRID_CLIPPED].scale[0][at] >= LEAST_CLIPPED;
+
+        job->estimate->lost[at] = clipped ? (float)(lost_of(grid, x, item) * job->scale) : -1;
+    }
 }
 
 void rf_estimate_make(const struct rf_estimate *estimate, float scale)

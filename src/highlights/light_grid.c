@@ -191,7 +191,7 @@ static void add_clipped(const struct rf_light_grid *grid, int x, int y, int n, i
 
 static int multiples_in(int from, int to, int step)
 {
-    return (to + step - 1) / step - (from + step - 1) / step;
+    return step == 1 ? to - from : (to + step - 1) / step - (from + step - 1) / step;
 }
 
 /* Makes means of the sums in a row of cells at its plane's first scale. */
@@ -204,12 +204,13 @@ static void divide(const struct rf_light_grid *grid, enum rf_grid_measure measur
     float *at = plane->scale[k] + (ptrdiff_t)row * across;
     const int y0 = first_of(row << k, height, grid->height);
     const int y1 = first_of(rf_smaller((row + 1) << k, grid->height), height, grid->height);
+    const int rows = multiples_in(y0, y1, step);
 
-    for (int x = 0; x < across; x++) {
-        const int x0 = first_of(x << k, width, grid->width);
+    for (int x = 0, x0 = 0; x < across; x++) {
         const int x1 = first_of(rf_smaller((x + 1) << k, grid->width), width, grid->width);
 
-        at[x] = at[x] / ((float)(multiples_in(x0, x1, step) * multiples_in(y0, y1, step)) * unit);
+        at[x] /= (float)(multiples_in(x0, x1, step) * rows) * unit;
+        x0 = x1;
     }
 }
 
