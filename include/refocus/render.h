@@ -112,8 +112,8 @@ struct refocus_renderer_params {
                                renderers, and strip mode, take as not enabled, and for a matte
                                (scene.h), which they refuse */
     uint32_t depth_edges; /**< enum refocus_depth_edges of scene.h, up to which there is memory: 0,
-                               the default, AUTO or STEADY; not in strip mode, which goes without:
-                               call refocus_depth_edges() before */
+                               the default, AUTO or STEADY. In strip mode it is memory for the
+                               whole map */
     uint32_t behind;      /**< 1: with memory for `behind` of struct refocus_scene, which other
                                renderers, and strip mode, refuse */
     uint32_t textured; /**< 1: with memory for REFOCUS_INPAINT_TEXTURED, which other renderers, and
@@ -163,8 +163,10 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max
  *     28 (S + 63) (S + 16) + 0.78 (W + 16) (H + 64) + 4 T (W + 512) + 24 P^2 + 2^17
  *
  * with S = 144 + 2N - M + max(M, 2P), M = P + 28 and N = max(M, 2P + 9), M and N rounded up to
- * multiples of 16: 1920x1080 with K = 40 takes less than 6,000,000 bytes. params->estimate takes up
- * to 24 min(W, 512) min(H, 512) + 2^16 more there.
+ * multiples of 16: 1920x1080 with K = 40 takes less than 6,000,000 bytes. With
+ * params->depth_edges, whose passes need the whole map, strip mode takes up to
+ * 32 (W + 128) (H + 64) + 2^18 more, and STEADY 4 W H + 2^8 on top of it. With
+ * params->estimate it takes up to 24 min(W, 512) min(H, 512) + 2^16 more.
  *
  * @return 0 if a parameter is out of its range. Thread-safe.
  */
@@ -187,7 +189,8 @@ REFOCUS_API void refocus_renderer_destroy(struct refocus_renderer **renderer);
 /**
  * Take a photo and what is known of its depth in. All is copied in the form the renderer needs; the
  * caller's memory is not used after the return. In strip mode (params.in_place) photo and
- * disparities are not copied, and stay with the renderer until the next scene or its end.
+ * disparities are not copied, and stay with the renderer until the next scene or its end; a map
+ * whose edges are placed is.
  *
  * @param scene  see struct refocus_scene
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (also depth_edges without memory for it),

@@ -108,6 +108,19 @@ static uint64_t prepare_bytes(const struct refocus_renderer_params *params)
     return arena.used;
 }
 
+/* Lays out the frame that the edges of the next one are compared with. */
+static void lay_out_last_edges(struct rf_arena *arena, struct rf_last_edges *last,
+                               const struct refocus_renderer_params *params)
+{
+    const uint64_t pixels = (uint64_t)params->max_width * (uint64_t)params->max_height;
+
+    if (params->depth_edges != REFOCUS_DEPTH_EDGES_STEADY)
+        return;
+    last->result = rf_arena_take(arena, pixels, 2);
+    last->map = rf_arena_take(arena, pixels, 1);
+    last->still = rf_arena_take(arena, pixels, 1);
+}
+
 /* Lays out the photo, and the planes that depend on the lens setting. These share their memory with
  * the work of preparing a scene, whose end in the arena is returned. */
 static uint64_t lay_out_whole(struct refocus_renderer *r,
@@ -132,20 +145,13 @@ static uint64_t lay_out_whole(struct refocus_renderer *r,
         photo->disparity = first + 3 * photo->pitch;
     }
     lay_out_lists(arena, photo, w, h);
-    if (params->depth_edges == REFOCUS_DEPTH_EDGES_STEADY) {
-        const uint64_t pixels = (uint64_t)w * (uint64_t)h;
-
-        r->last_edges.result = rf_arena_take(arena, pixels, 2);
-        r->last_edges.map = rf_arena_take(arena, pixels, 1);
-        r->last_edges.still = rf_arena_take(arena, pixels, 1);
-    }
+    lay_out_last_edges(arena, &r->last_edges, params);
     prepare = *arena;
     r->prepare_memory = rf_arena_take(&prepare, prepare_bytes(params), 1);
     estimate = *arena;
     r->estimate_memory = rf_arena_take(&estimate, rf_estimate_bytes(w, h), 1);
     if (prepare.used < estimate.used)
         prepare.used = estimate.used;
-    r->most_edges = params->depth_edges;
     r->smooth_group = rf_arena_take(arena, size, 2);
     r->background_group = rf_arena_take(arena, size, 2);
     return prepare.used;
@@ -173,15 +179,33 @@ static void shape_blocks(struct rf_in_place *in_place, int pad)
     in_place->block = MARK_BLOCK + 2 * (in_place->mark_margin - in_place->margin);
 }
 
-/* Lays out the planes of the window of a block, and the marks and levels that are stored for the
- * whole photo. */
-static void lay_out_blocks(struct refocus_renderer *r, const struct refocus_renderer_params *params,
-                           struct rf_arena *arena)
+/* Lays out a map of the whole photo whose edges are placed, and the memory of that. It ends with
+ * the preparation, and all that comes after the map shares it: its end in the arena is returned. */
+static uint64_t lay_out_placed(struct refocus_renderer *r,
+                               const struct refocus_renderer_params *params, struct rf_arena *arena)
 {
-    struct rf_arena estimate = *arena;
+    const int w = params->max_width, h = params->max_height;
+    struct rf_arena prepare;
+
+    if (!params->depth_edges)
+        return 0;
+    r->in_place.placed = rf_arena_take(arena, (uint64_t)w * (uint64_t)h, 2);
+    lay_out_last_edges(arena, &r->last_edges, params);
+    prepare = *arena;
+    r->prepare_memory = rf_arena_take(&prepare, rf_place_edges_bytes(w, h, w, h), 1);
+    return prepare.used;
+}
+
+/* Lays out the planes of the window of a block, and the marks and levels that are stored for the
+ * whole photo. Returns where the memory of lay_out_placed() ends. */
+static uint64_t lay_out_blocks(struct refocus_renderer *r,
+                               const struct refocus_renderer_params *params, struct rf_arena *arena)
+{
     const int w = params->max_width, h = params->max_height;
     struct rf_in_place *in_place = &r->in_place;
     struct rf_photo *photo = &r->photo;
+    const uint64_t prepared = lay_out_placed(r, params, arena);
+    struct rf_arena estimate = *arena;
     uint64_t size;
     int side;
 
@@ -204,6 +228,7 @@ static void lay_out_blocks(struct refocus_renderer *r, const struct refocus_rend
     rf_pyramid_shape(&in_place->kept, w, h);
     for (int i = RF_KEPT; i <= in_place->kept.levels; i++)
         lay_out_level(arena, &in_place->kept.level[i]);
+    return prepared;
 }
 
 /* The most bytes that any of the methods of whole frames needs. */
@@ -257,8 +282,9 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
               pad = rf_padding_for(params->max_blur_radius);
     uint64_t before, after, prepared = 0;
 
+    r->most_edges = params->depth_edges;
     if (params->in_place)
-        lay_out_blocks(r, params, arena);
+        prepared = lay_out_blocks(r, params, arena);
     else
         prepared = lay_out_whole(r, params, arena);
     before = arena->used;

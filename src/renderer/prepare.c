@@ -84,25 +84,41 @@ static struct refocus_disparity settle(struct refocus_renderer *r, const struct 
     return refocus_disparity16(out.at, width, height, 2 * (ptrdiff_t)width);
 }
 
+/* Puts the edges of a map on the photo's. Says whether it wrote the result. */
+static bool place(struct refocus_renderer *r, const struct scene *scene,
+                  const struct refocus_image *photo, const struct refocus_disparity *map,
+                  void *memory, struct rf_disparity_q16 out)
+{
+    const struct rf_place_edges place = {
+        .kernels = r->exec.kernels,
+        .pool = &r->pool,
+        .photo = photo,
+        .map = map,
+        .last = scene->depth_edges == REFOCUS_DEPTH_EDGES_STEADY ? &r->last_edges : NULL,
+        .memory = memory,
+        .out = out,
+    };
+
+    return places_edges(scene) && rf_place_edges(&place, &r->edges);
+}
+
+/* Frames that are not placed steadily have none after them that is compared with them. */
+static void forget_edges(struct refocus_renderer *r, const struct scene *scene)
+{
+    if (scene->depth_edges != REFOCUS_DEPTH_EDGES_STEADY || rf_cancelled(&r->exec))
+        r->last_edges.width = 0;
+}
+
 /* Writes the disparities. */
 static void take_in_map(struct refocus_renderer *r, const struct scene *scene,
                         const struct refocus_image *photo)
 {
     struct rf_arena arena = {r->prepare_memory, 0};
     const struct refocus_disparity map = settle(r, scene, photo, &arena);
-    const struct rf_place_edges place = {
-        .kernels = r->exec.kernels,
-        .pool = &r->pool,
-        .photo = photo,
-        .map = &map,
-        .last = scene->depth_edges == REFOCUS_DEPTH_EDGES_STEADY ? &r->last_edges : NULL,
-        .memory = arena.base + arena.used,
-        .out = r->disparity,
-    };
 
     if (rf_cancelled(&r->exec))
         return;
-    if (places_edges(scene) && rf_place_edges(&place, &r->edges))
+    if (place(r, scene, photo, &map, arena.base + arena.used, r->disparity))
         return;
     if (rf_cancelled(&r->exec))
         return;
@@ -155,14 +171,33 @@ static void take_in(struct refocus_renderer *r, const struct scene *scene)
     rf_planes_end(&r->lifetimes);
     rf_load_light(r, photo, guided ? &guide : NULL);
     take_in_map(r, scene, &guide);
-    if (scene->depth_edges != REFOCUS_DEPTH_EDGES_STEADY || rf_cancelled(&r->exec))
-        r->last_edges.width = 0;
+    forget_edges(r, scene);
     if (scene->has_matte && !rf_cancelled(&r->exec))
         take_in_matte(r, &scene->matte);
     if (!rf_cancelled(&r->exec))
         rf_find_silhouettes(&r->exec,
                             &(struct rf_silhouette_window){&r->view, r->light, r->disparity},
                             rf_whole(r), &r->photo.silhouettes);
+}
+
+/* Leaves photo and map where they are, but for a map whose edges were moved. */
+static void take_in_place(struct refocus_renderer *r, const struct scene *scene)
+{
+    struct rf_in_place *in_place = &r->in_place;
+    const struct refocus_disparity *map = &scene->disparity;
+    const struct rf_disparity_q16 out = {in_place->placed, map->width};
+
+    in_place->photo = scene->photo;
+    in_place->map = *map;
+    in_place->code_step = rf_code_step(map);
+    if (place(r, scene, &scene->photo, map, r->prepare_memory, out)) {
+        in_place->map =
+            refocus_disparity16(out.at, map->width, map->height, 2 * (ptrdiff_t)out.stride);
+        in_place->code_step = 0;
+    }
+    forget_edges(r, scene);
+    if (!rf_cancelled(&r->exec))
+        rf_find_silhouettes_in_blocks(r);
 }
 
 static int read_behind(const struct refocus_renderer *r, const struct rf_log *log,
@@ -267,10 +302,7 @@ static int prepare(struct refocus_renderer *r, const struct rf_log *log,
     rf_yuv_begin(&r->yuv, &scene.photo, r->blend);
     rf_run_begin(r);
     if (r->in_place.on) {
-        r->in_place.photo = scene.photo;
-        r->in_place.map = scene.disparity;
-        r->in_place.code_step = rf_code_step(&scene.disparity);
-        rf_find_silhouettes_in_blocks(r);
+        take_in_place(r, &scene);
     } else {
         rf_use(r, rf_whole(r));
         memset(own->band_blend, REFOCUS_BLEND_LINEAR, (size_t)rf_bands(&r->view));

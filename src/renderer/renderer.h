@@ -93,10 +93,11 @@ enum { RF_KEPT = 3 };
 
 struct rf_in_place {
     bool on;
-    struct refocus_image photo; /* the caller's */
-    struct refocus_disparity map;
-    int code_step;               /* rf_code_step() of the map */
-    int block, margin;           /* pixels of a block that is rendered, and around it */
+    struct refocus_image photo;   /* the caller's */
+    struct refocus_disparity map; /* the caller's, or `placed` */
+    uint16_t *placed;  /* a map whose edges went to the photo's; NULL: no memory for one */
+    int code_step;     /* rf_code_step() of the map */
+    int block, margin; /* pixels of a block that is rendered, and around it */
     int mark_block, mark_margin; /* a block whose background is marked */
     struct rf_rect beyond;       /* part of the margin in use that lies beyond the photo */
     struct rf_known known;

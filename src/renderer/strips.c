@@ -6,6 +6,10 @@
  * pyramid from RF_KEPT on, which are then inpainted. The second renders: it computes the levels
  * below RF_KEPT again for each block. Nothing is approximated: the bytes are the same as without
  * strips.
+ *
+ * Edges of the map are placed before, if the scene asks for that: how soft the map is and how it
+ * lies on the photo is known from all of it. The result is a map of the renderer's own, and the
+ * memory to work in is what marks, levels and planes of a block lie in later.
  */
 #include <string.h>
 
