@@ -98,46 +98,52 @@ static double smoothstep(double v, double from, double to)
     return t * t * (3 - 2 * t);
 }
 
-/* The mean light, by one of the measures of what is not clipped, of what is not. */
-static double unclipped(const struct rf_light_grid *grid, enum rf_grid_measure measure, int scale,
-                        int x, int y)
+/* A mean of the grid, in double. */
+static double mean_at(const struct rf_light_grid *grid, enum rf_grid_measure measure,
+                      const struct rf_grid_place *place)
 {
-    const double clipped = (double)rf_grid_at(grid, RF_GRID_CLIPPED, scale, x, y);
-
-    return (double)rf_grid_at(grid, measure, scale, x, y) / (1 - clipped + 0.001);
+    return (double)rf_grid_at(grid, measure, place);
 }
 
-static void set_looks(const struct rf_light_grid *grid, int x, int y, double *feature)
+/* The mean light, by one of the measures of what is not clipped, of what is not. */
+static double unclipped(const struct rf_light_grid *grid, enum rf_grid_measure measure,
+                        const struct rf_grid_place *place)
 {
-    const double clipped = (double)rf_grid_at(grid, RF_GRID_CLIPPED, 1, x, y) + 0.02;
-    const double r = (double)rf_grid_at(grid, RF_GRID_RED, 1, x, y);
-    const double g = (double)rf_grid_at(grid, RF_GRID_GREEN, 1, x, y);
-    const double b = (double)rf_grid_at(grid, RF_GRID_BLUE, 1, x, y);
+    return mean_at(grid, measure, place) / (1 - mean_at(grid, RF_GRID_CLIPPED, place) + 0.001);
+}
+
+static void set_looks(const struct rf_light_grid *grid, const struct rf_grid_place *place,
+                      double *feature)
+{
+    const double clipped = mean_at(grid, RF_GRID_CLIPPED, place) + 0.02;
+    const double r = mean_at(grid, RF_GRID_RED, place), g = mean_at(grid, RF_GRID_GREEN, place);
+    const double b = mean_at(grid, RF_GRID_BLUE, place);
     const double most = fmax(r, fmax(g, b)), least = fmin(r, fmin(g, b));
 
-    feature[0] = (double)rf_grid_at(grid, RF_GRID_GREY, 1, x, y) / clipped;
+    feature[0] = mean_at(grid, RF_GRID_GREY, place) / clipped;
     feature[1] = (most - least) / (most + 0.01);
-    feature[2] = (double)rf_grid_at(grid, RF_GRID_PLATEAU, 1, x, y) / clipped;
-    feature[3] = (double)rf_grid_at(grid, RF_GRID_WHITE, 1, x, y) / clipped;
+    feature[2] = mean_at(grid, RF_GRID_PLATEAU, place) / clipped;
+    feature[3] = mean_at(grid, RF_GRID_WHITE, place) / clipped;
 }
 
-static void set_features(const struct rf_light_grid *grid, int x, int y, double feature[FEATURES])
+/* U_0 is taken for U_1: light that is not clipped is not measured at scale 0. */
+static void set_features(const struct rf_light_grid *grid,
+                         const struct rf_grid_place place[RF_GRID_SCALES], double feature[FEATURES])
 {
     double c[RF_GRID_SCALES], u[RF_GRID_SCALES];
 
     for (int k = 0; k < RF_GRID_SCALES; k++) {
-        c[k] = (double)rf_grid_at(grid, RF_GRID_CLIPPED, k, x, y);
-        u[k] = (double)rf_grid_at(grid, RF_GRID_UNCLIPPED, k, x, y) / (1 - c[k] + 0.001);
+        c[k] = mean_at(grid, RF_GRID_CLIPPED, &place[k]);
+        u[k] = unclipped(grid, RF_GRID_UNCLIPPED, &place[rf_larger(k, 1)]);
         feature[k] = rf_log2(c[k] + 0.004);
         feature[7 + k] = rf_log2(u[k] + 0.01);
     }
     for (int k = 0; k < 5; k++)
         feature[14 + k] = rf_log2(fmax(u[k] - u[k + 2], 0) * (1 - c[k]) / (c[k] + 0.004) + 0.03);
     feature[19] = grid->mean_log;
-    feature[20] = 0.5 * (double)(rf_grid_at(grid, RF_GRID_LOG, 5, x, y) +
-                                 rf_grid_at(grid, RF_GRID_LOG, 6, x, y)) -
-                  9;
-    set_looks(grid, x, y, feature + 21);
+    feature[20] =
+        0.5 * (mean_at(grid, RF_GRID_LOG, &place[5]) + mean_at(grid, RF_GRID_LOG, &place[6])) - 9;
+    set_looks(grid, &place[1], feature + 21);
 }
 
 static double softplus(double z)
@@ -148,14 +154,18 @@ static double softplus(double z)
 /* The estimate of a cell; most of them are nothing by day, and need no model then. */
 static double lost_of(const struct rf_light_grid *grid, int x, int y)
 {
-    const double night = within((0.30 - unclipped(grid, RF_GRID_UNCLIPPED, 4, x, y)) / 0.24, 0, 1);
-    const double most = 0.5 + 5 * night * night, part = 0.5 + 0.5 * night;
-    const double large = smoothstep((double)rf_grid_at(grid, RF_GRID_CLIPPED, 3, x, y), 0.6, 0.9);
-    double feature[FEATURES], z = constant, stops;
+    struct rf_grid_place place[RF_GRID_SCALES];
+    double feature[FEATURES], z = constant, night, most, part, large, stops;
 
+    for (int k = 0; k < RF_GRID_SCALES; k++)
+        place[k] = rf_grid_place(grid, k, x, y);
+    night = within((0.30 - unclipped(grid, RF_GRID_UNCLIPPED, &place[4])) / 0.24, 0, 1);
+    most = 0.5 + 5 * night * night;
+    part = 0.5 + 0.5 * night;
+    large = smoothstep(mean_at(grid, RF_GRID_CLIPPED, &place[3]), 0.6, 0.9);
     if (most * part <= LEAST_STOPS || large >= 1)
         return 0;
-    set_features(grid, x, y, feature);
+    set_features(grid, place, feature);
     for (int i = 0; i < FEATURES; i++)
         z += model[i].weight * within((feature[i] - model[i].mean) / model[i].deviation, -3, 3);
     stops = fmin(fmin(softplus(4 * z) / 4, most) * part, MOST_STOPS);
@@ -214,11 +224,13 @@ float rf_estimate_at(const struct rf_estimate *estimate, int x, int y)
 
 bool rf_skirt_hue(const struct rf_light_grid *grid, int x, int y, float hue[3])
 {
+    const struct rf_grid_place near = rf_grid_place(grid, 2, x, y);
+    const struct rf_grid_place far = rf_grid_place(grid, 4, x, y);
     double skirt[3], luminance;
 
     for (int c = 0; c < 3; c++)
-        skirt[c] = fmax(unclipped(grid, RF_GRID_RED + (unsigned)c, 2, x, y) -
-                            unclipped(grid, RF_GRID_RED + (unsigned)c, 4, x, y),
+        skirt[c] = fmax(unclipped(grid, RF_GRID_RED + (unsigned)c, &near) -
+                            unclipped(grid, RF_GRID_RED + (unsigned)c, &far),
                         0);
     luminance = (218 * skirt[0] + 732 * skirt[1] + 74 * skirt[2]) / 1024;
     if (luminance < 0.002)
@@ -234,7 +246,11 @@ int rf_clipped_size(const struct rf_light_grid *grid, int x, int y)
                        (float)rf_larger(grid->width, grid->height);
     int scale = 0;
 
-    while (scale < RF_GRID_SCALES - 1 && rf_grid_at(grid, RF_GRID_CLIPPED, scale, x, y) > 0.5f)
-        scale++;
+    for (; scale < RF_GRID_SCALES - 1; scale++) {
+        const struct rf_grid_place place = rf_grid_place(grid, scale, x, y);
+
+        if (rf_grid_at(grid, RF_GRID_CLIPPED, &place) <= 0.5f)
+            break;
+    }
     return rf_smaller((int)(cell * (float)(1 << scale) + 0.5f), UINT8_MAX);
 }

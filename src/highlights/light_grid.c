@@ -13,7 +13,7 @@ enum { RUN = 64 }; /* pixels of a row that are looked at together for clipped on
 static const struct {
     int first, last;
 } scales[RF_GRID_MEASURES] = {
-    [RF_GRID_CLIPPED] = {0, 6}, [RF_GRID_UNCLIPPED] = {0, 6}, [RF_GRID_LOG] = {1, 6},
+    [RF_GRID_CLIPPED] = {0, 6}, [RF_GRID_UNCLIPPED] = {1, 6}, [RF_GRID_LOG] = {1, 6},
     [RF_GRID_GREY] = {1, 1},    [RF_GRID_PLATEAU] = {1, 1},   [RF_GRID_WHITE] = {1, 1},
     [RF_GRID_RED] = {1, 4},     [RF_GRID_GREEN] = {1, 4},     [RF_GRID_BLUE] = {1, 4},
 };
@@ -42,14 +42,23 @@ uint64_t rf_light_grid_bytes(int max_width, int max_height)
     return arena.used;
 }
 
+/* The number of cells along a side of the photo: one for each pixel, or an even number, so that
+ * each pair of them is as wide as the others. */
+static int cells_of(int pixels, int longer)
+{
+    if (longer <= RF_GRID_SIDE)
+        return pixels;
+    return rf_smaller(2 * rf_larger((pixels * RF_GRID_SIDE / 2 + longer / 2) / longer, 1), pixels);
+}
+
 void rf_light_grid_lay_out(struct rf_light_grid *grid, struct rf_arena *arena)
 {
     const int width = grid->photo->width, height = grid->photo->height;
     const int longer = rf_larger(width, height), side = rf_smaller(longer, RF_GRID_SIDE);
 
-    grid->width = rf_larger((width * side + longer / 2) / longer, 1);
-    grid->height = rf_larger((height * side + longer / 2) / longer, 1);
-    grid->step = rf_larger(longer / side / 4, 1);
+    grid->width = cells_of(width, longer);
+    grid->height = cells_of(height, longer);
+    grid->step = rf_larger(3 * longer / (2 * side), 1); /* 3/4 of two cells */
     lay_out(grid, arena);
 }
 
@@ -138,15 +147,20 @@ static void add(const struct rf_light_grid *grid, enum rf_grid_measure measure, 
     *cell_of(grid, measure, x, y) += (float)sum;
 }
 
-/* Adds up light that is not clipped, in one row of cell row cy. */
-static void add_unclipped(const struct rf_light_grid *grid, int y, int cy)
+/* Adds up light that is not clipped, in one row of cells y of scale 1. */
+static void add_unclipped(const struct rf_light_grid *grid, int y, int row)
 {
     const struct rf_grid_tables *t = grid->tables;
+    const int across = rf_grid_size(grid->width, 1);
+    float *sum[RF_GRID_MEASURES];
     int x = 0;
 
-    for (int cx = 0; cx < grid->width; cx++) {
-        const int end = first_of(cx + 1, grid->photo->width, grid->width);
-        int sum[3] = {0}, luminance = 0, log = 0;
+    for (int i = 0; i < RF_GRID_MEASURES; i++)
+        sum[i] = grid->plane[i].scale[1] + (ptrdiff_t)row * across;
+    for (int cx = 0; cx < across; cx++) {
+        const int end =
+            first_of(rf_smaller(2 * cx + 2, grid->width), grid->photo->width, grid->width);
+        int light[3] = {0}, luminance = 0, log = 0;
 
         for (; x < end; x += grid->step) {
             int colour[3], left, own;
@@ -155,16 +169,16 @@ static void add_unclipped(const struct rf_light_grid *grid, int y, int cy)
             left = 256 - t->soft[greatest(colour)];
             for (int c = 0; c < 3; c++) {
                 colour[c] = t->linear[colour[c]];
-                sum[c] += (left * colour[c]) >> 8;
+                light[c] += (left * colour[c]) >> 8;
             }
             own = (218 * colour[0] + 732 * colour[1] + 74 * colour[2]) >> 10;
             luminance += (left * own) >> 8;
             log += t->log[own];
         }
-        add(grid, RF_GRID_UNCLIPPED, cx, cy, luminance);
-        add(grid, RF_GRID_LOG, cx, cy, log);
+        sum[RF_GRID_UNCLIPPED][cx] += (float)luminance;
+        sum[RF_GRID_LOG][cx] += (float)log;
         for (int c = 0; c < 3; c++)
-            add(grid, RF_GRID_RED + (unsigned)c, cx, cy, sum[c]);
+            sum[RF_GRID_RED + c][cx] += (float)light[c];
     }
 }
 
@@ -206,11 +220,13 @@ static void divide(const struct rf_light_grid *grid, enum rf_grid_measure measur
     const int y1 = first_of(rf_smaller((row + 1) << k, grid->height), height, grid->height);
     const int rows = multiples_in(y0, y1, step);
 
-    for (int x = 0, x0 = 0; x < across; x++) {
-        const int x1 = first_of(rf_smaller((x + 1) << k, grid->width), width, grid->width);
+    for (int x = 0; x < across; x++) {
+        if (at[x] > 0) { /* few are, of those that count what is clipped */
+            const int x0 = first_of(x << k, width, grid->width);
+            const int x1 = first_of(rf_smaller((x + 1) << k, grid->width), width, grid->width);
 
-        at[x] /= (float)(multiples_in(x0, x1, step) * rows) * unit;
-        x0 = x1;
+            at[x] /= (float)rf_larger(multiples_in(x0, x1, step) * rows, 1) * unit;
+        }
     }
 }
 
@@ -237,7 +253,7 @@ static void measure_rows(void *context, int item, int worker)
             if (rf_cancelled(grid->exec))
                 return;
             if (y % grid->step == 0)
-                add_unclipped(grid, y, cy);
+                add_unclipped(grid, y, item);
             if (!rf_grid_may_be_clipped(grid, 0, y, width))
                 continue;
             for (int x = 0; x < width; x += RUN)
@@ -245,8 +261,8 @@ static void measure_rows(void *context, int item, int worker)
                     add_clipped(grid, x, y, rf_smaller(width - x, RUN), cy);
         }
         divide(grid, RF_GRID_CLIPPED, cy, 256, false);
-        divide(grid, RF_GRID_UNCLIPPED, cy, 4095, true);
     }
+    divide(grid, RF_GRID_UNCLIPPED, item, 4095, true);
     divide(grid, RF_GRID_LOG, item, 256, true);
     divide(grid, RF_GRID_GREY, item, 4096, false);
     divide(grid, RF_GRID_PLATEAU, item, 256, false);
@@ -345,20 +361,20 @@ bool rf_light_grid_measure(struct rf_light_grid *grid, const struct rf_transfer 
     return !rf_cancelled(grid->exec);
 }
 
-float rf_grid_at(const struct rf_light_grid *grid, enum rf_grid_measure measure, int scale, int x,
-                 int y)
+struct rf_grid_place rf_grid_place(const struct rf_light_grid *grid, int scale, int x, int y)
 {
-    const float *at = grid->plane[measure].scale[scale];
     const int across = rf_grid_size(grid->width, scale), down = rf_grid_size(grid->height, scale);
     const float unit = 1 / (float)(1 << scale);
     const float u = ((float)x + 0.5f) * unit - 0.5f, v = ((float)y + 0.5f) * unit - 0.5f;
     const int x0 = u < 0 ? -1 : (int)u, y0 = v < 0 ? -1 : (int)v;
-    const float right = u - (float)x0, low = v - (float)y0;
-    const int xa = rf_larger(x0, 0), xb = rf_smaller(x0 + 1, across - 1);
-    const float *above = at + (ptrdiff_t)rf_larger(y0, 0) * across;
-    const float *below = at + (ptrdiff_t)rf_smaller(y0 + 1, down - 1) * across;
-    const float upper = above[xa] + right * (above[xb] - above[xa]);
-    const float lower = below[xa] + right * (below[xb] - below[xa]);
+    const int left = rf_larger(x0, 0), right = rf_smaller(x0 + 1, across - 1);
+    const ptrdiff_t above = (ptrdiff_t)rf_larger(y0, 0) * across;
+    const ptrdiff_t below = (ptrdiff_t)rf_smaller(y0 + 1, down - 1) * across;
 
-    return upper + low * (lower - upper);
+    return (struct rf_grid_place){
+        scale,
+        {above + left, above + right, below + left, below + right},
+        u - (float)x0,
+        v - (float)y0,
+    };
 }

@@ -77,9 +77,25 @@ static inline int rf_grid_size(int cells, int scale)
     return (cells + (1 << scale) - 1) >> scale;
 }
 
-/* A mean around the middle of cell (x, y), at a scale of its plane. */
-float rf_grid_at(const struct rf_light_grid *grid, enum rf_grid_measure measure, int scale, int x,
-                 int y);
+/* The middle of a cell at a scale: between four means, which are read in proportion. */
+struct rf_grid_place {
+    int scale;
+    ptrdiff_t at[4];
+    float right, low;
+};
+struct rf_grid_place rf_grid_place(const struct rf_light_grid *grid, int scale, int x, int y);
+
+/* A mean there, at a scale that its plane has. */
+static inline float rf_grid_at(const struct rf_light_grid *grid, enum rf_grid_measure measure,
+                               const struct rf_grid_place *place)
+{
+    const float *at = grid->plane[measure].scale[place->scale];
+    const float a = at[place->at[0]], b = at[place->at[1]], c = at[place->at[2]];
+    const float upper = a + place->right * (b - a);
+    const float lower = c + place->right * (at[place->at[3]] - c);
+
+    return upper + place->low * (lower - upper);
+}
 
 /* The channels of a pixel, Q12 in the photo's blend. */
 void rf_grid_colour(const struct rf_light_grid *grid, int x, int y, int colour[3]);

@@ -479,11 +479,77 @@ static void ray_sets(void **state)
     }
 }
 
+/* A dark picture with lamps that light what is around them, in two hues. */
+static struct picture lamps(int width, int height)
+{
+    static const uint8_t dark[3] = {9, 8, 10};
+    struct picture p = picture_make(width, height, 321);
+
+    for (int i = 0; i < width * height; i++) {
+        const int dx = i % width % 40 - 20, dy = i / width % 40 - 20;
+        const int skirt = 4000 / (1 + dx * dx + dy * dy);
+        const bool orange = i / width / 40 % 2;
+
+        for (int c = 0; c < 3; c++) {
+            const int code = dark[c] + (orange ? skirt / (c + 1) : skirt);
+
+            p.rgb[3 * i + c] = (uint8_t)(code < 255 ? code : 255);
+        }
+    }
+    return p;
+}
+
+/* Light that is estimated, drawn as sprites and gathered by rays: the same on every instruction set
+ * and with any number of threads, and more than there is without. */
+static void estimates(void **state)
+{
+    enum { W = 163, H = 121 };
+    static uint8_t out[3 * W * H];
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    struct picture p = lamps(W, H);
+    const struct refocus_image photo = picture_image(&p);
+    const struct refocus_disparity disparity = picture_disparity(&p);
+    struct refocus_settings params = refocus_settings_default(0.4f, 11);
+    uint64_t plain[4];
+
+    (void)state;
+    for (uint32_t cpu = REFOCUS_CPU_C; refocus_cpu_name(cpu); cpu++) {
+        struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 11);
+        struct refocus_renderer *renderer;
+
+        limits.cpu = cpu;
+        limits.threads = (int32_t)cpu;
+        if (refocus_renderer_create(&renderer, &limits) != REFOCUS_OK)
+            continue;
+        assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+        for (int i = 0; i < 4; i++) {
+            static const char *const line[] = {NULL, NULL, "estimate: splatted",
+                                               "estimate: gathered"};
+            uint64_t is;
+
+            params.look.cat_eye = i % 2 ? 0.6f : 0;
+            params.highlights.estimate = i < 2 ? 0 : 1;
+            assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+            is = hash(out, sizeof out);
+            if (cpu != REFOCUS_CPU_C && is != plain[i])
+                fail_msg("estimate %d: %s differs from plain C", i, refocus_cpu_name(cpu));
+            plain[i] = is;
+            if (i >= 2)
+                assert_true(is != plain[i - 2]);
+            if (cpu == REFOCUS_CPU_C && i >= 2)
+                check_golden(is, line[i]);
+        }
+        refocus_renderer_destroy(&renderer);
+    }
+    picture_free(&p);
+}
+
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pictures), cmocka_unit_test(yuv_views_same), cmocka_unit_test(effects),
-        cmocka_unit_test(thin),     cmocka_unit_test(upsampled),      cmocka_unit_test(ray_sets)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pictures), cmocka_unit_test(yuv_views_same),
+                                       cmocka_unit_test(effects),  cmocka_unit_test(estimates),
+                                       cmocka_unit_test(thin),     cmocka_unit_test(upsampled),
+                                       cmocka_unit_test(ray_sets)};
     const bool update = argc == 3 && !strcmp(argv[2], "--update");
     int failed;
 

@@ -316,7 +316,7 @@ static void set_look(struct refocus_settings *params, int i)
     const bool all = i == IRIS + 14;
     const bool cut_off = i == IRIS + 15 || i == IRIS + 16;
 
-    params->look.cat_eye = i == IRIS + 1 || i == IRIS + 20 || all ? 0.6f : cut_off ? 0.85f : 0;
+    params->look.cat_eye = i == IRIS + 1 || all ? 0.6f : cut_off ? 0.85f : 0;
     params->render.rays = i == IRIS + 3 || i == IRIS + 7 || i == IRIS + 16 ? REFOCUS_RAYS_FULL : 64;
     params->render.sigma = i == IRIS + 5 || i == IRIS + 12 || all ? 200 : INFINITY;
     params->look.fringe = i == IRIS + 6 || all ? 0.2f : i == IRIS + 7 ? -0.3f : 0;
@@ -326,7 +326,6 @@ static void set_look(struct refocus_settings *params, int i)
     params->look.star_strength = 0.5f;
     params->look.grain = i == IRIS + 9 || all ? 1.5f : 0;
     params->look.grain_seed = 99;
-    params->highlights.estimate = i == IRIS + 19 || i == IRIS + 20 ? 1 : 0;
     params->highlights.gain = i == IRIS + 8 || all                                 ? 4
                               : i == IRIS + 10 || i == IRIS + 17 || i == IRIS + 18 ? 8
                               : i == IRIS + 11 || i == IRIS + 12                   ? 16
@@ -347,7 +346,7 @@ bool effect_params(int i, float focus, float blur, struct refocus_settings *para
         "heart weighted",  "fringe",         "fringe full",   "star filter",
         "grain",           "highlights 8",   "highlights 16", "highlights 16 weighted",
         "mask, sides",     "all of bokeh",   "star cut off",  "blades cut off, full",
-        "hearts of light", "stars of light", "estimate",      "estimate, cat's eye"};
+        "hearts of light", "stars of light"};
     const int count = sizeof names / sizeof *names;
 
     *params = refocus_settings_default(focus, blur);

@@ -191,6 +191,7 @@ static void unclipped(void **state)
 static void same_bytes(void **state)
 {
     const struct refocus_highlight_params on = estimated(1);
+    const struct refocus_highlight_params off = refocus_highlight_params_default();
     struct refocus_settings params = refocus_settings_default(0.5f, K);
 
     (void)state;
@@ -204,7 +205,9 @@ static void same_bytes(void **state)
 
         assert_non_null(whole);
         assert_non_null(is);
+        render(&p, &off, 0, 1, K, is);
         render(&p, &on, 0, 1, K, whole);
+        assert_true(memcmp(is, whole, 3 * (size_t)w * (size_t)h) != 0);
         render(&p, &on, 0, 4, K, is);
         assert_same_pixels(is, whole, w, h, "estimated by four threads");
         render(&p, &on, 1, 2, K, is);
