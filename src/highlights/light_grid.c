@@ -58,7 +58,7 @@ void rf_light_grid_lay_out(struct rf_light_grid *grid, struct rf_arena *arena)
 
     grid->width = cells_of(width, longer);
     grid->height = cells_of(height, longer);
-    grid->step = rf_larger(3 * longer / (2 * side), 1); /* 3/4 of two cells */
+    grid->step = rf_larger(3 * longer / (4 * side), 1); /* 3/8 of two cells */
     lay_out(grid, arena);
 }
 
