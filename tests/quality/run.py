@@ -22,10 +22,10 @@ SCENES = ["portrait", "tabletop", "fence", "nightlights"]
 METHODS = [
     ("input", "method=input", "untouched photo: the floor"),
     ("standard", "method=sweep,highlight=4,thin=1",
-     "the default: two layers, 64 rays, clipped highlights restored, thin structures composited"),
+     "two layers, 64 rays, a gain of 4 for clipped highlights, thin structures composited"),
     ("standard-off", "method=sweep,thin=1", "the same with `--highlights off`"),
     ("sweep", "method=sweep", "`standard-off` without thin structures"),
-    ("best", "method=sweep,rays=128,highlight=4,thin=1", "the default with 128 rays"),
+    ("best", "method=sweep,rays=128,highlight=4,thin=1", "the same with 128 rays"),
     ("search-T1-full", "method=search,iterations=1,rays=full",
      "as in the paper: one test, every ray"),
     ("search-T2-full", "method=search,iterations=2,rays=full", "two tests, every ray"),
