@@ -11,10 +11,10 @@ SOURCE = Path(__file__).resolve().parents[1]
 # run in quality.md; method and options in performance.md, or a quality of the portrait; what it is
 ROWS = [
     ("input", None, "the untouched photo"),
-    ("standard", ("quality", "standard"), "`sweep`, quality `standard`, `--highlights 4`"),
+    ("standard", ("quality", "standard"), "`sweep`, quality `standard`: the default"),
     ("standard-off", None, "the same with `--highlights off`: no light added, as in the methods below"),
-    ("standard", ("sweep", "--rays 64 --cpu c"), "`standard` in plain C"),
-    ("best", ("quality", "best"), "`sweep`, quality `best`, `--highlights 4`"),
+    ("standard", ("sweep", "--rays 64 --cpu c"), "the default in plain C"),
+    ("best", ("quality", "best"), "`sweep`, quality `best`"),
     ("search-T1-full", ("search", "--rays full --iterations 1", None),
      "`search`, one test, every ray: the paper"),
     ("search-T2", ("search", "--rays 64 --iterations 2"), "`search`, two tests, 64 rays"),

@@ -60,8 +60,9 @@ struct refocus_highlight_params {
     float estimate; /**< 0, the default: by gain. Above 0, up to 4: how much light each clipped
                                pixel has lost, up to 15 times white, is estimated from what the
                                lens spread around it, from its colour and from how bright the photo
-                               is, and this many times that is given back; gain is not looked at.
-                       Strip mode needs refocus_renderer_params.estimate */
+                               is, and this many times that is given back, but hardly any where one
+                               channel of R, G, B alone is clipped. gain is not looked at. Strip
+                               mode needs refocus_renderer_params.estimate */
 };
 
 static inline struct refocus_highlight_params refocus_highlight_params_default(void)

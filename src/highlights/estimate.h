@@ -14,7 +14,7 @@ struct rf_estimate {
 
 /* Bytes that rf_estimate_highlights() works in, for photos of at most this size. */
 uint64_t rf_estimate_bytes(int max_width, int max_height);
-void rf_estimate_lay_out(struct rf_estimate *lost, struct rf_arena *arena);
+void rf_estimate_lay_out(struct rf_estimate *estimate, struct rf_arena *arena);
 
 /* Lists the highlights of a photo anew, by an estimate of the light that they lost, times `scale`.
  * Exec, photo and channels of the grid are set; works in `arena`. What a cancelled run leaves is of
@@ -24,7 +24,7 @@ void rf_estimate_highlights(struct rf_light_grid *grid, struct rf_arena *arena,
                             struct rf_highlights *highlights);
 
 /* Estimates it from the grid's measures, times `scale`. */
-void rf_estimate_make(const struct rf_estimate *lost, float scale);
+void rf_estimate_make(const struct rf_estimate *estimate, float scale);
 
 /* The estimate for a pixel, between the middles of cells in proportion; 0 where nothing around is
  * clipped. */

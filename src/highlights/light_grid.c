@@ -195,7 +195,7 @@ static void add_clipped(const struct rf_light_grid *grid, int x, int y, int n, i
         soft = t->soft[most];
         if (soft == 0)
             continue;
-        cx = (int)((int64_t)x * grid->width / grid->photo->width);
+        cx = rf_grid_cell(x, grid->photo->width, grid->width);
         add(grid, RF_GRID_CLIPPED, cx, cy, soft);
         add(grid, RF_GRID_GREY, cx, cy, 16 * soft * t->linear[least(colour)] / t->linear[most]);
         add(grid, RF_GRID_PLATEAU, cx, cy, t->plateau[most]);

@@ -27,8 +27,8 @@ enum rf_grid_measure {
     RF_GRID_UNCLIPPED, /* (1 - s) Y, Y luminance */
     RF_GRID_LOG,       /* log2(Y + 0.003), clipped or not */
     RF_GRID_GREY,      /* s min(R, G, B) / max(R, G, B) */
-    RF_GRID_PLATEAU,   /* how much of the greatest code goes from 250 to 255, as a part */
-    RF_GRID_WHITE,     /* how much of the least code goes from 246 to 255 */
+    RF_GRID_PLATEAU,   /* place of the greatest code between 250 and 255: 0 to 1 */
+    RF_GRID_WHITE,     /* place of the least code between 246 and 255: 0 to 1 */
     RF_GRID_RED,       /* (1 - s) R, G, B */
     RF_GRID_GREEN,
     RF_GRID_BLUE,
@@ -95,6 +95,12 @@ static inline float rf_grid_at(const struct rf_light_grid *grid, enum rf_grid_me
     const float lower = c + place->right * (at[place->at[3]] - c);
 
     return upper + place->low * (lower - upper);
+}
+
+/* The cell that pixel i of a side lies in; the side has so many pixels and cells. */
+static inline int rf_grid_cell(int i, int pixels, int cells)
+{
+    return (int)((int64_t)i * cells / pixels);
 }
 
 /* The channels of a pixel, Q12 in the photo's blend. */

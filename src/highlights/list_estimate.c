@@ -20,22 +20,34 @@ struct open {
     float light[3]; /* Q12, of all its pixels */
 };
 
-/* The light that a pixel has lost, Q12. Half of it has the hue of
- * what is around the clipped pixels, half their own. */
+/* How bright the second brightest channel is: 0 up to half of white, 1 near white. Where one
+ * channel alone is clipped, a petal or a painted wall is as likely as a lamp. */
+static float whiteness(const int colour[3])
+{
+    const int most = rf_larger(colour[0], rf_larger(colour[1], colour[2]));
+    const int least = rf_smaller(colour[0], rf_smaller(colour[1], colour[2]));
+    const int middle = colour[0] + colour[1] + colour[2] - most - least;
+    const float t = ((float)middle / RF_LIGHT_MAX - 0.5f) * (1 / 0.45f);
+
+    return t <= 0 ? 0 : t >= 1 ? 1 : t * t * (3 - 2 * t);
+}
+
+/* The light that a pixel has lost, Q12. Half of it has its own hue, half that of what is around
+ * the clipped pixels. Returns false if it is hardly any. */
 static bool lost_at(const struct rf_estimate *estimate, int x, int y, float light[3])
 {
     const struct rf_light_grid *grid = estimate->grid;
-    const int cx = (int)((int64_t)x * grid->width / grid->photo->width);
-    const int cy = (int)((int64_t)y * grid->height / grid->photo->height);
-    int colour[3], most = 0;
+    const int cx = rf_grid_cell(x, grid->photo->width, grid->width);
+    const int cy = rf_grid_cell(y, grid->photo->height, grid->height);
+    int colour[3], most;
     float gain, hue[3], luminance;
 
     rf_grid_colour(grid, x, y, colour);
-    for (int c = 0; c < 3; c++)
-        most = rf_larger(most, colour[c]);
+    most = rf_larger(colour[0], rf_larger(colour[1], colour[2]));
     if (most <= grid->tables->clipped)
         return false;
-    gain = rf_estimate_at(estimate, x, y) * ((float)grid->tables->soft[most] * (1 / 256.0f));
+    gain = rf_estimate_at(estimate, x, y) * whiteness(colour) *
+           ((float)grid->tables->soft[most] * (1 / 256.0f));
     if (gain * (float)most < (float)LEAST)
         return false;
     luminance =
@@ -69,6 +81,7 @@ static void close_run(const struct listing *listing, struct open *open)
 static void list_pixel(const struct listing *listing, struct open *open, int x, int y)
 {
     const struct rf_light_grid *grid = listing->estimate->grid;
+    const int width = grid->photo->width;
     float light[3];
 
     if (open->run.count &&
@@ -80,8 +93,8 @@ static void list_pixel(const struct listing *listing, struct open *open, int x, 
         open->run.x = (uint16_t)x;
         open->run.y = (uint16_t)y;
         open->run.size =
-            (uint8_t)rf_clipped_size(grid, (int)((int64_t)x * grid->width / grid->photo->width),
-                                     (int)((int64_t)y * grid->height / grid->photo->height));
+            (uint8_t)rf_clipped_size(grid, rf_grid_cell(x, width, grid->width),
+                                     rf_grid_cell(y, grid->photo->height, grid->height));
     }
     open->run.count++;
     for (int c = 0; c < 3; c++)

@@ -434,6 +434,22 @@ struct refocus_renderer *prepared(const struct picture *picture, float blur, int
     return renderer;
 }
 
+void render_once(const struct refocus_renderer_params *limits, const struct picture *picture,
+                 const struct refocus_settings *settings, uint8_t *out)
+{
+    const int width = picture->width;
+    const struct refocus_image photo = picture_image(picture);
+    const struct refocus_disparity disparity = picture_disparity(picture);
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, width, picture->height, 3 * width);
+    struct refocus_renderer *renderer;
+
+    assert_int_equal(refocus_renderer_create(&renderer, limits), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, settings, &image), REFOCUS_OK);
+    refocus_renderer_destroy(&renderer);
+}
+
 void render_style(struct refocus_renderer *renderer, const struct picture *picture,
                   const struct style *style, float focus, float blur, uint8_t *out)
 {

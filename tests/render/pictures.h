@@ -75,6 +75,11 @@ struct refocus_aperture *style_aperture(const struct style *style);
 /* A prepared renderer, threads as given; fails the test when it cannot. */
 struct refocus_renderer *prepared(const struct picture *picture, float blur, int threads);
 
+/* Renders all of the picture, to R G B without padding, by a renderer of its own; fails the test
+ * when it cannot. */
+void render_once(const struct refocus_renderer_params *limits, const struct picture *picture,
+                 const struct refocus_settings *settings, uint8_t *out);
+
 /* Renders all of the picture to R G B without padding; fails the test when it cannot. */
 void render_style(struct refocus_renderer *renderer, const struct picture *picture,
                   const struct style *style, float focus, float blur, uint8_t *out);

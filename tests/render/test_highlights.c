@@ -385,21 +385,13 @@ static void render_night(const struct picture *p, float blur, float most, uint32
 {
     struct refocus_renderer_params limits =
         refocus_renderer_params_default(p->width, p->height, most);
-    const struct refocus_image photo = picture_image(p);
-    const struct refocus_disparity disparity = picture_disparity(p);
-    const struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, p->width, p->height, 3 * p->width);
-    struct refocus_settings params = refocus_settings_default(0.5f, blur);
-    struct refocus_renderer *renderer;
+    struct refocus_settings settings = refocus_settings_default(0.5f, blur);
 
     limits.threads = threads;
     limits.in_place = in_place;
-    params.highlights.gain = 8;
-    params.render.rays = 24;
-    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
-    assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
-    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
-    refocus_renderer_destroy(&renderer);
+    settings.highlights.gain = 8;
+    settings.render.rays = 24;
+    render_once(&limits, p, &settings, out);
 }
 
 static void expect_same_night(uint32_t seed, int w, int h, float blur)
