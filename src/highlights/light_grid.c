@@ -68,21 +68,20 @@ static int first_of(int cell, int pixels, int cells)
     return (int)(((int64_t)cell * pixels + cells - 1) / cells);
 }
 
-void rf_grid_colour(const struct rf_light_grid *grid, int x, int y, int colour[3])
+struct rf_grid_row rf_grid_row(const struct rf_light_grid *grid, int y)
 {
     const struct rf_photo_source *p = grid->photo;
+    struct rf_grid_row row = {.code = NULL};
 
     if (rf_has_planes(p)) {
         for (int c = 0; c < 3; c++)
-            colour[c] = p->light.channel[c < grid->channels ? c : 0][y * p->light.stride + x];
+            row.light[c] = p->light.channel[c < grid->channels ? c : 0] + y * p->light.stride;
     } else {
-        const struct rf_order o = rf_order_of(p->image->format);
-        const uint8_t *code = p->image->plane[0] + y * p->image->stride[0] + (ptrdiff_t)x * o.bytes;
-
-        colour[0] = p->transfer->to_light[code[o.r]];
-        colour[1] = p->transfer->to_light[code[o.g]];
-        colour[2] = p->transfer->to_light[code[o.b]];
+        row.code = p->image->plane[0] + y * p->image->stride[0];
+        row.order = rf_order_of(p->image->format);
+        row.to_light = p->transfer->to_light;
     }
+    return row;
 }
 
 bool rf_grid_may_be_clipped(const struct rf_light_grid *grid, int x, int y, int n)
@@ -118,6 +117,8 @@ static void set_tables(struct rf_light_grid *grid, const struct rf_transfer *lin
     struct rf_grid_tables *t = grid->tables;
     const struct rf_transfer *own = grid->photo->transfer;
 
+    for (int x = 0; x <= grid->width; x++)
+        t->first[x] = first_of(x, grid->photo->width, grid->width);
     t->clipped = 0;
     for (int i = 0; i < RF_CODES_OF_LIGHT; i++) {
         const int code = own->to_code[4 * i], v = part(code, 242, 254);
@@ -152,21 +153,23 @@ static void add_unclipped(const struct rf_light_grid *grid, int y, int row)
 {
     const struct rf_grid_tables *t = grid->tables;
     const int across = rf_grid_size(grid->width, 1);
+    const struct rf_grid_row pixels = rf_grid_row(grid, y);
+    const int step = grid->step, clipped = t->clipped;
     float *sum[RF_GRID_MEASURES];
     int x = 0;
 
     for (int i = 0; i < RF_GRID_MEASURES; i++)
         sum[i] = grid->plane[i].scale[1] + (ptrdiff_t)row * across;
     for (int cx = 0; cx < across; cx++) {
-        const int end =
-            first_of(rf_smaller(2 * cx + 2, grid->width), grid->photo->width, grid->width);
+        const int end = t->first[rf_smaller(2 * cx + 2, grid->width)];
         int light[3] = {0}, luminance = 0, log = 0;
 
-        for (; x < end; x += grid->step) {
-            int colour[3], left, own;
+        for (; x < end; x += step) {
+            int colour[3], left = 256, own;
 
-            rf_grid_colour(grid, x, y, colour);
-            left = 256 - t->soft[greatest(colour)];
+            rf_grid_colour(&pixels, x, colour);
+            if (greatest(colour) > clipped)
+                left -= t->soft[greatest(colour)];
             for (int c = 0; c < 3; c++) {
                 colour[c] = t->linear[colour[c]];
                 light[c] += (left * colour[c]) >> 8;
@@ -186,11 +189,12 @@ static void add_unclipped(const struct rf_light_grid *grid, int y, int row)
 static void add_clipped(const struct rf_light_grid *grid, int x, int y, int n, int cy)
 {
     const struct rf_grid_tables *t = grid->tables;
+    const struct rf_grid_row pixels = rf_grid_row(grid, y);
 
     for (const int end = x + n; x < end; x++) {
         int colour[3], most, cx, soft;
 
-        rf_grid_colour(grid, x, y, colour);
+        rf_grid_colour(&pixels, x, colour);
         most = greatest(colour);
         soft = t->soft[most];
         if (soft == 0)
@@ -213,8 +217,9 @@ static void divide(const struct rf_light_grid *grid, enum rf_grid_measure measur
                    float unit, bool sampled)
 {
     const struct rf_grid_plane *plane = &grid->plane[measure];
-    const int k = plane->first, width = grid->photo->width, height = grid->photo->height;
+    const int k = plane->first, height = grid->photo->height;
     const int across = rf_grid_size(grid->width, k), step = sampled ? grid->step : 1;
+    const int *const first = grid->tables->first;
     float *at = plane->scale[k] + (ptrdiff_t)row * across;
     const int y0 = first_of(row << k, height, grid->height);
     const int y1 = first_of(rf_smaller((row + 1) << k, grid->height), height, grid->height);
@@ -222,10 +227,9 @@ static void divide(const struct rf_light_grid *grid, enum rf_grid_measure measur
 
     for (int x = 0; x < across; x++) {
         if (at[x] > 0) { /* few are, of those that count what is clipped */
-            const int x0 = first_of(x << k, width, grid->width);
-            const int x1 = first_of(rf_smaller((x + 1) << k, grid->width), width, grid->width);
+            const int end = first[rf_smaller((x + 1) << k, grid->width)];
 
-            at[x] /= (float)rf_larger(multiples_in(x0, x1, step) * rows, 1) * unit;
+            at[x] /= (float)rf_larger(multiples_in(first[x << k], end, step) * rows, 1) * unit;
         }
     }
 }

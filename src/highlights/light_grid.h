@@ -48,6 +48,7 @@ struct rf_grid_tables {
     uint16_t plateau[RF_CODES_OF_LIGHT], white[RF_CODES_OF_LIGHT]; /* Q8 */
     uint16_t log[RF_CODES_OF_LIGHT]; /* by linear light: (log2(light + 0.003) + 9), Q8 */
     int clipped;                     /* s is 0 of light up to this one */
+    int first[RF_GRID_SIDE + 1];     /* the first pixel of each column of cells, and the end */
 };
 
 struct rf_light_grid {
@@ -103,8 +104,29 @@ static inline int rf_grid_cell(int i, int pixels, int cells)
     return (int)((int64_t)i * cells / pixels);
 }
 
+/* A row of the photo: its planes of light, or its codes. */
+struct rf_grid_row {
+    const uint16_t *light[3];
+    const uint8_t *code; /* or NULL */
+    struct rf_order order;
+    const uint16_t *to_light;
+};
+struct rf_grid_row rf_grid_row(const struct rf_light_grid *grid, int y);
+
 /* The channels of a pixel, Q12 in the photo's blend. */
-void rf_grid_colour(const struct rf_light_grid *grid, int x, int y, int colour[3]);
+static inline void rf_grid_colour(const struct rf_grid_row *row, int x, int colour[3])
+{
+    if (!row->code) {
+        for (int c = 0; c < 3; c++)
+            colour[c] = row->light[c][x];
+    } else {
+        const uint8_t *code = row->code + (ptrdiff_t)x * row->order.bytes;
+
+        colour[0] = row->to_light[code[row->order.r]];
+        colour[1] = row->to_light[code[row->order.g]];
+        colour[2] = row->to_light[code[row->order.b]];
+    }
+}
 
 /* Whether any of n pixels of a row may be clipped. */
 bool rf_grid_may_be_clipped(const struct rf_light_grid *grid, int x, int y, int n);

@@ -34,7 +34,8 @@ static float whiteness(const int colour[3])
 
 /* The light that a pixel has lost, Q12. Half of it has its own hue, half that of what is around
  * the clipped pixels. Returns false if it is hardly any. */
-static bool lost_at(const struct rf_estimate *estimate, int x, int y, float light[3])
+static bool lost_at(const struct rf_estimate *estimate, const struct rf_grid_row *row, int x, int y,
+                    float light[3])
 {
     const struct rf_light_grid *grid = estimate->grid;
     const int cx = rf_grid_cell(x, grid->photo->width, grid->width);
@@ -42,7 +43,7 @@ static bool lost_at(const struct rf_estimate *estimate, int x, int y, float ligh
     int colour[3], most;
     float gain, hue[3], luminance;
 
-    rf_grid_colour(grid, x, y, colour);
+    rf_grid_colour(row, x, colour);
     most = rf_larger(colour[0], rf_larger(colour[1], colour[2]));
     if (most <= grid->tables->clipped)
         return false;
@@ -78,7 +79,8 @@ static void close_run(const struct listing *listing, struct open *open)
     memset(open, 0, sizeof *open);
 }
 
-static void list_pixel(const struct listing *listing, struct open *open, int x, int y)
+static void list_pixel(const struct listing *listing, const struct rf_grid_row *row,
+                       struct open *open, int x, int y)
 {
     const struct rf_light_grid *grid = listing->estimate->grid;
     const int width = grid->photo->width;
@@ -87,7 +89,7 @@ static void list_pixel(const struct listing *listing, struct open *open, int x, 
     if (open->run.count &&
         (open->run.x + open->run.count != x || open->run.count == RF_HIGHLIGHT_RUN))
         close_run(listing, open);
-    if (!lost_at(listing->estimate, x, y, light))
+    if (!lost_at(listing->estimate, row, x, y, light))
         return;
     if (!open->run.count) {
         open->run.x = (uint16_t)x;
@@ -111,6 +113,7 @@ static void list_part(void *context, int item, int worker)
 
     (void)worker;
     for (int y = item * RF_HIGHLIGHT_ROWS; y < end && !rf_cancelled(grid->exec); y++) {
+        const struct rf_grid_row row = rf_grid_row(grid, y);
         struct open open = {.run = {.count = 0}};
 
         for (int x = 0; x < width; x += RUN) {
@@ -119,7 +122,7 @@ static void list_part(void *context, int item, int worker)
             if (!rf_grid_may_be_clipped(grid, x, y, n))
                 continue;
             for (int i = 0; i < n; i++)
-                list_pixel(listing, &open, x + i, y);
+                list_pixel(listing, &row, &open, x + i, y);
         }
         close_run(listing, &open);
     }

@@ -2,17 +2,23 @@
 #ifndef RF_LOG2_H
 #define RF_LOG2_H
 
-#include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 #include "support/exp_minus.h"
 
-/* log2(x) of 0 < x < infinity from IEEE operations alone, as rf_exp_minus(): x is m 2^e with m
- * between 0.7 and 1.5, and log2(m) a series in (m - 1) / (m + 1), good to 1e-9. */
+/* log2(x) of normal x > 0 from IEEE operations alone, as rf_exp_minus(): x is m 2^e with m between
+ * 0.75 and 1.5, and log2(m) a series in (m - 1) / (m + 1), good to 1e-9. */
 static inline double rf_log2(double x)
 {
+    uint64_t bits;
     int exponent;
-    double m = frexp(x, &exponent), t, u; /* 0.5 to 1, exact */
+    double m, t, u;
 
+    memcpy(&bits, &x, sizeof bits);
+    exponent = (int)(bits >> 52) - 1022;
+    bits = (bits & ((UINT64_C(1) << 52) - 1)) | UINT64_C(1022) << 52;
+    memcpy(&m, &bits, sizeof m); /* 0.5 to 1 */
     if (m < 0.75) {
         m *= 2;
         exponent--;
