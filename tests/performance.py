@@ -3,8 +3,9 @@
 
 usage: performance.py BUILD_DIR [--repeat N] [--out FILE]
 
-BUILD_DIR holds a release build. The picture is the shipped scene, 720x540, K = 20; the table of
-qualities takes the scenes in $REFOCUS_SCENES, or in ../shared/scenes beside the source tree.
+BUILD_DIR holds a release build, and the machine should be idle. The picture is the portrait of
+examples/data, 720x540, K = 20; the tables of qualities and of large blurs take all scenes there, or
+those in the folder that $REFOCUS_SCENES names.
 """
 import argparse
 import json
@@ -15,9 +16,9 @@ import tempfile
 from pathlib import Path
 
 import sections
+from pages import DATA, SOURCE
 
-SOURCE = Path(__file__).resolve().parents[1]
-SCENE = SOURCE / "examples" / "data" / "portrait"
+SCENE = DATA / "portrait"
 
 # method, options, repeats: 1 for what takes seconds
 RUNS = [
@@ -28,6 +29,8 @@ RUNS = [
     ("search", ["--rays", "64", "--iterations", "1"], 0),
     ("search", ["--rays", "64", "--iterations", "2"], 0),
     ("search", ["--rays", "full", "--iterations", "1"], 3),
+    ("search", ["--rays", "full", "--iterations", "1", "--blend", "stored"], 3),
+    ("search", ["--rays", "full", "--iterations", "1", "--blend", "stored", "--sigma", "128"], 3),
     ("raytrace", ["--rays", "full"], 1),
 ]
 
@@ -76,11 +79,8 @@ def methods(refocus, repeat_most):
 
 def scene_rows(scenes):
     """Frames that the table of qualities has: scene, K, quality."""
-    small = sorted(scenes.glob("*/disparity.png")) if scenes.is_dir() else []
-    names = [p.parent for p in small] or [SCENE]
-    for path in names:
-        focus = json.loads((path / "scene.json").read_text(encoding="utf-8"))["gt"][0]["df"] \
-            if (path / "scene.json").is_file() else 0.689
+    for path in sorted(p.parent for p in scenes.glob("*/scene.json")):
+        focus = json.loads((path / "scene.json").read_text(encoding="utf-8"))["gt"][0]["df"]
         for quality in ("preview", "standard", "best"):
             for blur in (20, 40) if path.name.endswith("1080") else (20,):
                 yield path, focus, blur, quality
@@ -255,14 +255,15 @@ def main():
     args = parser.parse_args()
     refocus = args.build / "platform" / "cli" / "refocus"
 
-    scenes = Path(os.environ.get("REFOCUS_SCENES", SOURCE.parent / "shared" / "scenes"))
+    scenes = Path(os.environ.get("REFOCUS_SCENES", DATA))
+    if not list(scenes.glob("*/scene.json")):
+        sys.exit(f"performance.py: no scenes in {scenes}: set REFOCUS_SCENES to their folder")
 
     sections.put(args.out, "methods", "tests/performance.py", methods(refocus, args.repeat))
     sections.put(args.out, "qualities", "tests/performance.py",
                  qualities(refocus, scenes, args.repeat))
-    if scenes.is_dir():
-        sections.put(args.out, "blurs", "tests/performance.py",
-                     large_blurs(refocus, scenes, args.repeat))
+    sections.put(args.out, "blurs", "tests/performance.py",
+                 large_blurs(refocus, scenes, args.repeat))
     sections.put(args.out, "large", "tests/performance.py", large(refocus, 5))
     sections.put(args.out, "frames", "tests/performance.py", frames(refocus, args.repeat))
     sections.put(args.out, "interactive", "tests/performance.py", interactive(args.build))

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Puts the figures of tests/quality.md and tests/performance.md into README.md's table.
 
-Run tests/quality/run.py and tests/performance.py first, the latter on an idle machine.
+usage: readme_measured.py [--check]
+
+--check says whether the table is of these pages, and writes nothing. tests/pages.sh makes them.
 """
 import re
-from pathlib import Path
+import sys
 
-SOURCE = Path(__file__).resolve().parents[1]
+from pages import SOURCE, cells
 
 # run in quality.md; method and options in performance.md, or a quality of the portrait; what it is
 ROWS = [
@@ -15,19 +17,20 @@ ROWS = [
     ("standard-off", None, "the same with `--highlights off`: no light added, as in the methods below"),
     ("standard", ("sweep", "--rays 64 --cpu c"), "the default in plain C"),
     ("best", ("quality", "best"), "`sweep`, quality `best`"),
-    ("search-T1-full", ("search", "--rays full --iterations 1", None),
-     "`search`, one test, every ray: the paper"),
+    ("paper", ("search", "--rays full --iterations 1 --blend stored --sigma 128"),
+     "the paper as written: `search`, one test, every ray, stored values weighted by eq. 5"),
+    ("paper-plain", ("search", "--rays full --iterations 1 --blend stored"),
+     "the same without eq. 5, which is what gives highlights more light there"),
+    ("sweep-paper", None, "`sweep` blended as the paper: every ray, stored values, eq. 5"),
+    ("search-T1-full", ("search", "--rays full --iterations 1"),
+     "the paper's search, blended as the default: linear light, no eq. 5"),
     ("search-T2", ("search", "--rays 64 --iterations 2"), "`search`, two tests, 64 rays"),
     ("raytrace-full", ("raytrace", "--rays full"), "`raytrace`, every ray"),
 ]
 
 
-def cells(line):
-    return [cell.strip() for cell in line.strip().strip("|").split("|")]
-
-
 def quality():
-    """Scores of the first table, the means of the twelve views: run -> PSNR, edges, SSIM."""
+    """Scores of the first table, the means of the views: run -> PSNR, edges, SSIM."""
     text = (SOURCE / "tests" / "quality.md").read_text(encoding="utf-8")
     table = text.split("## Methods")[1].split("\n\n")[1]
     return {cells(line)[0].strip("`"): cells(line)[2:5] for line in table.splitlines()[2:]}
@@ -62,9 +65,13 @@ def main():
     block = "\n".join(out) + f"\n\n720x540, K = 20; whole frames of the portrait, the best of 20 and more: {machine}.\n"
     readme = SOURCE / "README.md"
     text = readme.read_text(encoding="utf-8")
-    text = re.sub(r"(<!-- measured:.*?-->\n).*?(<!-- /measured -->)",
+    new = re.sub(r"(<!-- measured:.*?-->\n).*?(<!-- /measured -->)",
                   lambda m: m.group(1) + block + m.group(2), text, flags=re.S)
-    readme.write_text(text, encoding="utf-8")
+    if "--check" not in sys.argv:
+        readme.write_text(new, encoding="utf-8")
+    elif new != text:
+        sys.exit("README.md: its table is not of tests/quality.md and tests/performance.md: "
+                 "tests/pages.sh BUILD readme")
 
 
 if __name__ == "__main__":

@@ -4,11 +4,12 @@
 # Builds with gcc on Debian 12, installing what is missing, and runs the tests of that build: five
 # minutes on two cores. The last line is 'N passed, N failed, N skipped', the sum over all
 # builds; the exit status is 1 when anything failed.
-#   --full  also clang, clang-tidy, sanitizers, AArch64 and ARMv7 (emulated), builds with parts left out,
-#           cameras in a virtual machine, the corpora of the fuzz targets, the quickstart
-#   --long  also runs all tests under the thread sanitizer, lets each fuzz target search for
-#           a minute, opens and closes a V4L2 camera 10,000 times, builds the module of
-#           OpenCV's contrib filters, and compiles against each release of libcamera
+#   --full  also the pages of scores, clang, clang-tidy, sanitizers, AArch64 and ARMv7 (emulated),
+#           builds with parts left out, cameras in a virtual machine, the quickstart
+#   --long  also runs all tests under the sanitizers and emulated, lets each fuzz target
+#           search for a minute, opens and closes a V4L2 camera 10,000 times, builds the module of
+#           OpenCV's contrib filters, compiles against each release of libcamera, and builds and
+#           tries the packages (wheel, subproject of meson, musl, Debian)
 # Builds are kept in $REFOCUS_BUILDS (build-tests in the source folder) and reused.
 set -u -o pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -21,14 +22,14 @@ for argument; do
         --full:*) mode=full ;;
         --long:*) mode=long ;;
         *)
-            sed -n '2,12s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+            sed -n '2,13s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
             [ "$argument" = --help ]
             exit $(($? * 2))
             ;;
     esac
 done
 . "$top/tests/packages.sh"
-passed=0 failed=0 skipped=0
+passed=0 failed=0 skipped=0 suites=()
 mkdir -p "$builds"
 
 finish() {
@@ -37,7 +38,11 @@ finish() {
     exit
 }
 
-say() { printf '== %s  (%s)\n' "$1" "$(date +%H:%M:%S)"; }
+# say STAGE: begins one
+say() {
+    suites=()
+    printf '== %s  (%s)\n' "$1" "$(date +%H:%M:%S)"
+}
 
 # skip STAGE WHY
 skip() {
@@ -52,26 +57,33 @@ fail() {
     failed=$((failed + 1))
 }
 
-# build STAGE MESON_ARGUMENTS...: sets up anew or again, and compiles
+# build STAGE MESON_ARGUMENTS...: sets up anew or again, and compiles what the tests of the suites
+# in `suites` need, all when there are none
 build() {
-    local dir=$builds/$1 log=$builds/$1.log again=()
+    local dir=$builds/$1 log=$builds/$1.log again=() parts=()
     shift
     [ ! -e "$dir/build.ninja" ] || again=(--reconfigure)
     if ! meson setup "${again[@]}" "$dir" "$top" "$@" >"$log" 2>&1; then
         rm -rf "$dir"
         meson setup "$dir" "$top" "$@" >"$log" 2>&1 || { fail "${dir##*/}: meson setup" "$log"; return 1; }
     fi
-    ninja -C "$dir" >>"$log" 2>&1 || { fail "${dir##*/}: compiling" "$log"; return 1; }
+    [ ${#suites[@]} = 0 ] || mapfile -t parts < <("$top/tests/needed.py" "$dir" "${suites[@]}")
+    ninja -C "$dir" "${parts[@]}" >>"$log" 2>&1 ||
+        { fail "${dir##*/}: compiling" "$log"; return 1; }
     if grep -q 'warning:' "$log"; then
         grep 'warning:' "$log" | sort -u | head -n 20 >"$log.warnings"
         fail "${dir##*/}: the compiler warns" "$log.warnings"
     fi
 }
 
-# run STAGE MESON_TEST_ARGUMENTS...: runs tests and adds up their results
+# run STAGE MESON_TEST_ARGUMENTS...: runs the tests, of `suites` if there are any, and adds up
+# their results
 run() {
-    local dir=$builds/$1 p f s
+    local dir=$builds/$1 p f s suite
     shift
+    for suite in "${suites[@]}"; do
+        set -- "$@" --suite "$suite"
+    done
     rm -f "$dir"/meson-logs/testlog*.json
     "${wrap[@]}" meson test -C "$dir" --no-rebuild --print-errorlogs "$@" \
         >"$dir/tests.log" 2>&1
@@ -88,6 +100,11 @@ run() {
 }
 wrap=()
 
+# run_brief ...: as run, but for --long with fewer tests of the command
+run_brief() {
+    if [ "$mode" = long ]; then run "$@"; else REFOCUS_BRIEF=1 run "$@"; fi
+}
+
 # same_bytes STAGE: its pictures against those of the gcc build
 same_bytes() {
     if [ ! -s "$builds/$1/digest" ]; then
@@ -101,9 +118,20 @@ same_bytes() {
     fi
 }
 
+# Kernels take most of the time to compile with sanitizers: of the vector ones AVX2 alone, as the
+# same source makes the others.
+one_set=()
+[ "$(uname -m)" != x86_64 ] || one_set=(-Dsimd_sets=avx2)
+
 gcc_stage() {
     say 'gcc, release: all tests'
     CC=gcc CXX=g++ build gcc --buildtype=release && run gcc
+}
+
+# As on threads of callers, which may have little: 64 KiB for main() and all threads.
+small_stack_stage() {
+    say 'the core on stacks of 64 KiB'
+    run gcc --suite render --suite papers --suite core --wrapper 'prlimit --stack=65536'
 }
 
 tidy_stage() {
@@ -116,6 +144,17 @@ tidy_stage() {
         77) skip clang-tidy 'it is not there' ;;
         *) fail 'clang-tidy' "$log" ;;
     esac
+}
+
+# A page that is older than what it measures fails with the rows that moved.
+pages_stage() {
+    local log=$builds/pages.log
+    say 'pages of scores: as this tree renders'
+    if "$top/tests/pages.sh" --check "$builds/gcc" >"$log" 2>&1; then
+        passed=$((passed + 1))
+    else
+        fail 'a page of scores' "$log"
+    fi
 }
 
 # As somebody meets it who has just cloned it.
@@ -139,15 +178,16 @@ quickstart_stage() {
 }
 
 clang_stage() {
-    say 'clang, release: all tests, the same pictures as gcc'
+    say 'clang, release: all but the command, the same pictures as gcc'
     need_packages clang || { skip clang 'no clang'; return; }
     CC=clang CXX=clang++ build clang --buildtype=release || return
-    run clang
+    run clang --no-suite cli --no-suite scripts
     same_bytes clang
 }
 
 minimal_stage() {
     say 'every optional feature off: the core alone'
+    suites=(processors headers file capture strokes fuzz)
     CC=gcc CXX=g++ build minimal --buildtype=release -Dauto_features=disabled \
         -Dtests=enabled || return
     run minimal
@@ -173,31 +213,33 @@ contrib_stage() {
 memory_stage() {
     say 'address and undefined behaviour sanitizers: all tests'
     CC=gcc CXX=g++ build asan --buildtype=debugoptimized -Db_sanitize=address,undefined \
-        -Db_lundef=false -Dc_args=-fno-sanitize-recover=all || return
+        -Db_lundef=false -Dc_args=-fno-sanitize-recover=all "${one_set[@]}" || return
     ASAN_OPTIONS=allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
         LSAN_OPTIONS=suppressions=$top/tests/lsan.supp:print_suppressions=0 \
-        run asan --timeout-multiplier 5
+        run_brief asan --timeout-multiplier 5
 }
 
 # The whole suite, most of which has one thread, takes a quarter of an hour of processor time.
+# Threads of OpenCV, libcamera and GLib are not ours to judge.
 thread_stage() {
-    local which=(--suite threads --timeout-multiplier 10)
-
-    [ "$mode" != long ] || which=(--timeout-multiplier 20)
     say "thread sanitizer: $([ "$mode" = long ] && echo all tests || echo the tests with threads)"
+    [ "$mode" = long ] || suites=(threads)
     CC=gcc CXX=g++ build tsan --buildtype=debugoptimized -Db_sanitize=thread -Db_lundef=false \
-        || return
+        -Dopencv=disabled -Dlibcamera=disabled -Dgstreamer=disabled -Dexamples=false \
+        "${one_set[@]}" || return
     # gcc 12's run time does not know kernels that place memory more randomly.
     if setarch -R true 2>/dev/null; then
         wrap=(setarch -R)
     fi
-    TSAN_OPTIONS=halt_on_error=1:suppressions=$top/tests/tsan.supp run tsan "${which[@]}"
+    TSAN_OPTIONS=halt_on_error=1:suppressions=$top/tests/tsan.supp run_brief tsan --timeout-multiplier 20
     wrap=()
 }
 
-# cross_stage STAGE ARCH PACKAGE
+# cross_stage STAGE ARCH PACKAGE: emulated, a test takes ten times as long, so that of the tests
+# those run whose answer the processor could change; --long has the others.
 cross_stage() {
-    say "$1 by cross compiler, emulated: the core's tests, the same pictures as gcc"
+    say "$1 by cross compiler, emulated: the same pictures as gcc"
+    [ "$mode" = long ] || suites=(processors)
     need_packages qemu-user "$3" || { skip "$1" "no $3 or qemu-user"; return; }
     "$top/tests/cross/cmocka.sh" "$2" "$builds/cmocka-$2" >"$builds/cmocka-$2.log" 2>&1 ||
         { skip "$1" "no cmocka for $2, see $builds/cmocka-$2.log"; return; }
@@ -244,15 +286,40 @@ libcamera_stage() {
     passed=$((passed + $(grep -c '^ok' "$log")))
 }
 
+# try_package NAME PROGRAM ARGUMENTS...: as somebody who builds or installs the library
+try_package() {
+    local log=$builds/$1.log name=$1
+    shift
+    "$@" >"$log" 2>&1
+    case $? in
+        0) passed=$((passed + 1)) ;;
+        77) skip "$name" "see $log" ;;
+        *) fail "$name" "$log" ;;
+    esac
+}
+
+# Without vector kernels, which take most of the time to compile: --long alone all the same.
+packages_stage() {
+    say 'packages: a wheel, a subproject of meson, musl'
+    need_packages musl-tools python3-pip python3-wheel ||
+        { skip packages 'what builds them cannot be had'; return; }
+    try_package wheel "$top/tests/python/wheel.sh" "$top" "$builds/wheel" /usr/bin/python3 \
+        -Dsimd=disabled
+    try_package subproject "$top/tests/consumers/subproject.sh" "$top" "$builds/subproject" compile
+    try_package musl "$top/tests/consumers/musl.sh" "$top" "$builds/musl"
+    need_packages debhelper dh-python lintian || { skip debian 'no debhelper'; return; }
+    try_package debian "$top/tests/consumers/debian.sh" "$top" "$builds/debian"
+}
+
+# The corpora, which every build's tests run, under clang's sanitizers, and a minute of searching each.
 fuzz_stage() {
     local target name
-    say 'fuzz targets: their corpora again'
+    say 'fuzz targets'
     need_packages clang libclang-rt-dev || { skip fuzz 'no clang with libFuzzer'; return; }
     CC=clang CXX=clang++ build fuzz --buildtype=debugoptimized -Dfuzz=true \
         -Db_sanitize=address,undefined -Db_lundef=false -Dexamples=false \
-        -Dc_args=-fno-sanitize-recover=all || return
+        -Dc_args=-fno-sanitize-recover=all "${one_set[@]}" || return
     run fuzz --suite fuzz --timeout-multiplier 5
-    [ "$mode" = long ] || return
     for target in $(find "$builds/fuzz/tests/fuzz" -name 'fuzz-*' -type f -perm -u+x | sort); do
         name=${target##*/fuzz-}
         say "fuzz target $name: $fuzz_seconds s"
@@ -273,14 +340,23 @@ need_packages meson ninja-build pkg-config gcc g++ libc6-dev python3 libcmocka-d
 need_packages libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libopencv-dnn-dev \
     libturbojpeg0-dev libpng-dev libexpat1-dev libheif-dev libjansson-dev ||
     skip 'picture files and the refocus command' 'their libraries are missing'
+need_packages libtiff-dev libopenexr-dev libwebp-dev libjxl-dev libraw-dev ||
+    skip 'TIFF, OpenEXR, WebP, JPEG XL and camera raw' 'their libraries are missing'
 need_packages libcamera-dev || skip libcamera 'its library is missing'
 need_packages libsdl2-dev xvfb xdotool || skip 'the window' 'SDL2, Xvfb or xdotool is missing'
+need_packages python3-dev python3-numpy python3-distributed ||
+    skip 'the package for Python' 'Python.h, numpy or Dask is missing'
+need_packages libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev gstreamer1.0-tools \
+    gstreamer1.0-plugins-base gstreamer1.0-plugins-good || skip 'the element of GStreamer' 'GStreamer is missing'
+need_packages cmake || skip 'a program built by CMake' 'no cmake'
 need_packages abigail-tools || skip 'the ABI of the last release' 'no abidiff'
 need_packages clang-format || skip 'the layout of the source' 'no clang-format'
 
 gcc_stage
 if [ "$mode" != one ]; then
+    small_stack_stage
     tidy_stage
+    pages_stage
     quickstart_stage
     clang_stage
     camera_stage
@@ -290,7 +366,6 @@ if [ "$mode" != one ]; then
     thread_stage
     cross_stage aarch64 arm64 g++-aarch64-linux-gnu
     cross_stage armv7 armhf g++-arm-linux-gnueabihf
-    fuzz_stage
 fi
-[ "$mode" != long ] || { contrib_stage; libcamera_stage; }
+[ "$mode" != long ] || { fuzz_stage; packages_stage; contrib_stage; libcamera_stage; }
 finish

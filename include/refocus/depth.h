@@ -133,6 +133,10 @@ struct refocus_repair_params {
     uint8_t *confidence;         /**< receives a byte a sample: 255 = as measured, 0 = filled;
                                       may be NULL. For refocus_upsample() */
     ptrdiff_t confidence_stride; /**< bytes from a row to the next; may be negative */
+    void *memory;                /**< to work in, aligned for any type, of the caller: then nothing
+                                      is allocated, which suits depth frame after frame; NULL =
+                                      what is needed is allocated and freed */
+    size_t memory_bytes;         /**< how large that is: refocus_repair_memory() or more */
 };
 
 static inline struct refocus_repair_params refocus_repair_params_default(void)
@@ -145,10 +149,18 @@ static inline struct refocus_repair_params refocus_repair_params_default(void)
 }
 
 /**
+ * Bytes of memory that refocus_depth_repair() works in at the most: 458,752 and 1 a sample, 5 with
+ * @p speckle above 1. 0 where a side is not 1 to REFOCUS_MAX_SIDE, or @p speckle out of its range.
+ * Thread-safe.
+ */
+REFOCUS_API uint64_t refocus_repair_memory(int32_t width, int32_t height, int32_t speckle);
+
+/**
  * refocus_depth_to_disparity() that also removes specks and says what was filled. Time
  * and memory are linear in the number of samples: 5 bytes each at most.
  *
- * @return as refocus_depth_to_disparity(). Thread-safe.
+ * @return as refocus_depth_to_disparity(); REFOCUS_ERR_ARGUMENT also when params->memory is less
+ *         than refocus_repair_memory() or not aligned. Thread-safe.
  */
 REFOCUS_API int refocus_depth_repair(const struct refocus_depth_map *map,
                                      const struct refocus_repair_params *params,

@@ -24,15 +24,42 @@ enum refocus_format {
     REFOCUS_FORMAT_I420 = 7,  /**< 4:2:0: planes of Y, U and V; also called YUV420,
                                    YU12 */
     REFOCUS_FORMAT_YUYV = 8,  /**< 4:2:2 in plane 0: Y U Y V for two pixels */
+
+    /* Deep formats: samples in the machine's byte order at any address, alpha not
+     * premultiplied, transfer and white as struct refocus_image says. */
+    REFOCUS_FORMAT_RGB16 = 9,       /**< 6 bytes a pixel: R, G, B of 16 bits, 0 to 65535 */
+    REFOCUS_FORMAT_RGBA16 = 10,     /**< 8 bytes a pixel */
+    REFOCUS_FORMAT_RGB_HALF = 11,   /**< 6 bytes a pixel: floats of 16 bits, IEEE 754 */
+    REFOCUS_FORMAT_RGBA_HALF = 12,  /**< 8 bytes a pixel */
+    REFOCUS_FORMAT_RGB_FLOAT = 13,  /**< 12 bytes a pixel: floats of 32 bits */
+    REFOCUS_FORMAT_RGBA_FLOAT = 14, /**< 16 bytes a pixel */
+    REFOCUS_FORMAT_P010 = 15,       /**< 4:2:0 of 16 bits, 10 of them used, the upper ones: plane 0
+                                         of Y, plane 1 of U V */
+    REFOCUS_FORMAT_P016 = 16,       /**< P010 with all 16 bits used */
+};
+
+/** The curve from stored values, 0 to 1 (integers by their largest; floats as they are), to
+ *  light, of deep formats. Of others it is sRGB's, or another blend of struct
+ *  refocus_render_params. */
+enum refocus_transfer {
+    REFOCUS_TRANSFER_DEFAULT = 0, /**< sRGB of 16 bits; linear of floats */
+    REFOCUS_TRANSFER_SRGB = 1,    /**< continued above 1 */
+    REFOCUS_TRANSFER_LINEAR = 2,  /**< stored values are light: they are averaged as they are */
+    REFOCUS_TRANSFER_BT709 = 3,
+    REFOCUS_TRANSFER_PQ = 4,    /**< SMPTE ST 2084: 1 is 10,000 cd/m2 */
+    REFOCUS_TRANSFER_HLG = 5,   /**< BT.2100, light of the scene: 1 is 1 */
+    REFOCUS_TRANSFER_GAMMA = 6, /**< light = value ^ gamma */
 };
 
 /** The weights of R, G and B in Y: Y = Kr R + (1 - Kr - Kb) G + Kb B. */
 enum refocus_matrix {
-    REFOCUS_MATRIX_BT601 = 0, /**< Kr = 0.299, Kb = 0.114 */
-    REFOCUS_MATRIX_BT709 = 1, /**< Kr = 0.2126, Kb = 0.0722 */
+    REFOCUS_MATRIX_BT601 = 0,  /**< Kr = 0.299, Kb = 0.114 */
+    REFOCUS_MATRIX_BT709 = 1,  /**< Kr = 0.2126, Kb = 0.0722 */
+    REFOCUS_MATRIX_BT2020 = 2, /**< Kr = 0.2627, Kb = 0.0593; of P010 and P016 alone */
 };
 
-/** Codes of black and white in Y, and of U and V. */
+/** Codes of black and white in Y, and of U and V: of 8 bits, or in units of the upper 8 of more;
+ * 255 stands for the largest code. */
 enum refocus_range {
     REFOCUS_RANGE_LIMITED = 0, /**< Y 16 to 235, U and V 128 +- 112 */
     REFOCUS_RANGE_FULL = 1,    /**< Y 0 to 255, U and V 128 +- 127.5 */
@@ -59,6 +86,12 @@ struct refocus_image {
     ptrdiff_t stride[3]; /**< bytes from a row to the next one below */
     uint32_t matrix;     /**< enum refocus_matrix; of formats with Y */
     uint32_t range;      /**< enum refocus_range; of formats with Y */
+    uint32_t transfer;   /**< enum refocus_transfer; of deep formats, 0 of others */
+    float gamma;         /**< 1 to 5, with REFOCUS_TRANSFER_GAMMA; 0 = 2.2 */
+    float white;         /**< light that a display shows as white, of deep formats: in cd/m2 of PQ,
+                              in what the curve gives of others, 2^-16 to 2^16; 0 = 203 of PQ, 0.265
+                              of HLG (75 % of the signal, BT.2408), else 1 */
+    uint32_t reserved;   /**< 0 */
 };
 
 /** A packed picture; see struct refocus_image for the arguments. */

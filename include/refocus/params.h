@@ -24,8 +24,9 @@
 extern "C" {
 #endif
 
-/** Largest blur radius K in pixels. */
-enum { REFOCUS_MAX_BLUR_RADIUS = 127 };
+/** Largest blur radius K in pixels, and that of methods that are not REFOCUS_METHOD_ANY_RADIUS; no
+ * spike of a star is longer than the latter. */
+enum { REFOCUS_MAX_BLUR_RADIUS = 944, REFOCUS_PLAIN_BLUR_RADIUS = 127 };
 
 /** The values that are averaged. */
 enum refocus_blend {
@@ -48,21 +49,27 @@ enum { REFOCUS_INPAINT_COUNT = 2 };
 /** For rays: every pixel of the aperture mask. */
 enum { REFOCUS_RAYS_FULL = -1 };
 
-/** Highlights: the light that clipping took. Of `sweep`. Start from
+/** Highlights: the light that clipping took. Of `sweep` and `search`. Start from
  *  refocus_highlight_params_default(). */
 struct refocus_highlight_params {
     uint32_t struct_size; /**< sizeof(struct refocus_highlight_params) */
-    float gain;           /**< light given back to small clipped highlights, 1 (none, the default)
-                               to 16 times white, 2^stops, where they are blurred by s; none
-                               where one channel of R, G, B alone is clipped. Of a disc or an
-                               iris, and with sigma from 1e6 on, drawn over the area of the
-                               aperture times s^2; else rays meet it */
+    float gain;           /**< light given back to clipped highlights, 1 (none, the default) to 16
+                               times white, 2^stops, where they are blurred by s, day or night;
+                               a part of it to what may be no highlight, and hardly any where
+                               one channel of R, G, B alone is clipped. By the search, and
+                               with sigma from 1e6 on, drawn over the area of the aperture
+                               times s^2; else rays meet it. Strip mode needs
+                               refocus_renderer_params.highlights */
     float estimate; /**< 0, the default: by gain. Above 0, up to 4: how much light each clipped
                                pixel has lost, up to 15 times white, is estimated from what the
                                lens spread around it, from its colour and from how bright the photo
-                               is, and this many times that is given back, but hardly any where one
-                               channel of R, G, B alone is clipped. gain is not looked at. Strip
-                               mode needs refocus_renderer_params.estimate */
+                               is, and this many times that is given back. gain is not looked at */
+    float steady;   /**< 0, the default, for stills. Above 0, up to 0.95, for frames of a video that
+                               are prepared and rendered one after the other: what small changes of
+                               the highlights' light from frame to frame, up to a third or so, are
+                               reduced by. They are most of what discs flicker by under noise and
+                               slow motion. The frame before is forgotten where size, blend or
+                               estimate change. Of the light that estimate or gain give back */
 };
 
 static inline struct refocus_highlight_params refocus_highlight_params_default(void)
@@ -125,7 +132,7 @@ struct refocus_look_params {
     uint32_t grain_seed;  /**< seed of the grain; any number; default 0 */
     int32_t star_spikes;  /**< scatter, sweep: of a star filter, 0 = none, the default, else 2 to
                                16; sweep gives them to small clipped highlights */
-    float star_length;    /**< pixels of a spike, 0 to REFOCUS_MAX_BLUR_RADIUS; default 24 */
+    float star_length;    /**< pixels of a spike, 0 to REFOCUS_PLAIN_BLUR_RADIUS; default 24 */
     float star_angle;     /**< degrees of the first spike, counter-clockwise from the right, -3600
                                to 3600; default 0 */
     float star_strength;  /**< share of the light that goes to the spikes, 0 to 1; sweep adds it;
@@ -260,6 +267,14 @@ static inline struct refocus_field_params refocus_field_params_default(float dis
     return params;
 }
 
+/** How light of a deep photo becomes 8 bits. Nothing else is dithered. */
+enum refocus_dither {
+    REFOCUS_DITHER_ORDERED = 0, /**< a code is rounded up in as many of 8 x 8 pixels of the photo as
+                                     light lies above it, by half a code at the most: no steps in
+                                     gradients. Light of a code is that code */
+    REFOCUS_DITHER_OFF = 1,     /**< to the nearest code */
+};
+
 /** How to refocus. Start from refocus_render_params_default(). */
 struct refocus_render_params {
     uint32_t struct_size;  /**< sizeof(struct refocus_render_params) */
@@ -294,9 +309,9 @@ struct refocus_render_params {
     const struct refocus_foveated_params *foveated;
     const struct refocus_diffusion_params *diffusion;
 
-    uint32_t inpaint;  /**< enum refocus_inpaint; default smooth. The renderer has to be made for
-                         texture: refocus_renderer_params.textured */
-    uint32_t reserved; /**< 0 */
+    uint32_t inpaint; /**< enum refocus_inpaint; default smooth. The renderer has to be made for
+                        texture: refocus_renderer_params.textured */
+    uint32_t dither;  /**< enum refocus_dither; default ordered */
 };
 
 /** Sweep, 64 rays, plain averages in linear light of what is in the photo, a disc, the whole

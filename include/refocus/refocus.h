@@ -15,6 +15,7 @@
 #include <refocus/scene.h>
 #include <refocus/settings.h>
 #include <refocus/sized.h>
+#include <refocus/stack.h>
 #include <refocus/status.h>
 #include <refocus/temporal.h>
 #include <refocus/version.h>

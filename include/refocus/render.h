@@ -6,7 +6,11 @@
  *     refocus_render             once a lens setting
  *
  * A renderer is reentrant: one thread at a time may call into one renderer,
- * except refocus_cancel(), which any thread may call. The result does not depend
+ * except refocus_cancel() and refocus_renderer_get_info(), which any thread may call. A second call
+ * while one runs, from another thread or from a callback, is refused with REFOCUS_ERR_BUSY and
+ * changes nothing; refocus_renderer_destroy() has to be the last call of all. No call takes more
+ * than 16 KiB of the stack of the thread that makes it, nor of a thread of `parallel`, but for
+ * refocus/papers.h. The result does not depend
  * on the number of threads, on the processor or, but for REFOCUS_DEPTH_EDGES_STEADY of
  * scene.h, on earlier calls.
  */
@@ -118,9 +122,12 @@ struct refocus_renderer_params {
                                renderers, and strip mode, refuse */
     uint32_t textured; /**< 1: with memory for REFOCUS_INPAINT_TEXTURED, which other renderers, and
                             strip mode, take as smooth */
-    uint32_t estimate; /**< 1: in strip mode, with memory for `estimate` of struct
-                            refocus_highlight_params, which strip mode takes as a gain of 1
-                            without. Renderers of whole photos always have it */
+    uint32_t highlights; /**< 1: in strip mode, with memory for finding highlights. Without, strip
+                            mode takes struct refocus_highlight_params and the star filter as
+                            off. Renderers of whole photos always have it */
+    uint32_t deep;      /**< 1: with memory for photos and pictures of deep formats (image.h), which
+                           other renderers, and strip mode, refuse */
+    uint32_t reserved2; /**< 0 */
 };
 
 static inline struct refocus_renderer_params
@@ -140,10 +147,11 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max
  * Bytes that a renderer with these parameters takes, all of them at its creation
  * (stacks of its threads not counted):
  *
- *     27 (W + 2P + 79) (H + 2P + 16) + 3 (W + 16) (H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20
+ *     27 (W + 2P + 79) (H + 2P + 16) + 3 (W + 16) (H + 16) + 4 T (W + R) + 620000 T
+ *     + 24 W + 12 H + 2^20
  *
- * with P = ceil(K) + 2 and T threads is never exceeded. On top of it comes the most that one
- * of params->methods needs:
+ * with P = ceil(K) + 2, T threads and R = 512, of K above 127, 236 and 472 twice that each, is
+ * never exceeded. On top of it comes the most that one of params->methods needs:
  *
  *     lightfield    1200 (W + 2P + 64) T + 2^12
  *     scatter       32 W H + 3 (4 P + 80) P^2 + 2^16
@@ -156,17 +164,19 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max
  * params->depth_edges takes up to 16 (W + 128) (H + 64) + 64 (W + H) + 2^18 more, and STEADY up to
  * 4 W H + 2^8 on top of it.
  *
- * params->behind takes up to 6 W H + 2^8 more, params->textured up to 80000 T.
+ * params->behind takes up to 6 W H + 2^8 more, params->textured up to 80000 T, params->deep up to
+ * 7 (W + 16) (H + 64) + 2^16.
  *
  * Strip mode, params->in_place, takes no more than
  *
- *     28 (S + 63) (S + 16) + 0.78 (W + 16) (H + 64) + 4 T (W + 512) + 24 P^2 + 2^17
+ *     28 (S + 63) (S + 16) + 0.78 (W + 16) (H + 64) + 4 T (W + R) + 620000 T
+ *     + 24 min(P, 129)^2 + 150000
  *
- * with S = 144 + 2N - M + max(M, 2P), M = P + 28 and N = max(M, 2P + 9), M and N rounded up to
- * multiples of 16: 1920x1080 with K = 40 takes less than 6,000,000 bytes. With
- * params->depth_edges, whose passes need the whole map, strip mode takes up to
+ * with S = 144 + 2N - M + max(M, 2P), M = P + 28, of K above 127 P + 148, and N = max(M, 2P + 9), M
+ * and N rounded up to multiples of 16: 1920x1080 with K = 40 takes less than 6,000,000 bytes for
+ * one thread. With params->depth_edges, whose passes need the whole map, strip mode takes up to
  * 32 (W + 128) (H + 64) + 2^18 more, and STEADY 4 W H + 2^8 on top of it. With
- * params->estimate it takes up to 24 min(W, 512) min(H, 512) + 2^16 more.
+ * params->highlights it takes up to 24 min(W, 512) min(H, 512) + 2^16 more.
  *
  * @return 0 if a parameter is out of its range. Thread-safe.
  */
@@ -188,15 +198,18 @@ REFOCUS_API void refocus_renderer_destroy(struct refocus_renderer **renderer);
 
 /**
  * Take a photo and what is known of its depth in. All is copied in the form the renderer needs; the
- * caller's memory is not used after the return. In strip mode (params.in_place) photo and
+ * caller's memory is not used after the return, but for a photo of a deep format, which stays with
+ * the renderer until the next scene or its end: what is finer than, or above, the light that the
+ * renderer stores is read there. In strip mode (params.in_place) photo and
  * disparities are not copied, and stay with the renderer until the next scene or its end; a map
  * whose edges are placed is.
  *
  * @param scene  see struct refocus_scene
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (also depth_edges without memory for it),
  *         REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED (in_place: a map of another size, or a photo of
- *         Y, U and V; a matte without params.thin or what is behind without params.behind, in strip
- *         mode or of a photo of Y, U and V), REFOCUS_ERR_CANCELLED. After an error nothing is
+ *         Y, U and V or a deep one; a deep photo without params.deep; a matte without params.thin
+ *         or what is behind without params.behind, in strip mode or of a photo of Y, U and V),
+ *         REFOCUS_ERR_CANCELLED, REFOCUS_ERR_BUSY. After any error but the last nothing is
  *         prepared.
  */
 REFOCUS_API int refocus_prepare_scene(struct refocus_renderer *renderer,
@@ -207,7 +220,7 @@ REFOCUS_API int refocus_prepare_scene(struct refocus_renderer *renderer,
  *
  * @param report  written as far as its struct_size goes; softness is 0 and parted 0 where edges
  *                stayed as given
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (nothing prepared)
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (nothing prepared), REFOCUS_ERR_BUSY
  */
 REFOCUS_API int refocus_get_depth_edges(const struct refocus_renderer *renderer,
                                         struct refocus_depth_edges_report *report);
@@ -230,10 +243,11 @@ REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,
  * all but the light of the photo. A region costs what lies in it and around it. None of this
  * changes a byte.
  *
- * A photo of Y, U and V is rendered in Y, U and V, chroma at its own resolution, by the sweep
- * alone. Averaged are the luminance L of each pixel and, for each sample of chroma, the light
- * that blue and red have more than that. With g the curve of the blend, Y' the luma of the mean
- * light of the pixels that share the sample, and B', R', G' the colour by the photo's matrix:
+ * A photo of Y, U and V is rendered in Y, U and V by sweep or search, chroma at its own resolution
+ * by the sweep, and by the search at that of luma. Averaged are the luminance L of each pixel and,
+ * for each sample of chroma, the light that blue and red have more than that. With g the curve of
+ * the blend, Y' the luma of the mean light of the pixels that share the sample, and B', R', G' the
+ * colour by the photo's matrix:
  *
  *     E = Kr g(R') + Kg g(G') + Kb g(B') - g(Y')     L   = g(Y) + E
  *     D_b = g(B') - g(Y') - E                        D_r = g(R') - g(Y') - E
@@ -244,18 +258,31 @@ REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,
  * Samples that nothing changed keep their codes, so that one colour stays that colour, even
  * where its codes are none.
  *
+ * A photo of a deep format that can hold light above white (floats, PQ, HLG, or a `white` below
+ * the largest value) is taken at its word: nothing was clipped, and highlights are not looked at.
+ * Light above white, up to 336 times that, is drawn over the area of the aperture as that given
+ * back to highlights is; where much of the photo is brighter than white, rays meet up to 16
+ * times white. Means saturate at 4 times white. Pixels that come out as they went in do so in full,
+ * U and V where all pixels do that share them. P010 and P016 are read as R, G and B, their chroma
+ * as that of 2 x 2 pixels. Deep photos and pictures are rendered by the sweep alone, in linear
+ * light and without sigma.
+ *
  * @param params  see struct refocus_render_params; of a photo of Y, U and V the region begins and
  *                ends at even columns and, in 4:2:0, rows, or at the picture's end
  * @param out     of the size of the region, any stride; may not overlap itself. Any format of
- *                R, G, B of a photo of R, G, B; any of 4:2:0 of one of 4:2:0; YUYV of YUYV. Its
- *                matrix and range are the photo's, whatever they say.
+ *                R, G, B of a photo of R, G, B, deep or not, with a transfer and white of its own,
+ *                P010 and P016 among them, with a matrix and range of their own too and a region
+ *                as of 4:2:0; else any of 4:2:0 of one of 4:2:0, and YUYV of YUYV, whose matrix
+ *                and range are the photo's, whatever they say.
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (nothing prepared),
  *         REFOCUS_ERR_UNSUPPORTED (another format than these; a field that this library
- *         does not know; of a photo of Y, U and V another
- *         method than the sweep, cat's eye, fringe, star filter,
+ *         does not know; a deep format, of the photo or of @p out, without params.deep, with
+ *         another method than the sweep, another blend than linear, sigma below 1e6, star filter
+ *         or grain; of a photo of Y, U and V another
+ *         method than sweep and search, cat's eye, fringe, star filter,
  *         grain or an aperture that differs before and behind the focus),
- *         REFOCUS_ERR_CANCELLED. On REFOCUS_ERR_CANCELLED parts of @p out are written,
- *         on the others none. Allocates nothing.
+ *         REFOCUS_ERR_CANCELLED, REFOCUS_ERR_BUSY. On REFOCUS_ERR_CANCELLED parts of @p out are
+ * written, on the others none. Allocates nothing.
  */
 REFOCUS_API int refocus_render(struct refocus_renderer *renderer,
                                const struct refocus_render_params *params,
@@ -279,7 +306,7 @@ enum refocus_view {
  * Copy a layer out: width x height 16-bit values of the prepared photo's size.
  *
  * @param stride  bytes from a row of @p out to the next; even
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE, REFOCUS_ERR_BUSY
  */
 REFOCUS_API int refocus_get_view(struct refocus_renderer *renderer, uint32_t view, uint16_t *out,
                                  ptrdiff_t stride);

@@ -31,7 +31,8 @@ enum refocus_status {
     REFOCUS_ERR_END = -12,        /**< a stream has no more frames */
     REFOCUS_ERR_GONE = -13,       /**< a device is not or no longer there, a pipe is
                                        closed */
-    REFOCUS_ERR_BUSY = -14,       /**< a device is used by another program */
+    REFOCUS_ERR_BUSY = -14,       /**< a device is used by another program, or a
+                                       renderer by another thread */
     REFOCUS_ERR_PERMISSION = -15, /**< access to a file or device is refused */
 };
 

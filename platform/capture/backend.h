@@ -50,6 +50,12 @@ struct rf_source_ops {
                        struct refocus_reason *reason); /* or NULL */
     void (*close)(struct refocus_source *source);
     int (*list)(refocus_source_found *found, void *user); /* or NULL */
+    /* The lens and the exposure; each may be NULL. Modes and positions were checked. */
+    int (*get_lens)(struct refocus_source *source, struct refocus_source_lens *lens,
+                    struct refocus_reason *reason);
+    int (*set_focus)(struct refocus_source *source, uint32_t mode, double position,
+                     struct refocus_reason *reason);
+    int (*lock_exposure)(struct refocus_source *source, bool lock, struct refocus_reason *reason);
 };
 
 /* Each line is one kind: rf_source_NAME is defined in the file that implements it. */

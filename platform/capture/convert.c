@@ -3,24 +3,15 @@
  * and slowest in pieces. */
 #include <stdlib.h>
 #include <string.h>
-#include <refocus/platform/convert.h>
+#include "converter.h"
 #include "backend.h"
 #include "samples.h"
 #include "sink.h"
-#ifdef RF_HAVE_JPEG
-#include <turbojpeg.h>
-#endif
 
 /* R = (cy (Y - y0) + rv (V - 128) + half) >> SHIFT and so on. */
 enum { SHIFT = 14 };
 struct coefficients {
     int y0, cy, rv, gu, gv, bu;
-};
-
-struct refocus_converter {
-    uint8_t *row[3]; /* copies of the rows of each plane */
-    size_t size[3];
-    void *jpeg; /* tjhandle */
 };
 
 /* Kr and Kb of the standards; limited range spans 219 and 224 codes. */
@@ -140,10 +131,7 @@ void refocus_converter_destroy(struct refocus_converter **converter)
 {
     if (!converter || !*converter)
         return;
-#ifdef RF_HAVE_JPEG
-    if ((*converter)->jpeg)
-        tjDestroy((*converter)->jpeg);
-#endif
+    rf_free_jpeg(*converter);
     for (int i = 0; i < 3; i++)
         free((*converter)->row[i]);
     free(*converter);
@@ -205,47 +193,6 @@ static void copy_row(struct refocus_converter *converter, const struct refocus_f
            (size_t)rf_plane_row(frame->format, plane, frame->width));
 }
 
-#ifdef RF_HAVE_JPEG
-static int convert_jpeg(struct refocus_converter *converter, const struct refocus_frame *frame,
-                        const struct refocus_image *out, struct refocus_reason *reason)
-{
-    int width, height, subsampling, space;
-
-    if (!converter->jpeg)
-        converter->jpeg = tjInitDecompress();
-    if (!converter->jpeg)
-        return rf_capture_fail_memory(reason);
-    if (tjDecompressHeader3(converter->jpeg, frame->plane[0], (unsigned long)frame->bytes, &width,
-                            &height, &subsampling, &space) != 0 ||
-        width != out->width || height != out->height)
-        return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
-                               "the JPEG of the frame is damaged or of another size");
-    if (out->stride[0] < 0 || out->stride[0] > 1 << 30)
-        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                               "this stride is not "
-                               "possible");
-    if (tjDecompress2(converter->jpeg, frame->plane[0], (unsigned long)frame->bytes, out->plane[0],
-                      width, (int)out->stride[0], height, TJPF_RGB,
-                      TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS) != 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
-                               "the JPEG of the frame: "
-                               "%.180s",
-                               tjGetErrorStr2(converter->jpeg));
-    return REFOCUS_OK;
-}
-#else
-static int convert_jpeg(struct refocus_converter *converter, const struct refocus_frame *frame,
-                        const struct refocus_image *out, struct refocus_reason *reason)
-{
-    (void)converter;
-    (void)frame;
-    (void)out;
-    return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                           "this build has no JPEG; choose another format of the "
-                           "camera");
-}
-#endif
-
 int refocus_convert_rgb8(struct refocus_converter *converter, const struct refocus_frame *frame,
                          const struct refocus_image *out, struct refocus_reason *reason)
 {
@@ -270,7 +217,7 @@ int refocus_convert_rgb8(struct refocus_converter *converter, const struct refoc
                                "the picture to convert into must be RGB8 of the "
                                "frame's size");
     if (frame->format == REFOCUS_FRAME_MJPEG && frame->plane[0])
-        return convert_jpeg(converter, frame, out, reason);
+        return rf_convert_jpeg_rgb8(converter, frame, out, reason);
     status = check(frame, reason);
     if (status == REFOCUS_OK)
         status = reserve_rows(converter, frame, reason);
@@ -305,11 +252,23 @@ uint32_t refocus_frame_image_format(uint32_t frame_format)
     }
 }
 
-/* Whether a picture can hold the frame. */
-static bool fits(const struct refocus_frame *frame, const struct refocus_image *out)
+uint32_t refocus_convert_image_format(struct refocus_converter *converter,
+                                      const struct refocus_frame *frame)
 {
-    if (out->format != refocus_frame_image_format(frame->format) || out->width != frame->width ||
-        out->height != frame->height)
+    struct refocus_reason unheard;
+    struct refocus_frame own;
+
+    if (!converter || read_frame(&own, frame, &unheard) != REFOCUS_OK)
+        return REFOCUS_FORMAT_NONE;
+    if (own.format == REFOCUS_FRAME_MJPEG)
+        return own.plane[0] ? rf_jpeg_image_format(converter, &own) : (uint32_t)REFOCUS_FORMAT_NONE;
+    return refocus_frame_image_format(own.format);
+}
+
+/* Whether a picture of that format can hold the frame. */
+static bool fits(const struct refocus_frame *frame, uint32_t own, const struct refocus_image *out)
+{
+    if (out->format != own || out->width != frame->width || out->height != frame->height)
         return false;
     for (int i = 0; i < rf_format_planes(rf_frame_format_of(out->format)); i++) {
         const uint32_t format = rf_frame_format_of(out->format);
@@ -327,6 +286,7 @@ int refocus_convert_copy(struct refocus_converter *converter, const struct refoc
     struct refocus_reason unheard;
     struct refocus_frame own_frame;
     struct refocus_image own;
+    uint32_t format;
     int status;
 
     reason = reason ? reason : &unheard;
@@ -336,14 +296,17 @@ int refocus_convert_copy(struct refocus_converter *converter, const struct refoc
     if ((status = read_frame(&own_frame, frame, reason)))
         return status;
     frame = &own_frame;
-    if (!refocus_frame_image_format(frame->format))
+    format = refocus_convert_image_format(converter, frame);
+    if (!format)
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
                                "frames of this format have to become RGB8");
     if ((status = refocus_image_read(&own, out)))
         return rf_capture_fail(reason, status, "the picture is not of a known size of struct");
-    if (!fits(frame, &own))
+    if (!fits(frame, format, &own))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "the picture to copy into must be like the frame");
+    if (frame->format == REFOCUS_FRAME_MJPEG)
+        return rf_convert_jpeg_yuv(converter, frame, out, reason);
     status = check(frame, reason);
     if (status == REFOCUS_OK)
         status = reserve_rows(converter, frame, reason);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "backend.h"
+#include "replay_lens.h"
 #include "replay_scene.h"
 #include "replay_script.h"
 #include "ring.h"
@@ -19,9 +20,10 @@ struct replay {
     uint8_t *scene; /* the frame at rest, in the present format, or the bytes of the
                        JPEG */
     size_t scene_bytes;
-    struct refocus_source *inner; /* source of "from" */
-    int64_t next;                 /* the frame to come */
-    int64_t first;                /* the frame that was due when the pace began */
+    struct refocus_source *inner; /* source of "from", or a picture of the stack */
+    struct rf_lens lens;
+    int64_t next;  /* the frame to come */
+    int64_t first; /* the frame that was due when the pace began */
     struct rf_pace pace;
     int64_t stalled_until_ns, gone_until_ns;
     bool failed, changed, gone;
@@ -121,7 +123,10 @@ static int open_replay(struct refocus_source *source, const char *rest,
     replay->width = replay->script.width;
     replay->height = replay->script.height;
     replay->stride = replay->script.stride;
-    if (status == REFOCUS_OK && replay->script.jpeg)
+    rf_lens_start(&replay->lens, &replay->script);
+    if (status == REFOCUS_OK && replay->script.stack)
+        status = rf_lens_look(&replay->lens, &replay->script, &replay->inner, reason);
+    else if (status == REFOCUS_OK && replay->script.jpeg)
         status = read_jpeg(replay, reason);
     else if (status == REFOCUS_OK && replay->script.from)
         status = refocus_source_open(&replay->inner, replay->script.from, reason);
@@ -326,6 +331,12 @@ static int copy_inner(struct replay *replay, int buffer, struct refocus_frame *f
 static int fill(struct replay *replay, int buffer, struct refocus_frame *frame,
                 struct refocus_reason *reason)
 {
+    if (replay->script.stack) {
+        const int status = rf_lens_look(&replay->lens, &replay->script, &replay->inner, reason);
+
+        if (status != REFOCUS_OK)
+            return status;
+    }
     if (replay->inner)
         return copy_inner(replay, buffer, frame, reason);
     if (!rf_ring_reserve(&replay->ring, buffer, replay->scene_bytes))
@@ -437,8 +448,10 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
                          REFOCUS_ERR_CANCELLED
                      ? REFOCUS_ERR_CANCELLED
                      : REFOCUS_OK;
-    if (status == REFOCUS_OK)
+    if (status == REFOCUS_OK) {
+        rf_lens_move(&replay->lens, &replay->script, frame);
         status = fill(replay, buffer, frame, reason);
+    }
     if (status != REFOCUS_OK) {
         rf_ring_give(&replay->ring, (uint32_t)buffer);
         return status;
@@ -494,6 +507,33 @@ static int reopen(struct refocus_source *source, struct refocus_reason *reason)
     return REFOCUS_OK;
 }
 
+static int get_lens(struct refocus_source *source, struct refocus_source_lens *lens,
+                    struct refocus_reason *reason)
+{
+    const struct replay *replay = source->state;
+
+    (void)reason;
+    rf_lens_describe(&replay->lens, &replay->script, lens);
+    return REFOCUS_OK;
+}
+
+static int set_focus(struct refocus_source *source, uint32_t mode, double position,
+                     struct refocus_reason *reason)
+{
+    struct replay *replay = source->state;
+
+    (void)reason;
+    rf_lens_focus(&replay->lens, &replay->script, mode, position);
+    return REFOCUS_OK;
+}
+
+/* Pictures of a script have one exposure anyway. */
+static int lock_exposure(struct refocus_source *source, bool lock, struct refocus_reason *reason)
+{
+    (void)source, (void)lock, (void)reason;
+    return REFOCUS_OK;
+}
+
 const struct rf_source_ops rf_source_replay = {
     .scheme = "replay",
     .kind = REFOCUS_SOURCE_KIND_SCRIPT,
@@ -505,4 +545,7 @@ const struct rf_source_ops rf_source_replay = {
     .stop = stop,
     .reopen = reopen,
     .close = close_replay,
+    .get_lens = get_lens,
+    .set_focus = set_focus,
+    .lock_exposure = lock_exposure,
 };

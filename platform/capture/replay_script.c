@@ -1,9 +1,11 @@
 /* replay_script.c: the script of a replay source is parsed; platform/README.md describes it. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "failure.h"
 #include "layout.h"
+#include "pattern.h"
 #include "replay_script.h"
 
 static const struct {
@@ -89,6 +91,15 @@ static bool parse_line(struct rf_script *script, const char *word[4])
         return parse_event(script, word);
     if (strcmp(key, "from") == 0) /* scripts within scripts might never end */
         return word[1] && strncmp(word[1], "replay:", 7) != 0 && set_text(&script->from, word[1]);
+    if (strcmp(key, "stack") == 0)
+        return rf_pattern_check(word[1] ? word[1] : "") == 1 &&
+               parse_number(word[2], 2, 1000, &script->pictures) &&
+               set_text(&script->stack, word[1]);
+    if (strcmp(key, "lens") == 0)
+        return parse_number(word[1], 0, 1e6, &script->lens[0]) &&
+               parse_number(word[2], script->lens[0], 1e6, &script->lens[1]);
+    if (strcmp(key, "lens-error") == 0)
+        return parse_number(word[1], -1e6, 1e6, &script->lens_error);
     if (strcmp(key, "jpeg") == 0) {
         script->format = REFOCUS_FRAME_MJPEG;
         return set_text(&script->jpeg, word[1]);
@@ -105,7 +116,11 @@ static bool parse_line(struct rf_script *script, const char *word[4])
         return (script->fps = value) > 0 && value <= 10000;
     if (strcmp(key, "random") == 0)
         return (script->random_percent = value) <= 100;
-    if (strcmp(key, "frames") == 0)
+    if (strcmp(key, "lens-speed") == 0)
+        return (script->lens_speed = value) > 0;
+    if (strcmp(key, "lens-stop") == 0)
+        script->lens_stop = value;
+    else if (strcmp(key, "frames") == 0)
         script->frames = (int64_t)value;
     else if (strcmp(key, "stride") == 0)
         script->stride = (int64_t)value;
@@ -130,6 +145,7 @@ int rf_script_parse(struct rf_script *script, char *text, struct refocus_reason 
     script->width = 640;
     script->height = 480;
     script->fps = 30;
+    script->lens_speed = script->lens_stop = INFINITY;
     for (char *line = text; line; line = rest) {
         const char *word[4] = {NULL, NULL, NULL, NULL};
         char *within = NULL;
@@ -161,5 +177,6 @@ void rf_script_free(struct rf_script *script)
 {
     free(script->from);
     free(script->jpeg);
-    script->from = script->jpeg = NULL;
+    free(script->stack);
+    script->from = script->jpeg = script->stack = NULL;
 }

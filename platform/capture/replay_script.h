@@ -41,6 +41,12 @@ struct rf_script {
     double random_percent; /* so many frames in a hundred suffer a fault */
     int start_errors;      /* number of starts that fail first */
     char *from, *jpeg;     /* another source, a JPEG file; owned, or NULL */
+    char *stack;           /* names of the frames of a focus stack, the farthest first; owned */
+    double pictures;       /* number of pictures of the stack, which begin with number 0 */
+    double lens[2];        /* the farthest and the nearest position of the lens; equal: none */
+    double lens_speed;     /* dioptres a frame */
+    double lens_stop;      /* the lens gets no nearer than this */
+    double lens_error;     /* the lens reports its place plus this */
     struct rf_event event[RF_MOST_EVENTS];
     int events;
 };

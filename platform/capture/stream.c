@@ -1,20 +1,24 @@
 /* stream.c: the sources `y4m:` and `raw:`: streams of frames out of one file. */
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+#include "bytes.h"
 #include "ring.h"
 #include "samples.h"
 
 enum { LONGEST_HEADER = 1024 };
 
 struct stream {
-    FILE *file;
+    int fd;
     bool y4m, is_pipe;
+    bool known;      /* the format and size are */
     bool tall;       /* y4m of 4:2:2, which becomes YUYV: U and V have all rows */
     uint8_t *planes; /* memory for such planes */
     char *path;      /* owned */
-    long begin;      /* offset of the first frame */
+    off_t begin;     /* offset of the first frame */
     uint32_t format, flags;
     int width, height;
     double fps;
@@ -22,21 +26,6 @@ struct stream {
     struct rf_pace pace;
     struct rf_ring ring;
 };
-
-/* A line without its end; false at the end of the file or when it is too long. */
-static bool read_line(FILE *file, char *line, size_t size)
-{
-    size_t n = 0;
-    int c;
-
-    while ((c = getc(file)) != EOF && c != '\n') {
-        if (n + 1 >= size)
-            return false;
-        line[n++] = (char)c;
-    }
-    line[n] = '\0';
-    return c == '\n';
-}
 
 static uint32_t colour_space(const char *name)
 {
@@ -61,12 +50,16 @@ static int parse_side(const char *text)
     return side > 0 && side <= REFOCUS_MAX_SIDE ? (int)side : 0;
 }
 
-static int parse_y4m(struct stream *stream, struct refocus_reason *reason)
+static int parse_y4m(const struct refocus_source *source, struct refocus_reason *reason)
 {
+    struct stream *stream = source->state;
     char header[LONGEST_HEADER], *word, *rest = NULL;
     long numerator = 30, denominator = 1;
+    const int status = rf_read_line(source, stream->fd, header, sizeof header, reason);
 
-    if (!read_line(stream->file, header, sizeof header) || strncmp(header, "YUV4MPEG2", 9) != 0)
+    if (status != REFOCUS_OK && status != REFOCUS_ERR_END && status != REFOCUS_ERR_FORMAT)
+        return status;
+    if (status != REFOCUS_OK || strncmp(header, "YUV4MPEG2", 9) != 0)
         return rf_capture_fail(reason, REFOCUS_ERR_FORMAT, "%.160s: it is not a YUV4MPEG2 stream",
                                stream->path);
     stream->format = REFOCUS_FRAME_YUV420;
@@ -125,23 +118,48 @@ static void close_stream(struct refocus_source *source)
 {
     struct stream *stream = source->state;
 
-    if (stream->file && stream->file != stdin)
-        fclose(stream->file);
+    if (stream->fd >= 0 && strcmp(stream->path, "-") != 0)
+        close(stream->fd);
     rf_ring_free(&stream->ring);
     free(stream->planes);
     free(stream->path);
     free(stream);
 }
 
+/* A pipe that nobody writes to yet is opened all the same. */
 static int open_file(struct stream *stream, struct refocus_reason *reason)
 {
-    if (strcmp(stream->path, "-") == 0) {
-        stream->file = stdin;
-    } else {
-        stream->file = fopen(stream->path, "rb");
-        if (!stream->file)
-            return rf_capture_fail_errno(reason, errno, stream->path);
-    }
+    if (strcmp(stream->path, "-") == 0)
+        stream->fd = STDIN_FILENO;
+    else
+        stream->fd = open(stream->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (stream->fd < 0)
+        return rf_capture_fail_errno(reason, errno, stream->path);
+    stream->begin = lseek(stream->fd, 0, SEEK_CUR);
+    stream->is_pipe = stream->begin < 0;
+    return REFOCUS_OK;
+}
+
+/* Find out format and size, where this has not been done. */
+static int know(const struct refocus_source *source, struct refocus_reason *reason)
+{
+    struct stream *stream = source->state;
+    int status = REFOCUS_OK;
+
+    if (stream->known)
+        return REFOCUS_OK;
+    if (stream->y4m)
+        status = parse_y4m(source, reason);
+    if (status != REFOCUS_OK)
+        return status;
+    if (rf_frame_bytes(stream->format, rf_plane_row(stream->format, 0, stream->width),
+                       stream->width, stream->height) == 0)
+        return rf_capture_fail(reason, REFOCUS_ERR_SIZE,
+                               "%.160s: %dx%d pixels are out of the range", stream->path,
+                               stream->width, stream->height);
+    if (!stream->is_pipe)
+        stream->begin = lseek(stream->fd, 0, SEEK_CUR);
+    stream->known = true;
     return REFOCUS_OK;
 }
 
@@ -154,6 +172,7 @@ static int open_stream(struct refocus_source *source, const char *rest, bool y4m
     if (!stream)
         return rf_capture_fail_memory(reason);
     source->state = stream;
+    stream->fd = -1;
     stream->y4m = y4m;
     stream->path = strdup(rest);
     if (!stream->path)
@@ -162,23 +181,12 @@ static int open_stream(struct refocus_source *source, const char *rest, bool y4m
         status = parse_raw(stream, reason);
     if (status == REFOCUS_OK)
         status = open_file(stream, reason);
-    if (status == REFOCUS_OK && y4m)
-        status = parse_y4m(stream, reason);
-    if (status == REFOCUS_OK) {
-        const int64_t row = rf_plane_row(stream->format, 0, stream->width);
-
-        if (rf_frame_bytes(stream->format, row, stream->width, stream->height) == 0)
-            status = rf_capture_fail(reason, REFOCUS_ERR_SIZE,
-                                     "%.160s: %dx%d pixels are out of the range", stream->path,
-                                     stream->width, stream->height);
-    }
-    if (status != REFOCUS_OK) {
+    /* Nobody can interrupt a source that is not open yet: the header of a pipe is read later. */
+    if (status == REFOCUS_OK && !(y4m && stream->is_pipe))
+        status = know(source, reason);
+    if (status != REFOCUS_OK)
         close_stream(source);
-        return status;
-    }
-    stream->begin = ftell(stream->file);
-    stream->is_pipe = stream->begin < 0 || fseek(stream->file, 0, SEEK_CUR) != 0;
-    return REFOCUS_OK;
+    return status;
 }
 
 static int open_y4m(struct refocus_source *source, const char *rest, struct refocus_reason *reason)
@@ -194,9 +202,11 @@ static int open_raw(struct refocus_source *source, const char *rest, struct refo
 static int get_mode(struct refocus_source *source, int index, struct refocus_source_mode *mode)
 {
     const struct stream *stream = source->state;
+    struct refocus_reason unheard;
+    const int status = index > 0 ? REFOCUS_ERR_ARGUMENT : know(source, &unheard);
 
-    if (index > 0)
-        return REFOCUS_ERR_ARGUMENT;
+    if (status != REFOCUS_OK)
+        return status;
     mode->format = stream->format;
     mode->width = stream->width;
     mode->height = stream->height;
@@ -208,8 +218,11 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
                  struct refocus_reason *reason)
 {
     struct stream *stream = source->state;
+    const int status = know(source, reason);
 
-    if (!stream->is_pipe && fseek(stream->file, stream->begin, SEEK_SET) != 0)
+    if (status != REFOCUS_OK)
+        return status;
+    if (!stream->is_pipe && lseek(stream->fd, stream->begin, SEEK_SET) < 0)
         return rf_capture_fail_errno(reason, errno, stream->path);
     stream->ring.count = source->config.buffers;
     stream->ring.taken = 0;
@@ -222,29 +235,29 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
 }
 
 /* Read one frame into memory; REFOCUS_ERR_END where the next one would begin. */
-static int read_frame(struct stream *stream, uint8_t *memory, size_t bytes,
+static int read_frame(const struct refocus_source *source, uint8_t *memory, size_t bytes,
                       struct refocus_reason *reason)
 {
+    const struct stream *stream = source->state;
     char header[LONGEST_HEADER];
+    int status = REFOCUS_OK;
     size_t n;
 
     if (stream->y4m) {
-        const int c = getc(stream->file);
-
-        if (c == EOF && !ferror(stream->file))
-            return rf_capture_fail(reason, REFOCUS_ERR_END, "there are no more frames");
-        ungetc(c, stream->file);
-        if (!read_line(stream->file, header, sizeof header) || strncmp(header, "FRAME", 5) != 0)
+        status = rf_read_line(source, stream->fd, header, sizeof header, reason);
+        if (status == REFOCUS_ERR_END)
+            return rf_capture_fail(reason, status, "there are no more frames");
+        if (status != REFOCUS_OK && status != REFOCUS_ERR_FORMAT)
+            return status;
+        if (status != REFOCUS_OK || strncmp(header, "FRAME", 5) != 0)
             return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
                                    "%.160s: damaged: frame %lld does not begin with "
                                    "FRAME",
                                    stream->path, (long long)stream->frame);
     }
-    n = fread(memory, 1, bytes, stream->file);
-    if (n == bytes)
-        return REFOCUS_OK;
-    if (ferror(stream->file))
-        return rf_capture_fail_errno(reason, errno, stream->path);
+    status = rf_read_bytes(source, stream->fd, memory, bytes, &n, reason);
+    if (status != REFOCUS_OK || n == bytes)
+        return status;
     if (n == 0 && !stream->y4m)
         return rf_capture_fail(reason, REFOCUS_ERR_END, "there are no more frames");
     return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
@@ -253,8 +266,10 @@ static int read_frame(struct stream *stream, uint8_t *memory, size_t bytes,
 }
 
 /* Read a frame of 4:2:2 in planes, and pack it. */
-static int read_tall(struct stream *stream, uint8_t *memory, struct refocus_reason *reason)
+static int read_tall(const struct refocus_source *source, uint8_t *memory,
+                     struct refocus_reason *reason)
 {
+    struct stream *stream = source->state;
     const size_t w = (size_t)stream->width, h = (size_t)stream->height, half = (w + 1) / 2;
     const size_t bytes = (w + 2 * half) * h;
     struct rf_samples from[3], to[3];
@@ -264,7 +279,7 @@ static int read_tall(struct stream *stream, uint8_t *memory, struct refocus_reas
         stream->planes = malloc(bytes);
     if (!stream->planes)
         return rf_capture_fail_memory(reason);
-    status = read_frame(stream, stream->planes, bytes, reason);
+    status = read_frame(source, stream->planes, bytes, reason);
     if (status != REFOCUS_OK)
         return status;
     rf_samples_of(from, REFOCUS_FRAME_YUV420,
@@ -277,11 +292,13 @@ static int read_tall(struct stream *stream, uint8_t *memory, struct refocus_reas
     return REFOCUS_OK;
 }
 
-static int read_next(struct stream *stream, uint8_t *memory, size_t bytes,
+static int read_next(const struct refocus_source *source, uint8_t *memory, size_t bytes,
                      struct refocus_reason *reason)
 {
-    return stream->tall ? read_tall(stream, memory, reason)
-                        : read_frame(stream, memory, bytes, reason);
+    const struct stream *stream = source->state;
+
+    return stream->tall ? read_tall(source, memory, reason)
+                        : read_frame(source, memory, bytes, reason);
 }
 
 static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
@@ -305,11 +322,11 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
                                "every buffer is out; "
                                "release one");
     status = rf_ring_reserve(&stream->ring, buffer, bytes)
-                 ? read_next(stream, stream->ring.memory[buffer], (size_t)bytes, reason)
+                 ? read_next(source, stream->ring.memory[buffer], (size_t)bytes, reason)
                  : rf_capture_fail_memory(reason);
     if (status == REFOCUS_ERR_END && source->config.flags & REFOCUS_SOURCE_LOOP &&
-        !stream->is_pipe && stream->frame > 0 && fseek(stream->file, stream->begin, SEEK_SET) == 0)
-        status = read_next(stream, stream->ring.memory[buffer], (size_t)bytes, reason);
+        !stream->is_pipe && stream->frame > 0 && lseek(stream->fd, stream->begin, SEEK_SET) >= 0)
+        status = read_next(source, stream->ring.memory[buffer], (size_t)bytes, reason);
     if (status != REFOCUS_OK) {
         rf_ring_give(&stream->ring, (uint32_t)buffer);
         return status;

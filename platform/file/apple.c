@@ -1,21 +1,23 @@
 /* apple.c: the depth of Apple's portrait JPEGs is found. Behind the main picture lie others, which
- * an MPF index names. The one whose own XMP says "disparity" is the depth; the HDR gain map and
- * the portrait matte look alike but are not. */
+ * an MPF index names. The one whose own XMP says "disparity" is the depth; the HDR gain map
+ * looks alike but is not, and the portrait matte says what is subject. */
 #include "apple.h"
 
 #include <string.h>
 
-#include "convert.h"
+#include "depth_part.h"
 #include "depth_values.h"
+#include "gain_map_read.h"
 #include "jpeg_walk.h"
+#include "kept.h"
 #include "mpf.h"
-#include "part.h"
 #include "reason.h"
 #include "xmp_parse.h"
 
 struct auxiliary {
     struct rf_bytes file;
-    int number; /* as MPF counts, the main picture being 1 */
+    const char *place; /* "MPF", or "GImage" when it lies behind an original */
+    int number;        /* as MPF counts, the main picture being 1 */
     struct rf_xmp xmp;
 };
 
@@ -89,15 +91,8 @@ static int set_meaning(struct rf_read *read, const struct auxiliary *auxiliary, 
 
 static int take_depth(struct rf_read *read, const struct auxiliary *auxiliary, bool disparity)
 {
-    int status = rf_decode_part(read, auxiliary->file, "depth image", &read->samples);
+    int status = rf_take_samples(read, auxiliary->file, "depth image");
 
-    if (status == REFOCUS_OK) {
-        status = rf_raster_to_grey(read, &read->samples);
-        if (status == REFOCUS_ERR_NO_DEPTH) {
-            status = rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                             "damaged: its depth image is a colour picture");
-        }
-    }
     if (status == REFOCUS_OK) {
         rf_note(read->info, "MPF: image %d is %s by its own XMP, %d x %d samples",
                 auxiliary->number, disparity ? "disparity" : "depth", (int)read->samples.width,
@@ -119,20 +114,27 @@ static int judge(struct rf_read *read, const struct auxiliary *auxiliary)
         if (!read->samples.pixels) {
             return take_depth(read, auxiliary, type[1] == 'i');
         }
-        rf_note(read->info, "MPF: image %d, a second depth image, passed over", auxiliary->number);
+        rf_note(read->info, "%s: image %d, a second depth image, passed over", auxiliary->place,
+                auxiliary->number);
+    } else if (type && rf_is_matte(type) && read->picture_always && !read->matte.pixels) {
+        rf_note(read->info, "%s: image %d is the portrait matte: how much of a pixel is subject",
+                auxiliary->place, auxiliary->number);
+        rf_keep_companion(read, auxiliary->file);
+        return rf_take_matte(read, auxiliary->file, "portrait matte");
     } else if (type || auxiliary->xmp.value[RF_XMP_GAIN_MAP]) {
-        rf_note(read->info, "MPF: image %d passed over, it is no depth but \"%.80s\"",
-                auxiliary->number, type ? type : "HDR gain map");
+        read->kept.gain_map |= !type || strstr(type, "hdrgainmap");
+        rf_note(read->info, "%s: image %d passed over, it is no depth but \"%.80s\"",
+                auxiliary->place, auxiliary->number, type ? type : "HDR gain map");
     } else {
-        rf_note(read->info, "MPF: image %d passed over, it says nothing of depth",
+        rf_note(read->info, "%s: image %d passed over, it says nothing of depth", auxiliary->place,
                 auxiliary->number);
     }
     return REFOCUS_OK;
 }
 
-static int read_image(struct rf_read *read, struct rf_bytes file, int number)
+static int read_image(struct rf_read *read, struct rf_bytes file, const char *place, int number)
 {
-    struct auxiliary auxiliary = {.file = file, .number = number};
+    struct auxiliary auxiliary = {.file = file, .place = place, .number = number};
     const struct rf_bytes packet = find_xmp(file);
     int status = REFOCUS_OK;
 
@@ -175,7 +177,50 @@ int rf_read_apple(struct rf_read *read, struct rf_bytes file, struct rf_bytes mp
             rf_note(read->info, "MPF: image %d is not where the index says, passed over", i + 1);
             continue;
         }
-        status = read_image(read, (struct rf_bytes){file.data + begin, mpf.image[i].size}, i + 1);
+        if (mpf.image[i].type == RF_MPF_VIEW) {
+            rf_note_view(read->info, "MPF", i + 1);
+            continue;
+        }
+        status =
+            read_image(read, (struct rf_bytes){file.data + begin, mpf.image[i].size}, "MPF", i + 1);
     }
+    return status;
+}
+
+/* The bytes of the JPEG that begins there; 0: there is no whole one. */
+static size_t jpeg_size(const struct rf_read *read, struct rf_bytes file)
+{
+    enum rf_jpeg_step step = RF_JPEG_DAMAGED;
+    struct rf_jpeg_walk walk;
+    uint32_t segments = 0;
+
+    if (!rf_is_jpeg(file) || !rf_jpeg_walk_begin(&walk, file)) {
+        return 0;
+    }
+    do {
+        step = rf_jpeg_walk_next(&walk);
+    } while (step == RF_JPEG_SEGMENT && ++segments <= read->limits.max_segments);
+    return step == RF_JPEG_END ? walk.position : 0;
+}
+
+int rf_read_companions(struct rf_read *read, struct rf_bytes original)
+{
+    const size_t main_end = jpeg_size(read, original);
+    size_t at = main_end, size = main_end;
+    int status = REFOCUS_OK;
+
+    if (main_end > 0) {
+        status = rf_read_gain_map(read, original, (struct rf_bytes){NULL, 0}, main_end);
+    }
+    for (int number = 2; status == REFOCUS_OK && size > 0 && number <= RF_MPF_MAX; number++) {
+        struct rf_bytes picture = {original.data + at, original.size - at};
+
+        size = picture.size = jpeg_size(read, picture);
+        if (size > 0) {
+            status = read_image(read, picture, "GImage", number);
+            at += size;
+        }
+    }
+    read->companions = 0; /* the original that is kept already has them */
     return status;
 }

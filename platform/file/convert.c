@@ -1,10 +1,12 @@
 /* convert.c: samples as they are stored become RGB8 photos or one channel of depth. */
 #include "convert.h"
 
+#include <math.h>
+
 #include "reason.h"
 
 /* Bayer's matrix holds each of 0 to 63 once, and near values lie far apart in it. */
-static void fill_thresholds(uint8_t thresholds[64])
+void rf_dither_thresholds(uint8_t thresholds[64])
 {
     for (int y = 0; y < 8; y++) {
         for (int x = 0; x < 8; x++) {
@@ -30,7 +32,7 @@ static void dither(const struct rf_raster *from, struct rf_raster *to)
     const size_t width = (size_t)from->width, channels = (size_t)from->channels;
     uint8_t thresholds[64];
 
-    fill_thresholds(thresholds);
+    rf_dither_thresholds(thresholds);
     for (size_t y = 0; y < (size_t)from->height; y++) {
         for (size_t x = 0; x < width; x++) {
             const uint32_t threshold = 2u * thresholds[8 * (y & 7) + (x & 7)] + 1;
@@ -45,12 +47,56 @@ static void dither(const struct rf_raster *from, struct rf_raster *to)
     }
 }
 
-int rf_raster_to_rgb8(const struct rf_read *read, struct rf_raster *raster)
+/* Linear light to codes of sRGB; what is above white is white. */
+static void encode_floats(const struct rf_raster *from, struct rf_raster *to)
 {
+    const float *const light = (const float *)(const void *)from->pixels;
+    const size_t count = 3 * (size_t)from->width * (size_t)from->height;
+
+    for (size_t i = 0; i < count; i++) {
+        const float v = light[i] >= 1 ? 1 : light[i] > 0 ? light[i] : 0;
+        const float code = v <= 0.0031308f ? 12.92f * v : 1.055f * powf(v, 1 / 2.4f) - 0.055f;
+
+        to->pixels[i] = (uint8_t)(255 * code + 0.5f);
+    }
+}
+
+/* All 16 bits of a raster of fewer or of one channel. */
+static int spread_to_16(const struct rf_read *read, struct rf_raster *raster)
+{
+    struct rf_raster all = *raster;
+    const uint32_t max = raster->max_value;
+    const size_t channels = (size_t)raster->channels;
+    uint16_t *to;
+    int status;
+
+    if (max == 65535 && channels == 3) {
+        return REFOCUS_OK;
+    }
+    all.channels = 3;
+    all.max_value = 65535;
+    status = rf_raster_alloc(read, &all);
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    to = (uint16_t *)(void *)all.pixels;
+    for (size_t i = 0; i < 3 * (size_t)all.width * (size_t)all.height; i++) {
+        const uint64_t v = rf_raster_sample(raster, channels == 3 ? i : i / 3);
+        to[i] = (uint16_t)((v * 65535 + max / 2) / max);
+    }
+    rf_raster_free(raster);
+    *raster = all;
+    return REFOCUS_OK;
+}
+
+int rf_image_to_rgb8(struct rf_read *read)
+{
+    struct rf_raster *const raster = &read->image;
     struct rf_raster rgb = *raster;
     const size_t count = (size_t)raster->width * (size_t)raster->height;
     const int channels = raster->channels;
     const uint32_t max = raster->max_value;
+    const bool floats = raster->sample == REFOCUS_SAMPLE_F32;
     int status;
 
     if (raster->sample == REFOCUS_SAMPLE_U8 && channels == 3 && max == 255) {
@@ -63,19 +109,25 @@ int rf_raster_to_rgb8(const struct rf_read *read, struct rf_raster *raster)
     if (status != REFOCUS_OK) {
         return status;
     }
-    if (max > 255) {
+    if (floats) {
+        encode_floats(raster, &rgb);
+    } else if (max > 255) {
         dither(raster, &rgb);
     }
-    for (size_t i = 0; max <= 255 && i < count; i++) {
+    for (size_t i = 0; !floats && max <= 255 && i < count; i++) {
         for (int c = 0; c < 3; c++) {
             const size_t from = i * (size_t)channels + (size_t)(channels == 3 ? c : 0);
             const uint32_t v = rf_raster_sample(raster, from);
             rgb.pixels[3 * i + (size_t)c] = (uint8_t)((v * 255u + max / 2) / max);
         }
     }
-    rf_raster_free(raster);
+    if (floats || max > 255) {
+        read->deep = *raster;
+    } else {
+        rf_raster_free(raster);
+    }
     *raster = rgb;
-    return REFOCUS_OK;
+    return floats || max <= 255 ? REFOCUS_OK : spread_to_16(read, &read->deep);
 }
 
 /* JPEG stores brightness and colour apart: grey that went through colour differs by a

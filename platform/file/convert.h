@@ -4,7 +4,10 @@
 
 #include "reading.h"
 
-int rf_raster_to_rgb8(const struct rf_read *read, struct rf_raster *raster);
+/* The thresholds of an ordered dither of 8 x 8 pixels: 0 to 63, once each. */
+void rf_dither_thresholds(uint8_t thresholds[64]);
+/* read->image to RGB8; of more than 8 bits all that it holds goes to read->deep. */
+int rf_image_to_rgb8(struct rf_read *read);
 /* One channel from equal ones; REFOCUS_ERR_NO_DEPTH when they are not equal. */
 int rf_raster_to_grey(const struct rf_read *read, struct rf_raster *raster);
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "convert.h"
+#include "formats.h"
 #include "load.h"
 #include "number.h"
 #include "read.h"
@@ -221,7 +222,7 @@ int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes, s
         return rf_fail_memory(reason);
     }
     status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, false, false, &made->info,
-                           reason);
+                           NULL, reason);
     if (status == REFOCUS_OK) {
         status = picture_as_samples(&read, &max_value);
     }
@@ -255,7 +256,7 @@ int refocus_depth_read(struct refocus_photo **depth, const char *path, const cha
     *depth = NULL;
     status = rf_read_limits(&own, limits, reason);
     if (status == REFOCUS_OK) {
-        status = rf_load(path, own.max_bytes, reason, &file);
+        status = rf_load(path, own.max_bytes, rf_format_is_known, reason, &file);
     }
     if (status == REFOCUS_OK) {
         status = refocus_depth_read_memory(depth, file.data, file.size, unit, near_m, far_m, limits,

@@ -3,6 +3,7 @@
  * of offsets, circular or not, can be long. */
 #include "exif.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,17 +23,31 @@ struct entry {
 };
 
 enum {
+    TAG_MAIN_WIDTH = 0x0100,
+    TAG_MAIN_HEIGHT = 0x0101,
     TAG_MAKE = 0x010f,
     TAG_MODEL = 0x0110,
     TAG_ORIENTATION = 0x0112,
     TAG_SETTINGS = 0x8769,
     TAG_F_NUMBER = 0x829d,
     TAG_FOCAL_LENGTH = 0x920a,
+    TAG_SUBJECT_DISTANCE = 0x9206,
+    TAG_MAKER_NOTE = 0x927c,
+    TAG_SUBJECT_AREA = 0x9214,
     TAG_WIDTH = 0xa002,
     TAG_HEIGHT = 0xa003,
     TAG_FOCAL_LENGTH_35MM = 0xa405,
+    TAG_APPLE_HDR_HEADROOM = 0x21, /* in Apple's maker note */
+    TAG_APPLE_HDR_GAIN = 0x30,
 };
-enum { TYPE_ASCII = 2, TYPE_SHORT = 3, TYPE_LONG = 4, TYPE_RATIONAL = 5 };
+enum {
+    TYPE_ASCII = 2,
+    TYPE_SHORT = 3,
+    TYPE_LONG = 4,
+    TYPE_RATIONAL = 5,
+    TYPE_UNDEFINED = 7,
+    TYPE_SIGNED_RATIONAL = 10
+};
 
 static uint32_t get16(const struct tiff *tiff, size_t at)
 {
@@ -69,14 +84,14 @@ static int count_entries(const struct tiff *tiff, size_t directory)
 /* False for an entry whose value lies outside the block or is of no type used here. */
 static bool get_entry(const struct tiff *tiff, size_t directory, int index, struct entry *entry)
 {
-    static const uint8_t type_bytes[] = {0, 1, 1, 2, 4, 8};
+    static const uint8_t type_bytes[] = {0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8};
     uint64_t bytes;
 
     entry->place = directory + 2 + (size_t)index * 12;
     entry->tag = get16(tiff, entry->place);
     entry->type = get16(tiff, entry->place + 2);
     entry->count = get32(tiff, entry->place + 4);
-    if (entry->type == 0 || entry->type > TYPE_RATIONAL || entry->count == 0) {
+    if (entry->type == 0 || entry->type > TYPE_SIGNED_RATIONAL || entry->count == 0) {
         return false;
     }
     bytes = (uint64_t)entry->count * type_bytes[entry->type];
@@ -100,6 +115,27 @@ static double get_rational(const struct tiff *tiff, const struct entry *entry)
     }
     below = get32(tiff, entry->value + 4);
     return below ? get32(tiff, entry->value) / (double)below : 0.0;
+}
+
+/* 0 is not known, and the greatest numerator infinity. */
+static double get_distance(const struct tiff *tiff, const struct entry *entry)
+{
+    const bool infinite = entry->type == TYPE_RATIONAL && get32(tiff, entry->value) == UINT32_MAX;
+
+    return infinite ? INFINITY : get_rational(tiff, entry);
+}
+
+static bool get_signed_rational(const struct tiff *tiff, const struct entry *entry, double *value)
+{
+    int32_t above, below;
+
+    if (entry->type != TYPE_SIGNED_RATIONAL) {
+        return false;
+    }
+    above = (int32_t)get32(tiff, entry->value);
+    below = (int32_t)get32(tiff, entry->value + 4);
+    *value = below ? above / (double)below : 0;
+    return below != 0;
 }
 
 static void get_text(const struct tiff *tiff, const struct entry *entry, char *text, size_t size)
@@ -129,10 +165,65 @@ static void join_camera(struct rf_exif *exif, const char *make, const char *mode
     }
 }
 
+/* Apple, "Applying Apple HDR effect to your photos". */
+static double apple_headroom(double headroom, double gain)
+{
+    const double stops = headroom < 1 ? (gain <= 0.01 ? -20 * gain + 1.8 : -0.101 * gain + 1.601)
+                                      : (gain <= 0.01 ? -70 * gain + 3 : -0.303 * gain + 2.303);
+
+    return exp2(stops < 0 ? 0 : stops > 16 ? 16 : stops);
+}
+
+/* The note of an iPhone: 14 bytes, and a directory whose offsets count from the note's first. */
+static void read_maker_note(const struct tiff *tiff, const struct entry *entry,
+                            struct rf_exif *exif)
+{
+    const struct tiff note = {tiff->data + entry->value, entry->count, true};
+    bool has_headroom = false, has_gain = false;
+    double headroom = 0, gain = 0;
+    int count;
+
+    if (entry->count < 14 || memcmp(note.data, "Apple iOS\0\0\1MM", 14) != 0) {
+        return;
+    }
+    count = count_entries(&note, 14);
+    for (int i = 0; i < count; i++) {
+        struct entry own;
+
+        if (!get_entry(&note, 14, i, &own)) {
+            continue;
+        }
+        if (own.tag == TAG_APPLE_HDR_HEADROOM) {
+            has_headroom = get_signed_rational(&note, &own, &headroom);
+        } else if (own.tag == TAG_APPLE_HDR_GAIN) {
+            has_gain = get_signed_rational(&note, &own, &gain);
+        }
+    }
+    if (has_headroom && has_gain) {
+        exif->apple_headroom = apple_headroom(headroom, gain);
+    }
+}
+
+/* Two to four numbers, of which the first two are the middle of the subject in pixels. */
+static void find_subject(const struct tiff *tiff, const struct entry *area,
+                         const struct entry *width, const struct entry *height,
+                         struct rf_exif *exif)
+{
+    const bool known = area->type == TYPE_SHORT && area->count >= 2 && area->count <= 4 &&
+                       width->count == 1 && height->count == 1;
+    const uint32_t x = known ? get16(tiff, area->value) : 0;
+    const uint32_t y = known ? get16(tiff, area->value + 2) : 0;
+
+    if (known && x < get_integer(tiff, width) && y < get_integer(tiff, height)) {
+        exif->subject_x = (x + 0.5) / get_integer(tiff, width);
+        exif->subject_y = (y + 0.5) / get_integer(tiff, height);
+    }
+}
+
 static void read_settings(struct tiff *tiff, size_t directory, struct rf_exif *exif)
 {
     const int count = count_entries(tiff, directory);
-    struct entry width = {0}, height = {0}, entry;
+    struct entry width = {0}, height = {0}, area = {0}, entry;
 
     for (int i = 0; i < count; i++) {
         if (!get_entry(tiff, directory, i, &entry)) {
@@ -144,12 +235,19 @@ static void read_settings(struct tiff *tiff, size_t directory, struct rf_exif *e
             exif->focal_length_mm = get_rational(tiff, &entry);
         } else if (entry.tag == TAG_FOCAL_LENGTH_35MM) {
             exif->focal_length_35mm = get_integer(tiff, &entry);
-        } else if (entry.tag == TAG_WIDTH) {
+        } else if (entry.tag == TAG_SUBJECT_DISTANCE) {
+            exif->subject_distance = get_distance(tiff, &entry);
+        } else if (entry.tag == TAG_MAKER_NOTE && entry.type == TYPE_UNDEFINED) {
+            read_maker_note(tiff, &entry, exif);
+        } else if (entry.tag == TAG_WIDTH && entry.type <= TYPE_RATIONAL) {
             width = entry;
-        } else if (entry.tag == TAG_HEIGHT) {
+        } else if (entry.tag == TAG_HEIGHT && entry.type <= TYPE_RATIONAL) {
             height = entry;
+        } else if (entry.tag == TAG_SUBJECT_AREA) {
+            area = entry;
         }
     }
+    find_subject(tiff, &area, &width, &height, exif);
     if (exif->orientation >= 5 && width.count == 1 && height.count == 1) {
         /* Exchange the tags, not the values: types may differ. Their order, which TIFF
          * wants ascending, is put right by exchanging the rest of the entries too. */
@@ -170,6 +268,7 @@ bool rf_exif_parse(uint8_t *data, size_t size, struct rf_exif *exif)
 
     memset(exif, 0, sizeof *exif);
     exif->orientation = 1;
+    exif->subject_x = exif->subject_y = -1.0;
     if (size < 8 || (memcmp(data, "MM\0*", 4) != 0 && memcmp(data, "II*\0", 4) != 0)) {
         return false;
     }
@@ -207,6 +306,44 @@ bool rf_exif_parse(uint8_t *data, size_t size, struct rf_exif *exif)
     return true;
 }
 
+static void set_integer(struct tiff *tiff, const struct entry *entry, uint32_t value)
+{
+    if (entry->count == 1 && entry->type == TYPE_LONG) {
+        put16(tiff, entry->value, tiff->big_endian ? value >> 16 : value & 0xffff);
+        put16(tiff, entry->value + 2, tiff->big_endian ? value & 0xffff : value >> 16);
+    } else if (entry->count == 1 && entry->type == TYPE_SHORT && value <= UINT16_MAX) {
+        put16(tiff, entry->value, value);
+    }
+}
+
+void rf_exif_set_size(uint8_t *data, size_t size, uint32_t width, uint32_t height)
+{
+    struct tiff tiff = {data, size, size > 0 && data[0] == 'M'};
+    size_t directories[2] = {0, 0};
+    struct entry entry;
+
+    if (size < 8) {
+        return;
+    }
+    directories[0] = get32(&tiff, 4);
+    for (int d = 0; d < 2; d++) {
+        const int count = directories[d] > 0 ? count_entries(&tiff, directories[d]) : 0;
+
+        for (int i = 0; i < count; i++) {
+            if (!get_entry(&tiff, directories[d], i, &entry)) {
+                continue;
+            }
+            if (entry.tag == TAG_SETTINGS && d == 0) {
+                directories[1] = get_integer(&tiff, &entry);
+            } else if (entry.tag == (d == 0 ? TAG_MAIN_WIDTH : TAG_WIDTH)) {
+                set_integer(&tiff, &entry, width);
+            } else if (entry.tag == (d == 0 ? TAG_MAIN_HEIGHT : TAG_HEIGHT)) {
+                set_integer(&tiff, &entry, height);
+            }
+        }
+    }
+}
+
 int rf_exif_take(struct rf_read *read, struct rf_bytes tiff, bool orient)
 {
     struct refocus_photo_info *const info = read->info;
@@ -231,7 +368,14 @@ int rf_exif_take(struct rf_read *read, struct rf_bytes tiff, bool orient)
     info->focal_length_mm = exif.focal_length_mm;
     info->focal_length_35mm = exif.focal_length_35mm;
     info->f_number = exif.f_number;
+    info->subject_distance = exif.subject_distance;
+    if (exif.subject_x >= 0.0) {
+        info->focus_x = exif.subject_x;
+        info->focus_y = exif.subject_y;
+        rf_note(info, "EXIF: the middle of the subject area, taken for the focus point");
+    }
     memcpy(info->camera, exif.camera, sizeof info->camera);
+    read->apple_headroom = exif.apple_headroom;
     if (orient) {
         read->orientation = exif.orientation;
     }

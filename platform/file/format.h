@@ -13,7 +13,7 @@ struct rf_format {
     const char *endings[3]; /* endings of names under which it is written, NULL behind the last */
     bool writes_pictures, writes_depth;
     bool has_second; /* a file can hold the second picture of a stereo pair */
-    bool only_depth; /* a file of this format is never a photo */
+    uint32_t deep;   /* the deep enum refocus_format that it is written from; 0: none */
     /* Whether a file begins as this format does. */
     bool (*recognise)(struct rf_bytes file);
     /* Fill read->image, or read->samples, and what the file says of itself. NULL: the library is
@@ -30,6 +30,11 @@ struct rf_format {
     FORMAT(jpeg)                                                                                   \
     FORMAT(png)                                                                                    \
     FORMAT(heic)                                                                                   \
+    FORMAT(raw)                                                                                    \
+    FORMAT(tiff)                                                                                   \
+    FORMAT(openexr)                                                                                \
+    FORMAT(webp)                                                                                   \
+    FORMAT(jxl)                                                                                    \
     FORMAT(ppm)                                                                                    \
     FORMAT(pgm)                                                                                    \
     FORMAT(pfm)

@@ -21,6 +21,11 @@ const struct rf_format *rf_format_of_content(struct rf_bytes file)
     return NULL;
 }
 
+bool rf_format_is_known(struct rf_bytes file)
+{
+    return rf_format_of_content(file) != NULL;
+}
+
 const struct rf_format *rf_format_of_name(const char *path)
 {
     const char *const dot = strrchr(path, '.');

@@ -4,161 +4,76 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "apple.h"
 #include "base64.h"
-#include "convert.h"
+#include "depth_part.h"
+#include "depth_range.h"
+#include "gain_map.h"
+#include "number.h"
+#include "orient.h"
 #include "part.h"
 #include "reason.h"
 
-/* Near and Far as the file says them, and its unit. */
-struct range {
-    double near, far; /* both 0: not said */
-    double metres;    /* in a unit; 0: no unit that is known */
+/* The pictures of a packet, unpacked from Base64 in the places of their texts. */
+struct pictures {
+    struct rf_bytes depth, confidence,
+        original; /* data NULL: not there, not wanted, or no Base64 */
 };
 
-static int read_range(const struct rf_read *read, const struct rf_xmp *xmp, struct range *range)
+static struct rf_bytes unpack(const struct rf_xmp *xmp, enum rf_xmp_key key)
 {
-    const char *const units = xmp->value[RF_XMP_DEPTH_UNITS];
-    bool has_near, has_far;
-    int status;
+    struct rf_bytes part = {(const uint8_t *)xmp->value[key], 0};
 
-    status = rf_xmp_number(read, xmp, RF_XMP_DEPTH_NEAR, "GDepth:Near", &has_near, &range->near);
-    if (status == REFOCUS_OK) {
-        status = rf_xmp_number(read, xmp, RF_XMP_DEPTH_FAR, "GDepth:Far", &has_far, &range->far);
+    if (part.data) {
+        part.size = rf_base64_decode(xmp->value[key], xmp->length[key]);
     }
-    if (status != REFOCUS_OK) {
-        return status;
-    }
-    range->metres = !units                     ? 0.0
-                    : strcmp(units, "m") == 0  ? 1.0
-                    : strcmp(units, "mm") == 0 ? 0.001
-                                               : 0.0;
-    if (!has_near || !has_far) {
-        range->near = range->far = 0.0;
-        rf_note(read->info, "GDepth: no Near and Far: distances are unknown");
-        return REFOCUS_OK;
-    }
-    if (range->near < 0.0 || range->far <= range->near) {
-        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                       "damaged: its GDepth:Near %g and GDepth:Far %g are no range", range->near,
-                       range->far);
-    }
-    if (!units) {
-        rf_note(read->info, "GDepth: Near %g, Far %g without a unit: no metres", range->near,
-                range->far);
-    } else if (range->metres > 0.0) {
-        rf_note(read->info, "GDepth: Near %g %s, Far %g %s", range->near, units, range->far, units);
-    } else {
-        rf_note(read->info, "GDepth: Near %g, Far %g in \"%.40s\": no metres", range->near,
-                range->far, units);
-    }
-    return REFOCUS_OK;
+    return part.size == (size_t)-1 || part.size == 0 ? (struct rf_bytes){NULL, 0} : part;
 }
 
-/* Distances of an unknown unit as disparities, which need none: linear in 1/z, the
- * nearest 65535. */
-static int linear_to_disparity(struct rf_read *read, const struct range *range)
+static int unpack_pictures(const struct rf_read *read, const struct rf_xmp *xmp,
+                           struct pictures *pictures)
 {
-    struct rf_raster disparity = read->samples;
-    const size_t count = (size_t)disparity.width * (size_t)disparity.height;
-    const double step = (range->far - range->near) / disparity.max_value;
-    const double near = range->near > 0.0 ? range->near : step; /* 1/0 is no disparity */
-    int status;
+    const struct rf_bytes none = {NULL, 0};
 
-    disparity.sample = REFOCUS_SAMPLE_U16;
-    disparity.max_value = 65535;
-    status = rf_raster_alloc(read, &disparity);
-    if (status != REFOCUS_OK) {
-        return status;
-    }
-    for (size_t i = 0; i < count; i++) {
-        const double z = fmax(range->near + rf_raster_sample(&read->samples, i) * step, near);
-        const double d = (1.0 / z - 1.0 / range->far) / (1.0 / near - 1.0 / range->far);
-
-        /* fmax() makes 0 of NaN, where 1 / Near is more than a double holds. */
-        ((uint16_t *)(void *)disparity.pixels)[i] =
-            (uint16_t)(fmin(fmax(d, 0.0), 1.0) * 65535.0 + 0.5);
-    }
-    rf_raster_free(&read->samples);
-    read->samples = disparity;
-    read->depth.meaning = REFOCUS_DEPTH_DISPARITY;
-    read->depth.value_near = 65535.0;
-    read->depth.value_far = 0.0;
-    rf_note(read->info, "GDepth: RangeLinear without a unit: taken over as disparities");
-    return REFOCUS_OK;
+    pictures->depth = unpack(xmp, RF_XMP_DEPTH_DATA);
+    pictures->confidence = unpack(xmp, RF_XMP_DEPTH_CONFIDENCE);
+    pictures->original = read->picture_always ? unpack(xmp, RF_XMP_IMAGE_DATA) : none;
+    return rf_check_parts(
+        read, (const struct rf_bytes[]){pictures->depth, pictures->confidence, pictures->original},
+        3, "GDepth and GImage");
 }
 
-static int set_meaning(struct rf_read *read, const struct rf_xmp *xmp, struct range *range)
-{
-    const char *const format = xmp->value[RF_XMP_DEPTH_FORMAT];
-    struct refocus_depth_map *const map = &read->depth;
-    const double max = read->samples.max_value;
-    int status = read_range(read, xmp, range);
-
-    if (status != REFOCUS_OK) {
-        return status;
-    }
-    map->near_m = range->near * range->metres;
-    map->far_m = range->far * range->metres;
-    if (format && strcmp(format, "RangeInverse") == 0) {
-        map->meaning = REFOCUS_DEPTH_DISPARITY;
-        map->value_near = 0.0;
-        map->value_far = max;
-        rf_note(read->info, "GDepth: RangeInverse: linear in 1/z, 0 is near, %g is far", max);
-        return REFOCUS_OK;
-    }
-    if (format && strcmp(format, "RangeLinear") == 0) {
-        if (range->far <= 0.0) {
-            return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                           "damaged: its GDepth is RangeLinear without Near and Far");
-        }
-        if (range->metres == 0.0) {
-            return linear_to_disparity(read, range);
-        }
-        map->meaning = REFOCUS_DEPTH_DISTANCE;
-        map->metres_at_zero = map->near_m;
-        map->metres_per_unit = (map->far_m - map->near_m) / max;
-        rf_note(read->info, "GDepth: RangeLinear: linear in z, 0 is near, %g is far", max);
-        return REFOCUS_OK;
-    }
-    return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                   "damaged: its GDepth:Format is neither RangeInverse nor RangeLinear");
-}
-
-/* Base64 text of a property to a picture; the text is used up. */
+/* Decode an unpacked picture by one of the functions of depth_part.h; the property is used up. */
 static int decode_data(struct rf_read *read, struct rf_xmp *xmp, enum rf_xmp_key key,
-                       const char *name, struct rf_raster *raster)
+                       struct rf_bytes part, const char *name,
+                       int (*take)(struct rf_read *, struct rf_bytes, const char *))
 {
-    const size_t size = rf_base64_decode(xmp->value[key], xmp->length[key]);
-    const struct rf_bytes part = {(const uint8_t *)xmp->value[key], size};
     int status;
 
-    if (size == (size_t)-1 || size == 0) {
+    if (!part.data) {
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged: its %s is no base64", name);
     }
-    status = rf_decode_part(read, part, name, raster);
+    status = take(read, part, name);
     free(xmp->value[key]);
     xmp->value[key] = NULL;
     return status;
 }
 
-static int read_samples(struct rf_read *read, struct rf_xmp *xmp)
+static int read_samples(struct rf_read *read, struct rf_xmp *xmp, const struct pictures *pictures)
 {
     const char *const mime = xmp->value[RF_XMP_DEPTH_MIME];
-    int status = decode_data(read, xmp, RF_XMP_DEPTH_DATA, "GDepth:Data", &read->samples);
+    int status =
+        decode_data(read, xmp, RF_XMP_DEPTH_DATA, pictures->depth, "GDepth:Data", rf_take_samples);
 
-    if (status == REFOCUS_OK) {
-        status = rf_raster_to_grey(read, &read->samples);
-        if (status == REFOCUS_ERR_NO_DEPTH) {
-            status = rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                             "damaged: its GDepth:Data is a colour picture");
-        }
-    }
     if (status == REFOCUS_OK) {
         rf_note(read->info, "GDepth: %d x %d samples of %d bits (%.40s)", (int)read->samples.width,
                 (int)read->samples.height, read->samples.sample == REFOCUS_SAMPLE_U16 ? 16 : 8,
                 mime ? mime : "kind not said");
+    }
+    if (status == REFOCUS_OK && xmp->value[RF_XMP_DEPTH_CONFIDENCE]) {
+        status = decode_data(read, xmp, RF_XMP_DEPTH_CONFIDENCE, pictures->confidence,
+                             "GDepth:Confidence", rf_take_confidence);
     }
     return status;
 }
@@ -184,7 +99,7 @@ static double focus_disparity(const struct rf_read *read)
 /* K of the blur at infinity B, see own_blur in file.h. With 1/near - 1/far = 0.0515,
  * zf = 26.5 and B = 0.008 it is 0.0109 of the larger side. Where the range is not said,
  * disparity 0 stands for infinity, and K = B / d of the focus point. */
-static double find_own_blur(const struct rf_read *read, const struct range *range)
+static double find_own_blur(const struct rf_read *read, const struct rf_depth_range *range)
 {
     const struct refocus_photo_info *const info = read->info;
     const bool known = range->near > 0.0;
@@ -198,7 +113,8 @@ static double find_own_blur(const struct rf_read *read, const struct range *rang
     return isfinite(blur) && blur > 0.0 ? blur : 0.0;
 }
 
-static int read_focus(struct rf_read *read, const struct rf_xmp *xmp, const struct range *range)
+static int read_focus(struct rf_read *read, const struct rf_xmp *xmp,
+                      const struct rf_depth_range *range)
 {
     struct refocus_photo_info *const info = read->info;
     double x, y;
@@ -230,31 +146,92 @@ static int read_focus(struct rf_read *read, const struct rf_xmp *xmp, const stru
     return status;
 }
 
-/* The main picture is the phone's blurred result unless GFocus says that it has no
- * blur. */
-static int read_original(struct rf_read *read, struct rf_xmp *xmp)
+/* An orientation that the note in a result says, see editable.c. */
+static int noted_orientation(const struct rf_xmp *xmp, enum rf_xmp_key key)
 {
+    double value;
+
+    return xmp->value[key] && rf_parse_number(xmp->value[key], &value) && value >= 1.0 &&
+                   value <= 8.0
+               ? (int)value
+               : 1;
+}
+
+static double noted(const struct rf_xmp *xmp, enum rf_xmp_key key)
+{
+    double value;
+
+    return xmp->value[key] && rf_parse_number(xmp->value[key], &value) && value > 0.0 ? value : 0.0;
+}
+
+/* Depth in a result of ours may lie as it did in the first photo. */
+static int read_note(struct rf_read *read, const struct rf_xmp *xmp)
+{
+    struct refocus_photo_info *const info = read->info;
+    const int orientation = noted_orientation(xmp, RF_XMP_NOTE_DEPTH);
+
+    info->edited_focus_disparity = noted(xmp, RF_XMP_NOTE_FOCUS);
+    info->edited_max_blur_radius = noted(xmp, RF_XMP_NOTE_BLUR);
+    info->simulated_f_number = noted(xmp, RF_XMP_NOTE_F_NUMBER);
+    if (info->focus_x >= 0.0) {
+        rf_orient_point(&info->focus_x, &info->focus_y, orientation);
+    }
+    read->kept.depth_orientation = rf_orient_both(orientation, read->orientation);
+    return rf_raster_orient(read, &read->samples, orientation);
+}
+
+static int take_image(struct rf_read *read, struct rf_bytes part, const char *what)
+{
+    const int status = rf_decode_part(read, part, what, &read->image);
+
+    return status == REFOCUS_OK ? rf_read_companions(read, part) : status;
+}
+
+/* The main picture is the phone's blurred result, or ours, unless GFocus says that it has no
+ * blur. */
+static int read_original(struct rf_read *read, struct rf_xmp *xmp, struct rf_bytes part)
+{
+    const bool ours = xmp->value[RF_XMP_NOTE_ORIGINAL];
+    const int orientation = noted_orientation(xmp, RF_XMP_NOTE_ORIGINAL);
     int status;
 
     if (!read->picture_always || !xmp->value[RF_XMP_IMAGE_DATA]) {
         return REFOCUS_OK;
     }
-    if (xmp->value[RF_XMP_FOCUS_BLUR] && read->info->blur_at_infinity == 0.0) {
+    if (!ours && xmp->value[RF_XMP_FOCUS_BLUR] && read->info->blur_at_infinity == 0.0) {
         rf_note(read->info, "GImage: original passed over, the main picture has no blur");
         return REFOCUS_OK;
     }
-    status = decode_data(read, xmp, RF_XMP_IMAGE_DATA, "GImage:Data", &read->image);
+    status = decode_data(read, xmp, RF_XMP_IMAGE_DATA, part, "GImage:Data", take_image);
     if (status == REFOCUS_OK) {
         read->info->original_used = 1;
-        rf_note(read->info, "GImage: the file's all-in-focus original is used, its main picture is "
-                            "the phone's blurred result");
+        read->kept.original_orientation = rf_orient_both(orientation, read->orientation);
+        rf_note(read->info,
+                "GImage: the file's all-in-focus original is used, its main picture is %s",
+                ours ? "our result" : "the phone's blurred result");
+        if (ours) {
+            rf_note(read->info, "Refocus: the result has disparity %g in focus, blur %g pixels",
+                    read->info->edited_focus_disparity, read->info->edited_max_blur_radius);
+        }
+        status = rf_raster_orient(read, &read->image, orientation);
+    }
+    if (status == REFOCUS_OK) {
+        status = rf_raster_orient(read, &read->matte, orientation);
+    }
+    if (status == REFOCUS_OK && read->gain) {
+        status = rf_raster_orient(read, &read->gain->samples, orientation);
     }
     return status;
 }
 
 int rf_read_gdepth(struct rf_read *read, struct rf_xmp *xmp)
 {
-    struct range range = {0.0, 0.0, 0.0};
+    static const struct rf_range_keys keys = {
+        "GDepth",           NULL, RF_XMP_DEPTH_FORMAT, RF_XMP_DEPTH_NEAR, RF_XMP_DEPTH_FAR,
+        RF_XMP_DEPTH_UNITS,
+    };
+    struct rf_depth_range range = {0.0, 0.0, 0.0};
+    struct pictures pictures;
     int status;
 
     if (!xmp->value[RF_XMP_DEPTH_DATA]) {
@@ -264,15 +241,21 @@ int rf_read_gdepth(struct rf_read *read, struct rf_xmp *xmp)
         }
         return REFOCUS_OK;
     }
-    status = read_samples(read, xmp);
+    status = unpack_pictures(read, xmp, &pictures);
     if (status == REFOCUS_OK) {
-        status = set_meaning(read, xmp, &range);
+        status = read_samples(read, xmp, &pictures);
+    }
+    if (status == REFOCUS_OK) {
+        status = rf_set_range(read, xmp, &keys, &range);
     }
     if (status == REFOCUS_OK) {
         status = read_focus(read, xmp, &range);
     }
     if (status == REFOCUS_OK) {
-        status = read_original(read, xmp);
+        status = read_note(read, xmp);
+    }
+    if (status == REFOCUS_OK) {
+        status = read_original(read, xmp, pictures.original);
     }
     if (status == REFOCUS_OK) {
         read->info->depth_source = REFOCUS_DEPTH_SOURCE_GDEPTH;

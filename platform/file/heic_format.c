@@ -1,4 +1,4 @@
-/* heic_format.c: HEIC as a picture format, which needs libheif and is only read. */
+/* heic_format.c: HEIC and AVIF as a picture format, which needs libheif and is only read. */
 #include <string.h>
 
 #include "format.h"
@@ -8,8 +8,8 @@
  * brands. */
 static bool recognise(struct rf_bytes file)
 {
-    static const char brands[][5] = {"heic", "heix", "hevc", "hevx",
-                                     "heim", "heis", "mif1", "msf1"};
+    static const char brands[][5] = {"heic", "heix", "hevc", "hevx", "heim",
+                                     "heis", "mif1", "msf1", "avif", "avis"};
 
     if (file.size < 12 || memcmp(file.data + 4, "ftyp", 4) != 0) {
         return false;

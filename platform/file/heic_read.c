@@ -7,8 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "depth_part.h"
 #include "depth_values.h"
 #include "exif.h"
+#include "gain_map_read.h"
+#include "heic_deep.h"
+#include "heic_keep.h"
 #include "heif_boxes.h"
 #include "icc.h"
 #include "orient.h"
@@ -75,23 +79,34 @@ static int decode(struct heic *heic, struct heif_image_handle *handle, bool colo
     enum heif_channel channel = heif_channel_Y;
     struct heif_image *image = NULL;
     struct heif_error error;
+    const bool deep = colour && heif_image_handle_get_luma_bits_per_pixel(handle) > 8;
     int bits, status;
 
     status = rf_check_size(read, (uint64_t)heif_image_handle_get_width(handle),
-                           (uint64_t)heif_image_handle_get_height(handle), 3);
+                           (uint64_t)heif_image_handle_get_height(handle), deep ? 6 : 3);
+    if (status == REFOCUS_OK) {
+        /* libheif keeps the picture as it is coded and as RGB. */
+        status = rf_check_memory(read, (uint64_t)heif_image_handle_get_width(handle) *
+                                           (uint64_t)heif_image_handle_get_height(handle) *
+                                           (deep ? 18 : 9));
+    }
     if (status != REFOCUS_OK) {
         return status;
     }
-    error = heif_decode_image(
-        handle, &image, colour ? heif_colorspace_RGB : heif_colorspace_undefined,
-        colour ? heif_chroma_interleaved_RGB : heif_chroma_undefined, heic->options);
+    heic->options->convert_hdr_to_8bit = !deep;
+    error =
+        heif_decode_image(handle, &image, colour ? heif_colorspace_RGB : heif_colorspace_undefined,
+                          deep     ? rf_heic_deep_chroma()
+                          : colour ? heif_chroma_interleaved_RGB
+                                   : heif_chroma_undefined,
+                          heic->options);
     if (error.code != heif_error_Ok) {
         return fail_heif(read, error);
     }
     if (colour) {
         channel = heif_channel_interleaved;
     }
-    bits = colour ? 8 : heif_image_get_bits_per_pixel_range(image, channel);
+    bits = colour && !deep ? 8 : heif_image_get_bits_per_pixel_range(image, channel);
     raster->channels = colour ? 3 : 1;
     raster->sample = bits > 8 ? REFOCUS_SAMPLE_U16 : REFOCUS_SAMPLE_U8;
     raster->max_value = bits >= 1 && bits <= 16 ? (1u << bits) - 1 : 0;
@@ -166,7 +181,7 @@ static int read_simulated(struct heic *heic, const struct heif_image_handle *dep
 #ifdef RF_HAVE_XMP
     struct refocus_reason unused;
     struct rf_read quiet = {.limits = heic->read->limits, .reason = &unused};
-    struct rf_xmp xmp = {{NULL}, {0}};
+    struct rf_xmp xmp = {.items = 0};
     struct rf_bytes packet;
     heif_item_id item;
     uint8_t *bytes;
@@ -175,7 +190,7 @@ static int read_simulated(struct heic *heic, const struct heif_image_handle *dep
         return REFOCUS_OK;
     }
     packet.size = heif_image_handle_get_metadata_size(depth, item);
-    if (packet.size == 0 || rf_check_bytes(&quiet, packet.size, "its XMP") != REFOCUS_OK) {
+    if (packet.size == 0 || rf_check_metadata(&quiet, packet.size, "its XMP") != REFOCUS_OK) {
         return REFOCUS_OK;
     }
     packet.data = bytes = malloc(packet.size);
@@ -254,30 +269,96 @@ static int read_depth(struct heic *heic)
     return status;
 }
 
+/* Apple's gain map, upright as the picture is; the headroom is in the EXIF. */
+static int take_gain_map(struct heic *heic, struct heif_image_handle *handle, heif_item_id item)
+{
+    struct rf_read *const read = heic->read;
+    struct rf_raster *const samples = &read->gain->samples;
+    struct refocus_reason unused = {""};
+    struct rf_read quiet = *read;
+    struct heic inner = *heic;
+    const char *why = read->apple_headroom > 0 ? NULL : "the photo does not say its headroom";
+    int status = REFOCUS_OK;
+
+    inner.read = &quiet;
+    quiet.reason = &unused;
+    if (!why) {
+        status = decode(&inner, handle, false, samples);
+        if (status == REFOCUS_OK && rf_heif_orientation(heic->file, item) == 1) {
+            status = rf_raster_orient(&quiet, samples, read->info->orientation);
+        }
+        if (status == REFOCUS_ERR_MEMORY) {
+            return rf_fail_memory(read->reason);
+        }
+        why = status == REFOCUS_OK         ? NULL
+              : status == REFOCUS_ERR_SIZE ? "it is beyond the limits"
+                                           : "it is damaged";
+    }
+    rf_gain_settle(read, why, read->apple_headroom);
+    return REFOCUS_OK;
+}
+
+/* Take the portrait matte, as depth is taken, upright. */
+static int take_matte(struct heic *heic, struct heif_image_handle *handle, heif_item_id item)
+{
+    struct rf_read *const read = heic->read;
+    int status = decode(heic, handle, false, &read->matte);
+
+    if (status == REFOCUS_OK) {
+        rf_note(read->info, "HEIC: auxiliary image is the portrait matte: how much of a pixel is "
+                            "subject");
+        if (rf_heif_orientation(heic->file, item) == 1) {
+            status = rf_raster_orient(read, &read->matte, read->info->orientation);
+        }
+    }
+    return status;
+}
+
+/* One auxiliary image: the portrait matte and the gain map are taken, anything else is passed over.
+ */
+static int read_auxiliary(struct heic *heic, struct heif_image_handle *handle, heif_item_id item)
+{
+    int status = REFOCUS_OK;
+    const char *type = NULL;
+
+    if (heif_image_handle_get_auxiliary_type(handle, &type).code != heif_error_Ok) {
+        return REFOCUS_OK;
+    }
+    heic->read->kept.gain_map |= strstr(type, "hdrgainmap") != NULL;
+    if (rf_is_matte(type) && heic->read->picture_always && !heic->read->matte.pixels) {
+        status = take_matte(heic, handle, item);
+    } else {
+        rf_note(heic->read->info, "HEIC: auxiliary image passed over, it is no depth but \"%.80s\"",
+                type);
+        if (heic->read->gain && !heic->read->gain->samples.pixels &&
+            strcmp(type, "urn:com:apple:photo:2020:aux:hdrgainmap") == 0) {
+            status = take_gain_map(heic, handle, item);
+        }
+    }
+    heif_image_handle_free_auxiliary_types(handle, &type);
+    return status;
+}
+
 /* Gain maps and mattes are auxiliary images too. */
-static void note_auxiliaries(struct heic *heic)
+static int read_auxiliaries(struct heic *heic)
 {
     enum { MOST = 8 };
     heif_item_id items[MOST];
     const int filter = LIBHEIF_AUX_IMAGE_FILTER_OMIT_DEPTH | LIBHEIF_AUX_IMAGE_FILTER_OMIT_ALPHA;
     const int count =
         heif_image_handle_get_list_of_auxiliary_image_IDs(heic->primary, filter, items, MOST);
+    int status = REFOCUS_OK;
 
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count && status == REFOCUS_OK; i++) {
         struct heif_image_handle *handle = NULL;
-        const char *type = NULL;
 
-        if (heif_image_handle_get_auxiliary_image_handle(heic->primary, items[i], &handle).code !=
+        if (heif_image_handle_get_auxiliary_image_handle(heic->primary, items[i], &handle).code ==
             heif_error_Ok) {
-            continue;
+            status = read_auxiliary(heic, handle, items[i]);
+            heif_image_handle_release(handle);
         }
-        if (heif_image_handle_get_auxiliary_type(handle, &type).code == heif_error_Ok) {
-            rf_note(heic->read->info,
-                    "HEIC: auxiliary image passed over, it is no depth but \"%.80s\"", type);
-            heif_image_handle_free_auxiliary_types(handle, &type);
-        }
-        heif_image_handle_release(handle);
     }
+    return status;
 }
 
 static int read_exif(struct heic *heic)
@@ -293,7 +374,7 @@ static int read_exif(struct heic *heic)
         return REFOCUS_OK;
     }
     size = heif_image_handle_get_metadata_size(heic->primary, item);
-    status = rf_check_bytes(read, size, "its EXIF");
+    status = rf_check_metadata(read, size, "its EXIF");
     if (status != REFOCUS_OK || size < 4) {
         return status;
     }
@@ -325,7 +406,7 @@ static int read_icc(struct heic *heic)
         return REFOCUS_OK;
     }
     profile.size = heif_image_handle_get_raw_color_profile_size(heic->primary);
-    status = rf_check_bytes(read, profile.size, "its ICC profile");
+    status = rf_check_metadata(read, profile.size, "its ICC profile");
     if (status != REFOCUS_OK || profile.size == 0) {
         return status;
     }
@@ -347,6 +428,9 @@ static void say_orientation(struct heic *heic)
     info->stored_width = heif_image_handle_get_ispe_width(heic->primary);
     info->stored_height = heif_image_handle_get_ispe_height(heic->primary);
     info->orientation = rf_heif_orientation(heic->file, 0);
+    if (info->focus_x >= 0.0) {
+        rf_orient_point(&info->focus_x, &info->focus_y, info->orientation);
+    }
     if (info->orientation != 1) {
         rf_note(info, "HEIC: the container's orientation %d is applied to photo and depth",
                 info->orientation);
@@ -379,12 +463,16 @@ static int run(struct heic *heic)
     struct heif_error error;
     int status;
 
+    if (rf_heif_is_sequence(heic->file)) {
+        return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
+                       "it is a HEIF image sequence, a film without a still picture; give one of "
+                       "its pictures as HEIC or JPEG");
+    }
     /* libheif takes a side and allows its square. */
     heif_context_set_maximum_image_size_limit(
-        heic->context, (int)fmin(sqrt((double)read->limits.max_pixels), 65535.0));
+        heic->context, (int)fmin(ceil(sqrt((double)read->limits.max_pixels)), 65535.0));
     heif_context_set_max_decoding_threads(heic->context, 0);
     heic->options->strict_decoding = 1;
-    heic->options->convert_hdr_to_8bit = 1;
     error = heif_context_read_from_memory_without_copy(heic->context, heic->file.data,
                                                        heic->file.size, NULL);
     if (error.code == heif_error_Ok) {
@@ -397,18 +485,27 @@ static int run(struct heic *heic)
         status = take_second(heic);
         return status == REFOCUS_OK ? decode(heic, heic->primary, true, &read->image) : status;
     }
-    say_orientation(heic);
     read->info->stored_bits = heif_image_handle_get_luma_bits_per_pixel(heic->primary);
     status = read_exif(heic);
+    say_orientation(heic);
+    if (heif_context_get_number_of_top_level_images(heic->context) == 2) {
+        rf_note_view(read->info, "HEIC", 2);
+    }
     if (status == REFOCUS_OK) {
         status = read_icc(heic);
     }
     if (status == REFOCUS_OK) {
-        note_auxiliaries(heic);
+        status = read_auxiliaries(heic);
+    }
+    if (status == REFOCUS_OK) {
         status = read_depth(heic);
     }
     if (status == REFOCUS_OK && (read->picture_always || !read->samples.pixels)) {
         status = decode(heic, heic->primary, true, &read->image);
+        status = status == REFOCUS_OK ? rf_heic_settle_light(read, heic->primary) : status;
+    }
+    if (status == REFOCUS_OK) {
+        status = rf_heic_keep(read, heic->primary);
     }
     return status;
 }
@@ -418,7 +515,7 @@ int rf_read_heic(struct rf_read *read, struct rf_bytes file)
     struct heic heic = {.read = read, .file = file};
     int status;
 
-    memcpy(read->info->container, "HEIC", 5);
+    memcpy(read->info->container, rf_heic_is_avif(file) ? "AVIF" : "HEIC", 5);
     heic.context = heif_context_alloc();
     heic.options = heif_decoding_options_alloc();
     status = heic.context && heic.options ? run(&heic) : rf_fail_memory(read->reason);

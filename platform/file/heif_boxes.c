@@ -3,7 +3,6 @@
  * 14496-12. */
 #include "heif_boxes.h"
 
-#include <stdbool.h>
 #include <string.h>
 
 struct box {
@@ -102,15 +101,16 @@ static void apply_property(struct turn *turn, struct rf_bytes properties, uint32
     }
 }
 
-/* Item property associations say which properties, counted from 1, each item has. */
-static void apply_associations(struct turn *turn, struct rf_bytes ipma, struct rf_bytes properties,
+/* Item property associations say which properties, counted from 1, each item has. Returns whether
+ * this item is among them: an item is once at most, and no box is looked at behind it. */
+static bool apply_associations(struct turn *turn, struct rf_bytes ipma, struct rf_bytes properties,
                                uint32_t item)
 {
     size_t id_bytes, index_bytes;
     uint32_t entries;
 
     if (ipma.size < 8) {
-        return;
+        return false;
     }
     id_bytes = ipma.data[0] < 1 ? 2 : 4;
     index_bytes = ipma.data[3] & 1 ? 2 : 1;
@@ -129,9 +129,10 @@ static void apply_associations(struct turn *turn, struct rf_bytes ipma, struct r
             skip(&ipma, index_bytes);
         }
         if (wanted) {
-            return;
+            return true;
         }
     }
+    return false;
 }
 
 static int orientation_of(struct turn turn)
@@ -170,9 +171,17 @@ int rf_heif_orientation(struct rf_bytes file, uint32_t item)
         return 1;
     }
     while (next_box(&iprp, &box)) {
-        if (strcmp(box.type, "ipma") == 0) {
-            apply_associations(&turn, box.content, properties, item);
+        if (strcmp(box.type, "ipma") == 0 &&
+            apply_associations(&turn, box.content, properties, item)) {
+            break;
         }
     }
     return orientation_of(turn);
+}
+
+bool rf_heif_is_sequence(struct rf_bytes file)
+{
+    struct rf_bytes content;
+
+    return find_box(file, "moov", &content) && !find_box(file, "meta", &content);
 }

@@ -1,11 +1,14 @@
-/* heif_boxes.h: the orientation that a HEIF container states for its pictures. */
+/* heif_boxes.h: what a HEIF container states that libheif does not tell. */
 #ifndef RF_FILE_HEIF_BOXES_H
 #define RF_FILE_HEIF_BOXES_H
 
+#include <stdbool.h>
 #include "bytes.h"
 
 /* EXIF's number for the rotation and mirroring of an item; item 0 is the main picture. 1 when the
  * container states none. */
 int rf_heif_orientation(struct rf_bytes file, uint32_t item);
+/* Whether the file holds tracks alone, and no picture. */
+bool rf_heif_is_sequence(struct rf_bytes file);
 
 #endif

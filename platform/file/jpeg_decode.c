@@ -1,7 +1,6 @@
 /* jpeg_decode.c: the pixels of a JPEG are decoded by TurboJPEG, which needs no jumps. */
 #include "jpeg_decode.h"
 
-#include <limits.h>
 #include <string.h>
 #include <turbojpeg.h>
 
@@ -13,20 +12,46 @@ static int fail_jpeg(const struct rf_read *read, tjhandle jpeg)
     return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged JPEG: %s", tjGetErrorStr2(jpeg));
 }
 
-/* TurboJPEG paints a missing rest grey without an error, so the end of the picture must be there.
- */
-static bool is_whole(struct rf_bytes file)
+enum { MARKER_SOS = 0xda };
+
+/* Count the scans. TurboJPEG paints a missing rest grey without an error, so the end of the picture
+ * must be there. */
+static int survey(const struct rf_read *read, struct rf_bytes file, uint32_t *scans)
 {
     struct rf_jpeg_walk walk;
-    enum rf_jpeg_step step = RF_JPEG_SEGMENT;
+    enum rf_jpeg_step step = RF_JPEG_DAMAGED;
+    uint32_t segments = 0;
 
-    if (!rf_jpeg_walk_begin(&walk, file)) {
-        return false;
+    *scans = 0;
+    if (rf_jpeg_walk_begin(&walk, file)) {
+        while ((step = rf_jpeg_walk_next(&walk)) == RF_JPEG_SEGMENT) {
+            *scans += walk.marker == MARKER_SOS;
+            if (++segments > read->limits.max_segments || *scans > read->limits.max_scans) {
+                return rf_fail(
+                    read->reason, REFOCUS_ERR_SIZE, "its %s are more than the limit of %u",
+                    *scans > read->limits.max_scans ? "scans" : "segments",
+                    (unsigned)(*scans > read->limits.max_scans ? read->limits.max_scans
+                                                               : read->limits.max_segments));
+            }
+        }
     }
-    while (step == RF_JPEG_SEGMENT) {
-        step = rf_jpeg_walk_next(&walk);
+    return step == RF_JPEG_END
+               ? REFOCUS_OK
+               : rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                         "damaged JPEG: it ends in the middle of the picture; copy it again");
+}
+
+/* Each scan goes over all blocks, and of several scans all coefficients are kept, 2 bytes each. */
+static int check_work(const struct rf_read *read, const struct rf_raster *raster, uint32_t scans)
+{
+    const uint64_t pixels = (uint64_t)raster->width * (uint64_t)raster->height;
+
+    if (pixels * scans / 20 > read->limits.max_pixels) {
+        return rf_fail(read->reason, REFOCUS_ERR_SIZE,
+                       "its %u scans of %d x %d pixels take too long; save it with fewer",
+                       (unsigned)scans, (int)raster->width, (int)raster->height);
     }
-    return step == RF_JPEG_END;
+    return rf_check_memory(read, pixels * (uint64_t)raster->channels * (scans > 1 ? 3 : 1));
 }
 
 static int read_header(const struct rf_read *read, tjhandle jpeg, struct rf_bytes file,
@@ -87,18 +112,21 @@ static int read_pixels(const struct rf_read *read, tjhandle jpeg, struct rf_byte
 int rf_jpeg_decode(const struct rf_read *read, struct rf_bytes file, struct rf_raster *raster)
 {
     tjhandle jpeg;
+    uint32_t scans;
     int status;
 
     memset(raster, 0, sizeof *raster);
-    if (file.size > ULONG_MAX || !is_whole(file)) {
-        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                       "damaged JPEG: it ends in the middle of the picture; copy it again");
+    if ((status = survey(read, file, &scans)) != REFOCUS_OK) {
+        return status;
     }
     jpeg = tjInitDecompress();
     if (!jpeg) {
         return rf_fail_memory(read->reason);
     }
     status = read_header(read, jpeg, file, raster);
+    if (status == REFOCUS_OK) {
+        status = check_work(read, raster, scans);
+    }
     if (status == REFOCUS_OK) {
         status = rf_raster_alloc(read, raster);
     }

@@ -5,14 +5,18 @@
 #include <string.h>
 
 #include "apple.h"
+#include "dynamic.h"
 #include "exif.h"
+#include "gain_map_read.h"
 #include "gdepth.h"
 #include "icc.h"
 #include "jpeg_decode.h"
 #include "jpeg_walk.h"
+#include "kept.h"
 #include "mpf.h"
 #include "own_xmp.h"
 #include "reason.h"
+#include "trailer.h"
 #include "xmp_extended.h"
 #include "xmp_parse.h"
 
@@ -72,20 +76,28 @@ static void take_segment(struct parts *parts, int marker, struct rf_bytes segmen
     }
 }
 
-static bool find_parts(struct rf_bytes file, struct parts *parts)
+static int find_parts(const struct rf_read *read, struct rf_bytes file, struct parts *parts)
 {
     struct rf_jpeg_walk walk;
-    enum rf_jpeg_step step;
+    enum rf_jpeg_step step = RF_JPEG_DAMAGED;
+    uint32_t segments = 0;
 
     memset(parts, 0, sizeof *parts);
-    if (!rf_jpeg_walk_begin(&walk, file)) {
-        return false;
-    }
-    while ((step = rf_jpeg_walk_next(&walk)) == RF_JPEG_SEGMENT) {
-        take_segment(parts, walk.marker, walk.segment);
+    if (rf_jpeg_walk_begin(&walk, file)) {
+        while ((step = rf_jpeg_walk_next(&walk)) == RF_JPEG_SEGMENT) {
+            if (++segments > read->limits.max_segments) {
+                return rf_fail(read->reason, REFOCUS_ERR_SIZE,
+                               "its segments are more than the limit of %u",
+                               (unsigned)read->limits.max_segments);
+            }
+            take_segment(parts, walk.marker, walk.segment);
+        }
     }
     parts->end = walk.position;
-    return step == RF_JPEG_END;
+    return step == RF_JPEG_END
+               ? REFOCUS_OK
+               : rf_fail(read->reason, REFOCUS_ERR_FORMAT,
+                         "damaged JPEG: it ends in the middle of the picture; copy it again");
 }
 
 static int join_icc(struct rf_read *read, const struct parts *parts)
@@ -118,17 +130,36 @@ static int join_icc(struct rf_read *read, const struct parts *parts)
 }
 
 #ifdef RF_HAVE_XMP
-static bool mentions_depth(struct rf_bytes packet)
+static bool mentions(struct rf_bytes packet, const char *name)
 {
-    static const char name[] = "ns.google.com/photos/1.0/depthmap/";
-    const size_t n = sizeof name - 1;
+    const size_t n = strlen(name);
 
     for (size_t i = 0; i + n <= packet.size; i++) {
-        if (packet.data[i] == 'n' && memcmp(packet.data + i, name, n) == 0) {
+        if (packet.data[i] == (uint8_t)*name && memcmp(packet.data + i, name, n) == 0) {
             return true;
         }
     }
     return false;
+}
+
+static bool mentions_depth(struct rf_bytes packet)
+{
+    return mentions(packet, "ns.google.com/photos/1.0/depthmap/") ||
+           mentions(packet, "ns.google.com/photos/dd/1.0/depthmap/");
+}
+
+/* Editors leave XMP of hundreds of thousands of elements in photos: those without depth are as
+ * good without it. */
+static bool pass_over(struct rf_read *read, int status, struct rf_bytes standard,
+                      struct rf_bytes packet)
+{
+    if ((status != REFOCUS_ERR_FORMAT && status != REFOCUS_ERR_SIZE) || mentions_depth(standard) ||
+        mentions_depth(packet)) {
+        return false;
+    }
+    rf_note(read->info, "XMP: %s and without depth, passed over",
+            status == REFOCUS_ERR_SIZE ? "beyond the limits" : "damaged");
+    return true;
 }
 
 /* Read the standard packet and, when it names one, the extended packet. */
@@ -138,8 +169,7 @@ static int read_xmp(struct rf_read *read, struct rf_bytes file, struct rf_bytes 
     struct refocus_blob extended = {NULL, 0};
     int status = rf_xmp_parse(read, packet, xmp);
 
-    if (status == REFOCUS_ERR_FORMAT && !mentions_depth(packet)) {
-        rf_note(read->info, "XMP: damaged and without depth, passed over");
+    if (pass_over(read, status, packet, packet)) {
         return REFOCUS_OK;
     }
     if (status != REFOCUS_OK || !xmp->value[RF_XMP_EXTENDED]) {
@@ -150,6 +180,10 @@ static int read_xmp(struct rf_read *read, struct rf_bytes file, struct rf_bytes 
     if (status == REFOCUS_OK) {
         status = rf_xmp_parse(read, (struct rf_bytes){extended.data, extended.size}, xmp);
     }
+    if (status == REFOCUS_ERR_SIZE &&
+        pass_over(read, status, packet, (struct rf_bytes){extended.data, extended.size})) {
+        status = REFOCUS_OK;
+    }
     free(extended.data);
     return status;
 }
@@ -158,8 +192,11 @@ static int read_xmp(struct rf_read *read, struct rf_bytes file, struct rf_bytes 
 static int read_older(struct rf_read *read, struct rf_bytes file, struct rf_bytes packet,
                       struct rf_xmp *xmp)
 {
-    static const enum rf_xmp_key keys[] = {RF_XMP_IMAGE_MIME, RF_XMP_IMAGE_DATA};
-    struct rf_xmp older = {{NULL}, {0}};
+    static const enum rf_xmp_key keys[] = {RF_XMP_IMAGE_MIME, RF_XMP_IMAGE_DATA,
+                                           RF_XMP_NOTE_ORIGINAL, RF_XMP_NOTE_FOCUS,
+                                           RF_XMP_NOTE_BLUR};
+    const int count = sizeof keys / sizeof *keys;
+    struct rf_xmp older = {.items = 0};
     bool found;
     double blur;
     int status = read_xmp(read, file, packet, &older);
@@ -168,7 +205,11 @@ static int read_older(struct rf_read *read, struct rf_bytes file, struct rf_byte
         status =
             rf_xmp_number(read, &older, RF_XMP_FOCUS_BLUR, "GFocus:BlurAtInfinity", &found, &blur);
     }
-    for (int i = 0; status == REFOCUS_OK && !(found && blur == 0.0) && i < 2; i++) {
+    if (status == REFOCUS_OK && found && blur == 0.0 && !older.value[RF_XMP_NOTE_ORIGINAL]) {
+        rf_xmp_free(&older);
+        return REFOCUS_OK;
+    }
+    for (int i = 0; status == REFOCUS_OK && i < count; i++) {
         xmp->value[keys[i]] = older.value[keys[i]];
         xmp->length[keys[i]] = older.length[keys[i]];
         older.value[keys[i]] = NULL;
@@ -181,7 +222,7 @@ static int read_older(struct rf_read *read, struct rf_bytes file, struct rf_byte
 static int read_depth(struct rf_read *read, struct rf_bytes file, const struct parts *parts)
 {
     const struct rf_bytes main_picture = {file.data, parts->end};
-    struct rf_xmp xmp = {{NULL}, {0}};
+    struct rf_xmp xmp = {.items = 0};
     int status = REFOCUS_OK;
 
     if (parts->xmp.data) {
@@ -191,6 +232,9 @@ static int read_depth(struct rf_read *read, struct rf_bytes file, const struct p
         }
         if (status == REFOCUS_OK) {
             status = rf_read_gdepth(read, &xmp);
+        }
+        if (status == REFOCUS_OK) {
+            status = rf_read_dynamic(read, file, &xmp, parts->end);
         }
     }
     rf_xmp_free(&xmp);
@@ -241,24 +285,34 @@ int rf_read_jpeg(struct rf_read *read, struct rf_bytes file)
     int status;
 
     memcpy(read->info->container, "JPEG", 5);
-    if (!find_parts(file, &parts)) {
-        return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                       "damaged JPEG: it ends in the middle of the picture; copy it again");
+    status = find_parts(read, file, &parts);
+    if (status != REFOCUS_OK) {
+        return status;
     }
     if (read->second) {
         return read_second(read, file, &parts);
     }
     status = rf_exif_take(read, parts.exif, true);
+    read->kept.original_orientation = read->kept.depth_orientation = read->orientation;
     if (status == REFOCUS_OK) {
         status = join_icc(read, &parts);
     }
     if (status == REFOCUS_OK) {
         status = read_depth(read, file, &parts);
     }
-    /* rf_read_gdepth() may have put the all-in-focus original there already. */
+    if (status == REFOCUS_OK) {
+        status = rf_read_trailer(read, file, parts.end);
+    }
+    if (status == REFOCUS_OK) {
+        status = rf_read_gain_map(read, file, parts.mpf, parts.end);
+    }
+    /* A reader of depth may have put the all-in-focus original there already. */
     if (status == REFOCUS_OK && !read->image.pixels &&
         (read->picture_always || !read->samples.pixels)) {
         status = rf_jpeg_decode(read, (struct rf_bytes){file.data, parts.end}, &read->image);
+    }
+    if (status == REFOCUS_OK) {
+        status = rf_keep(read, RF_KEPT_JPEG, (struct rf_bytes){file.data, parts.end});
     }
     return status;
 }

@@ -8,6 +8,7 @@ const char rf_jpeg_icc_signature[12] = "ICC_PROFILE";
 const char rf_jpeg_xmp_signature[29] = "http://ns.adobe.com/xap/1.0/";
 const char rf_jpeg_extended_signature[35] = "http://ns.adobe.com/xmp/extension/";
 const char rf_jpeg_mpf_signature[4] = "MPF";
+const char rf_jpeg_gain_signature[28] = "urn:iso:std:iso:ts:21496:-1";
 
 enum { MARKER_TEM = 0x01, MARKER_RST0 = 0xd0, MARKER_RST7 = 0xd7 };
 enum { MARKER_SOI = 0xd8, MARKER_EOI = 0xd9 };

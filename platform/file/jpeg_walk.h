@@ -26,5 +26,6 @@ extern const char rf_jpeg_icc_signature[12];
 extern const char rf_jpeg_xmp_signature[29];
 extern const char rf_jpeg_extended_signature[35];
 extern const char rf_jpeg_mpf_signature[4];
+extern const char rf_jpeg_gain_signature[28];
 
 #endif

@@ -1,44 +1,45 @@
-/* jpeg_write.c: a JPEG is written by TurboJPEG; EXIF and the ICC profile go in behind its JFIF
- * segment. */
+/* jpeg_write.c: a JPEG is written; what else its file says goes in behind its JFIF segment, and
+ * other pictures behind the main one. */
 #include "jpeg_write.h"
 
-#include <limits.h>
+#include <stdlib.h>
 #include <string.h>
-#include <turbojpeg.h>
 
+#include "exif.h"
+#include "jpeg_behind.h"
+#include "jpeg_encode.h"
+#include "jpeg_keep.h"
+#include "jpeg_segments.h"
 #include "jpeg_walk.h"
 #include "reason.h"
 
 enum {
-    SEGMENT_MAX = 65533,   /* payload of a segment: 65535 less the 2 bytes of its length */
-    JPEG_SIDE_MAX = 65500, /* the limit of libjpeg */
-    ICC_CHUNK = SEGMENT_MAX - 14,
+    ICC_CHUNK = RF_JPEG_SEGMENT_MAX - 14,
     DEFAULT_QUALITY = 95,
 };
 
-static void write_segment(struct rf_store *store, uint8_t marker, const char *signature,
-                          size_t signature_size, const uint8_t *data, size_t size)
+static int write_exif(struct rf_store *store, const struct refocus_blob *exif,
+                      const struct rf_rows *rows, struct refocus_reason *reason)
 {
-    const size_t length = signature_size + size + 2;
-    const uint8_t head[4] = {0xff, marker, (uint8_t)(length >> 8), (uint8_t)length};
+    uint8_t *own;
 
-    rf_store_write(store, head, sizeof head);
-    rf_store_write(store, signature, signature_size);
-    rf_store_write(store, data, size);
-}
-
-static void write_exif(struct rf_store *store, const struct refocus_blob *exif,
-                       struct refocus_reason *reason)
-{
     if (!exif || !exif->data || exif->size == 0) {
-        return;
+        return REFOCUS_OK;
     }
-    if (exif->size > SEGMENT_MAX - 6) {
-        rf_fail(reason, REFOCUS_OK,
-                "EXIF of %zu bytes does not fit into a JPEG: left out; PNG takes it", exif->size);
-        return;
+    if (exif->size > RF_JPEG_SEGMENT_MAX - 6) {
+        rf_leave_out(reason, "EXIF of %zu bytes does not fit into a JPEG: left out; PNG takes it",
+                     exif->size);
+        return REFOCUS_OK;
     }
-    write_segment(store, 0xe1, rf_jpeg_exif_signature, 6, exif->data, exif->size);
+    own = malloc(exif->size);
+    if (!own) {
+        return rf_fail_memory(reason);
+    }
+    memcpy(own, exif->data, exif->size);
+    rf_exif_set_size(own, exif->size, (uint32_t)rows->width, (uint32_t)rows->height);
+    rf_jpeg_put_segment(store, RF_JPEG_APP1, rf_jpeg_exif_signature, 6, own, exif->size);
+    free(own);
+    return REFOCUS_OK;
 }
 
 static void write_icc(struct rf_store *store, const struct refocus_blob *icc,
@@ -51,8 +52,8 @@ static void write_icc(struct rf_store *store, const struct refocus_blob *icc,
     }
     count = (icc->size + ICC_CHUNK - 1) / ICC_CHUNK;
     if (count > 255) {
-        rf_fail(reason, REFOCUS_OK, "ICC profile of %zu bytes does not fit into a JPEG: left out",
-                icc->size);
+        rf_leave_out(reason, "ICC profile of %zu bytes does not fit into a JPEG: left out",
+                     icc->size);
         return;
     }
     for (size_t i = 0; i < count; i++) {
@@ -63,86 +64,40 @@ static void write_icc(struct rf_store *store, const struct refocus_blob *icc,
         memcpy(signature, rf_jpeg_icc_signature, 12);
         signature[12] = (char)(uint8_t)(i + 1);
         signature[13] = (char)(uint8_t)count;
-        write_segment(store, 0xe2, signature, 14, icc->data + from, size);
+        rf_jpeg_put_segment(store, RF_JPEG_APP2, signature, 14, icc->data + from, size);
     }
-}
-
-static int pixel_format(uint32_t format)
-{
-    switch (format) {
-    case REFOCUS_FORMAT_BGR8:
-        return TJPF_BGR;
-    case REFOCUS_FORMAT_RGBA8:
-        return TJPF_RGBX;
-    case REFOCUS_FORMAT_BGRA8:
-        return TJPF_BGRX;
-    default:
-        return TJPF_RGB;
-    }
-}
-
-static int compress(tjhandle jpeg, const struct rf_rows *rows, int quality, unsigned char **bytes,
-                    unsigned long *size)
-{
-    const bool flipped = rows->stride < 0;
-    const ptrdiff_t step = flipped ? -rows->stride : rows->stride;
-    const uint8_t *const first =
-        flipped ? rows->top + (rows->height - 1) * rows->stride : rows->top;
-    /* Chroma is halved where it does not show: 4:4:4 keeps coloured edges from 90 up.
-     */
-    const int sampling = quality >= 90 ? TJSAMP_444 : TJSAMP_420;
-
-    return tjCompress2(jpeg, first, rows->width, rows->height == 1 ? 0 : (int)step, rows->height,
-                       pixel_format(rows->format), bytes, size, sampling, quality,
-                       TJFLAG_ACCURATEDCT | (flipped ? TJFLAG_BOTTOMUP : 0));
-}
-
-/* Our segments belong behind SOI and JFIF. */
-static size_t find_insertion(const unsigned char *bytes, unsigned long size)
-{
-    size_t length;
-
-    if (size < 6 || bytes[2] != 0xff || bytes[3] != 0xe0) {
-        return 2;
-    }
-    length = 4 + ((size_t)bytes[4] << 8 | bytes[5]);
-    return length <= size ? length : 2;
 }
 
 int rf_write_jpeg(struct rf_store *store, const struct rf_rows *rows,
                   const struct refocus_write_options *options, struct refocus_reason *reason)
 {
     const int quality = options && options->quality ? options->quality : DEFAULT_QUALITY;
-    unsigned char *bytes = NULL;
-    unsigned long size = 0;
-    int status = REFOCUS_OK;
-    tjhandle jpeg;
+    struct rf_behind behind = {.count = 0};
+    struct rf_jpeg_encoded jpeg;
+    int status = rf_jpeg_encode(&jpeg, rows, quality, reason);
 
-    if (rows->width > JPEG_SIDE_MAX || rows->height > JPEG_SIDE_MAX) {
-        return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                       "a JPEG has at most %d pixels a side; write a PNG", JPEG_SIDE_MAX);
+    if (options && status == REFOCUS_OK) {
+        status = rf_behind_make(&behind, rows, options, reason);
     }
-    if (rows->height > 1 && (rows->stride > INT_MAX || rows->stride < -INT_MAX)) {
-        return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                       "rows lie too far apart in memory for a JPEG; write a PNG");
+    if (options && status == REFOCUS_OK) {
+        rf_jpeg_keep_density(options, jpeg.bytes, jpeg.split);
     }
-    jpeg = tjInitCompress();
-    if (!jpeg) {
-        return rf_fail_memory(reason);
+    if (status == REFOCUS_OK) {
+        rf_store_write(store, jpeg.bytes, jpeg.split);
     }
-    if (compress(jpeg, rows, quality, &bytes, &size) != 0) {
-        status = rf_fail(reason, REFOCUS_ERR_MEMORY, "the JPEG encoder gave up: %s",
-                         tjGetErrorStr2(jpeg));
-    } else {
-        const size_t split = find_insertion(bytes, size);
-        rf_store_write(store, bytes, split);
-        if (options) {
-            write_exif(store, options->exif, reason);
-            write_icc(store, options->icc, reason);
-        }
-        rf_store_write(store, bytes + split, size - split);
+    if (options && status == REFOCUS_OK) {
+        status = write_exif(store, options->exif, rows, reason);
     }
-    tjFree(bytes);
-    tjDestroy(jpeg);
+    if (options && status == REFOCUS_OK) {
+        status = rf_jpeg_put_kept(store, options, rows, &behind, reason);
+        write_icc(store, options->icc, reason);
+        rf_behind_put_index(store, &behind, jpeg.size - jpeg.split);
+    }
+    if (status == REFOCUS_OK) {
+        rf_store_write(store, jpeg.bytes + jpeg.split, jpeg.size - jpeg.split);
+        rf_behind_put(store, &behind);
+    }
+    rf_behind_free(&behind);
+    rf_jpeg_encoded_free(&jpeg);
     return status;
 }

@@ -3,29 +3,52 @@
 #include "load.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "reason.h"
 
-/* Room for one byte more than the size shows the end without a second allocation. */
-static size_t first_room(FILE *stream, uint64_t max_bytes)
-{
-    const size_t pipe_room = 1 << 16;
-    struct stat facts;
+enum { BEGINNING = 1 << 16 };
 
-    if (fstat(fileno(stream), &facts) == 0 && S_ISREG(facts.st_mode) && facts.st_size >= 0 &&
-        (uint64_t)facts.st_size <= max_bytes && (uint64_t)facts.st_size < SIZE_MAX) {
-        return (size_t)facts.st_size + 1;
-    }
-    return pipe_room;
+static int fail_large(struct refocus_reason *reason, uint64_t max_bytes)
+{
+    return rf_fail(reason, REFOCUS_ERR_SIZE, "it is larger than the limit of %llu bytes",
+                   (unsigned long long)max_bytes);
 }
 
-static int read_all(FILE *stream, uint64_t max_bytes, struct refocus_reason *reason,
+/* A pipe may keep its reader waiting for ever, and a device goes on without an end. The room is one
+ * byte more than the file's size, which shows its end without a second allocation; files of /proc
+ * have no size. */
+static int check_file(int file, uint64_t max_bytes, struct refocus_reason *reason, size_t *room)
+{
+    struct stat facts;
+
+    if (fstat(file, &facts) != 0) {
+        return rf_fail_errno(reason, errno, "cannot read it");
+    }
+    if (S_ISDIR(facts.st_mode)) {
+        return rf_fail(reason, REFOCUS_ERR_IO, "it is a folder; give the name of a file");
+    }
+    if (!S_ISREG(facts.st_mode)) {
+        return rf_fail(reason, REFOCUS_ERR_IO,
+                       "it is a pipe, socket or device; give the name of a file");
+    }
+    if (facts.st_size < 0 || (uint64_t)facts.st_size > max_bytes ||
+        (uint64_t)facts.st_size >= SIZE_MAX) {
+        return fail_large(reason, max_bytes);
+    }
+    *room = (size_t)facts.st_size + 1;
+    return REFOCUS_OK;
+}
+
+static int read_all(FILE *stream, size_t whole, uint64_t max_bytes,
+                    bool (*is_known)(struct rf_bytes), struct refocus_reason *reason,
                     struct refocus_blob *blob)
 {
-    size_t room = first_room(stream, max_bytes);
+    size_t room = whole > BEGINNING && !is_known ? whole : BEGINNING;
 
     for (;;) {
         uint8_t *const grown = realloc(blob->data, room);
@@ -39,34 +62,44 @@ static int read_all(FILE *stream, uint64_t max_bytes, struct refocus_reason *rea
             return rf_fail_errno(reason, errno ? errno : EIO, "cannot read it");
         }
         if (blob->size > max_bytes) {
-            return rf_fail(reason, REFOCUS_ERR_SIZE, "it is larger than the limit of %llu bytes",
-                           (unsigned long long)max_bytes);
+            return fail_large(reason, max_bytes);
         }
-        if (blob->size < room) {
+        if (blob->size < room ||
+            (is_known && !is_known((struct rf_bytes){blob->data, blob->size}))) {
             return REFOCUS_OK;
         }
         if (room > SIZE_MAX / 2) {
             return rf_fail_memory(reason);
         }
-        room *= 2;
+        room = whole > room ? whole : 2 * room;
     }
 }
 
-int rf_load(const char *path, uint64_t max_bytes, struct refocus_reason *reason,
-            struct refocus_blob *blob)
+/* O_NONBLOCK: a pipe without a writer is opened all the same, and refused. */
+int rf_load(const char *path, uint64_t max_bytes, bool (*is_known)(struct rf_bytes beginning),
+            struct refocus_reason *reason, struct refocus_blob *blob)
 {
-    FILE *stream;
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    FILE *stream = NULL;
+    size_t room = 0;
     int status;
 
     blob->data = NULL;
     blob->size = 0;
-    errno = 0;
-    stream = fopen(path, "rbe");
-    if (!stream) {
-        return rf_fail_errno(reason, errno ? errno : EIO, "cannot open it");
+    if (file < 0) {
+        return rf_fail_errno(reason, errno, "cannot open it");
     }
-    status = read_all(stream, max_bytes, reason, blob);
-    fclose(stream);
+    status = check_file(file, max_bytes, reason, &room);
+    if (status == REFOCUS_OK) {
+        stream = fdopen(file, "rb");
+        status = stream ? read_all(stream, room, max_bytes, is_known, reason, blob)
+                        : rf_fail_errno(reason, errno, "cannot open it");
+    }
+    if (stream) {
+        fclose(stream);
+    } else {
+        close(file);
+    }
     if (status != REFOCUS_OK) {
         free(blob->data);
         blob->data = NULL;
@@ -87,5 +120,5 @@ int refocus_file_read(const char *path, uint64_t max_bytes, struct refocus_blob 
                        "there is no name or no place for "
                        "it");
     }
-    return rf_load(path, max_bytes, reason, blob);
+    return rf_load(path, max_bytes, NULL, reason, blob);
 }

@@ -46,6 +46,7 @@ bool rf_mpf_parse(struct rf_bytes tiff, struct rf_mpf *mpf)
         return false;
     }
     for (; size >= ENTRY_BYTES && mpf->count < RF_MPF_MAX; size -= ENTRY_BYTES) {
+        mpf->image[mpf->count].type = get(tiff, entries, 4) & 0xffffff;
         mpf->image[mpf->count].size = get(tiff, entries + 4, 4);
         mpf->image[mpf->count].offset = get(tiff, entries + 8, 4);
         mpf->count++;

@@ -6,7 +6,9 @@
 #include "bytes.h"
 
 enum { RF_MPF_MAX = 32 };
+enum { RF_MPF_VIEW = 0x020002 }; /* a view for stereo */
 struct rf_mpf_image {
+    uint32_t type;   /* code of the MP type, 24 bits */
     uint64_t offset; /* counted from the begin of the MPF segment's TIFF header; 0: the main one */
     uint64_t size;
 };

@@ -106,3 +106,21 @@ int rf_orient_inverse(int orientation)
 {
     return orientation == 6 ? 8 : orientation == 8 ? 6 : orientation;
 }
+
+int rf_orient_both(int first, int second)
+{
+    int orientation = 1;
+
+    /* No two orientations bring this point to the same place. */
+    for (; orientation < 8; orientation++) {
+        double x = 0.125, y = 0.25, u = x, v = y;
+
+        rf_orient_point(&x, &y, first);
+        rf_orient_point(&x, &y, second);
+        rf_orient_point(&u, &v, orientation);
+        if (x == u && y == v) {
+            break;
+        }
+    }
+    return orientation;
+}

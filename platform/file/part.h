@@ -10,4 +10,7 @@
 int rf_decode_part(const struct rf_read *read, struct rf_bytes part, const char *what,
                    struct rf_raster *raster);
 
+/* Pixels that a part claims to have, to be known before any is decoded; 0 for no PNG or JPEG. */
+uint64_t rf_part_pixels(struct rf_bytes part);
+
 #endif

@@ -1,5 +1,5 @@
-/* pfm.c: PFM, depth as 32-bit floats, is read and written. Rows run from the bottom up, and the
- * sign of the scale says the byte order. */
+/* pfm.c: PFM, 32-bit floats of depth or of linear light in three colours, is read and written. Rows
+ * run from the bottom up, and the sign of the scale says the byte order. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -64,7 +64,9 @@ static float load_float(const uint8_t *b, bool little_endian)
 
 static int read_pfm(struct rf_read *read, struct rf_bytes file)
 {
-    struct rf_raster *const raster = &read->samples;
+    const bool colour = file.data[1] == 'F';
+    struct rf_raster *const raster = colour ? &read->image : &read->samples;
+    const size_t channels = colour ? 3 : 1;
     size_t position = 2, stride;
     uint64_t width, height;
     char word[32];
@@ -72,10 +74,14 @@ static int read_pfm(struct rf_read *read, struct rf_bytes file)
     int status;
 
     snprintf(read->info->container, sizeof read->info->container, "PFM");
-    if (file.data[1] == 'F') {
+    if (colour && !read->picture_always) {
         return rf_fail(read->reason, REFOCUS_ERR_NO_DEPTH,
                        "it is a PFM of three colours, not a depth map; give one of the "
                        "kind \"Pf\"");
+    }
+    if (!colour && read->picture_always) {
+        return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
+                       "it is a depth map, not a photo; give it as the depth");
     }
     if (!scan_side(file, &position, &width) || !scan_side(file, &position, &height) ||
         !scan_word(file, &position, word, sizeof word) || !rf_parse_number(word, &scale) ||
@@ -83,27 +89,28 @@ static int read_pfm(struct rf_read *read, struct rf_bytes file)
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
                        "damaged: its PFM header holds no width, height and scale");
     }
-    status = rf_check_size(read, width, height, 4);
+    status = rf_check_size(read, width, height, 4 * channels);
     if (status != REFOCUS_OK) {
         return status;
     }
-    if (position >= file.size || file.size - position - 1 < width * height * 4) {
+    if (position >= file.size || file.size - position - 1 < width * height * 4 * channels) {
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                       "damaged: it ends in the middle of the map; copy it again");
+                       "damaged: it ends in the middle of the %s; copy it again",
+                       colour ? "picture" : "map");
     }
     raster->width = (int32_t)width;
     raster->height = (int32_t)height;
-    raster->channels = 1;
+    raster->channels = (int32_t)channels;
     raster->sample = REFOCUS_SAMPLE_F32;
     status = rf_raster_alloc(read, raster);
     if (status != REFOCUS_OK) {
         return status;
     }
-    stride = (size_t)width * 4;
+    stride = (size_t)width * 4 * channels;
     for (size_t y = 0; y < height; y++) {
         const uint8_t *const from = file.data + position + 1 + (height - 1 - y) * stride;
         float *const to = (float *)(void *)(raster->pixels + y * stride);
-        for (size_t x = 0; x < width; x++) {
+        for (size_t x = 0; x < width * channels; x++) {
             to[x] = load_float(from + 4 * x, scale < 0);
         }
     }
@@ -115,34 +122,55 @@ static int read_pfm(struct rf_read *read, struct rf_bytes file)
     return REFOCUS_OK;
 }
 
+/* Sample x of a row, in the order R, G, B where it is a picture. */
+static float sample_of(const struct rf_rows *rows, const uint8_t *row, int64_t x)
+{
+    uint16_t sample;
+    float value;
+
+    if (rows->format == REFOCUS_FORMAT_RGB_FLOAT) {
+        memcpy(&value, row + 4 * x, 4);
+        return value;
+    }
+    if (rows->format == REFOCUS_FORMAT_NONE) {
+        memcpy(&sample, row + 2 * x, 2);
+        return (float)(sample / 65535.0);
+    }
+    if (rows->format == REFOCUS_FORMAT_BGR8 || rows->format == REFOCUS_FORMAT_BGRA8) {
+        x += 2 - 2 * (x % 3);
+    }
+    value = (float)row[x / 3 * rf_format_bytes(rows->format) + x % 3] / 255;
+    return value <= 0.04045f ? value / 12.92f : powf((value + 0.055f) / 1.055f, 2.4f);
+}
+
 static int write_pfm(struct rf_store *store, const struct rf_rows *rows,
                      const struct refocus_write_options *options, struct refocus_reason *reason)
 {
-    uint8_t *const row = malloc((size_t)rows->width * 4);
+    const bool grey = rows->format == REFOCUS_FORMAT_NONE;
+    const int64_t n = (int64_t)rows->width * (grey ? 1 : 3);
+    uint8_t *const row = malloc((size_t)n * 4);
     char header[64];
-    int n;
+    int length;
 
     (void)options;
     if (!row) {
         return rf_fail_memory(reason);
     }
-    n = snprintf(header, sizeof header, "Pf\n%d %d\n-1.0\n", (int)rows->width, (int)rows->height);
-    rf_store_write(store, header, (size_t)n);
+    length = snprintf(header, sizeof header, "P%c\n%d %d\n-1.0\n", grey ? 'f' : 'F',
+                      (int)rows->width, (int)rows->height);
+    rf_store_write(store, header, (size_t)length);
     for (int32_t y = rows->height - 1; y >= 0; y--) {
         const uint8_t *const from = rows->top + y * rows->stride;
-        for (int32_t x = 0; x < rows->width; x++) {
-            uint16_t sample;
+        for (int64_t x = 0; x < n; x++) {
+            const float value = sample_of(rows, from, x);
             uint32_t bits;
-            float value;
 
-            memcpy(&sample, from + 2 * x, 2);
-            value = (float)(sample / 65535.0);
             memcpy(&bits, &value, 4);
             for (int i = 0; i < 4; i++) {
                 row[4 * x + i] = (uint8_t)(bits >> (8 * i));
             }
         }
-        rf_store_write(store, row, (size_t)rows->width * 4);
+        rf_store_write(store, row, (size_t)n * 4);
     }
     free(row);
     return REFOCUS_OK;
@@ -151,8 +179,9 @@ static int write_pfm(struct rf_store *store, const struct rf_rows *rows,
 const struct rf_format rf_format_pfm = {
     .name = "PFM",
     .endings = {".pfm"},
+    .writes_pictures = true,
     .writes_depth = true,
-    .only_depth = true,
+    .deep = REFOCUS_FORMAT_RGB_FLOAT,
     .recognise = recognise,
     .read = read_pfm,
     .write = write_pfm,

@@ -18,6 +18,7 @@ const struct rf_format rf_format_png = {
     .endings = {".png"},
     .writes_pictures = true,
     .writes_depth = true,
+    .deep = REFOCUS_FORMAT_RGB16,
     .recognise = rf_is_png,
 #ifdef RF_HAVE_PNG
     .read = rf_read_png,

@@ -9,12 +9,13 @@
 
 #include "exif.h"
 #include "icc.h"
+#include "png_chunks.h"
 #include "reason.h"
 
 struct reader {
     const struct rf_read *read;
     struct rf_bytes file;
-    size_t position;
+    size_t position, most; /* most: where reading has to end; 0: anywhere */
     png_structp png;
     png_infop info;
     struct rf_raster raster;
@@ -45,6 +46,9 @@ static void on_read(png_structp png, png_bytep to, size_t size)
 
     if (reader->file.size - reader->position < size) {
         png_error(png, "it ends too early; copy it again");
+    }
+    if (reader->most > 0 && reader->position + size > reader->most) {
+        png_error(png, "it has more data than pixels");
     }
     memcpy(to, reader->file.data + reader->position, size);
     reader->position += size;
@@ -114,9 +118,15 @@ static void read_picture(struct reader *reader)
     }
     for (; passes > 0; passes--) {
         for (png_uint_32 y = 0; y < height; y++) {
+            /* With the last row libpng unpacks all that follows it, which may be a thousand times
+             * as large as the file: a row of noise needs no more than this. */
+            if (passes == 1 && y == height - 1) {
+                reader->most = reader->position + 2 * stride + 65536;
+            }
             png_read_row(png, reader->raster.pixels + y * stride, NULL);
         }
     }
+    reader->most = 0;
     png_read_end(png, reader->info);
 }
 
@@ -150,16 +160,28 @@ static void read_extras(struct reader *reader)
     }
 }
 
+/* Chunks that nobody asks for are skipped as they are: unpacked, each may be a thousand times as
+ * large as in the file. */
+static void skip_extras(png_structp png)
+{
+    static const uint8_t names[] = "bKGD\0cHRM\0gAMA\0hIST\0iTXt\0oFFs\0pCAL\0pHYs\0sBIT\0sCAL\0"
+                                   "sPLT\0sRGB\0tEXt\0tIME\0zTXt";
+
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, names, sizeof names / 5);
+}
+
 static bool run(struct reader *reader)
 {
     const struct refocus_read_limits *const limits = &reader->read->limits;
-    const uint64_t chunk = limits->max_bytes < 64u << 20 ? limits->max_bytes : 64u << 20;
+    const uint64_t most = 64u << 20;
+    const uint64_t chunk = limits->max_metadata < most ? limits->max_metadata : most;
     int status;
 
     if (setjmp(png_jmpbuf(reader->png))) {
         return false;
     }
     png_set_read_fn(reader->png, reader, on_read);
+    skip_extras(reader->png);
     png_set_user_limits(reader->png, 0x7fffffff, 0x7fffffff);
     png_set_chunk_cache_max(reader->png, 128);
     png_set_chunk_malloc_max(reader->png, (png_alloc_size_t)chunk);
@@ -230,6 +252,9 @@ int rf_read_png(struct rf_read *read, struct rf_bytes file)
     }
     if (status == REFOCUS_OK) {
         status = rf_icc_take(read, &icc);
+    }
+    if (status == REFOCUS_OK) {
+        status = rf_png_keep(read, file);
     }
     free(exif.data);
     free(icc.data);

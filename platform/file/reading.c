@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "gain_map.h"
 #include "reason.h"
 
 int rf_check_size(const struct rf_read *read, uint64_t width, uint64_t height, uint64_t pixel_bytes)
@@ -11,10 +12,11 @@ int rf_check_size(const struct rf_read *read, uint64_t width, uint64_t height, u
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
                        "damaged: it claims a picture without pixels");
     }
-    if (width > REFOCUS_MAX_SIDE || height > REFOCUS_MAX_SIDE) {
+    if (width > read->limits.max_side || height > read->limits.max_side) {
         return rf_fail(read->reason, REFOCUS_ERR_SIZE,
-                       "its %llu x %llu pixels are more than %d a side; scale it down",
-                       (unsigned long long)width, (unsigned long long)height, REFOCUS_MAX_SIDE);
+                       "its %llu x %llu pixels are more than the limit of %u a side; scale it down",
+                       (unsigned long long)width, (unsigned long long)height,
+                       (unsigned)read->limits.max_side);
     }
     if (width * height > read->limits.max_pixels) {
         return rf_fail(read->reason, REFOCUS_ERR_SIZE,
@@ -25,23 +27,52 @@ int rf_check_size(const struct rf_read *read, uint64_t width, uint64_t height, u
     return rf_check_bytes(read, width * height * pixel_bytes, "its picture");
 }
 
-int rf_check_bytes(const struct rf_read *read, uint64_t bytes, const char *what)
+static int check(const struct rf_read *read, uint64_t bytes, uint64_t most, const char *what)
 {
-    if (bytes > read->limits.max_bytes || bytes > PTRDIFF_MAX) {
+    if (bytes > most || bytes > PTRDIFF_MAX) {
         return rf_fail(read->reason, REFOCUS_ERR_SIZE,
                        "%s needs %llu bytes, more than the limit of %llu", what,
-                       (unsigned long long)bytes, (unsigned long long)read->limits.max_bytes);
+                       (unsigned long long)bytes, (unsigned long long)most);
     }
     return REFOCUS_OK;
+}
+
+int rf_check_bytes(const struct rf_read *read, uint64_t bytes, const char *what)
+{
+    return check(read, bytes, read->limits.max_bytes, what);
+}
+
+int rf_check_metadata(const struct rf_read *read, uint64_t bytes, const char *what)
+{
+    return check(read, bytes, read->limits.max_metadata, what);
+}
+
+static uint64_t raster_bytes(const struct rf_raster *raster)
+{
+    return raster->pixels ? (uint64_t)rf_raster_stride(raster) * (uint64_t)raster->height : 0;
+}
+
+/* The sum cannot overflow: each of its parts was checked, or is a few bytes for each of 2^32
+ * pixels. */
+int rf_check_memory(const struct rf_read *read, uint64_t more)
+{
+    const uint64_t gain = read->gain ? raster_bytes(&read->gain->samples) : 0;
+
+    return check(read,
+                 read->file_bytes + raster_bytes(&read->image) + raster_bytes(&read->samples) +
+                     raster_bytes(&read->confidence) + raster_bytes(&read->matte) + gain + more,
+                 read->limits.max_memory, "decoding it");
 }
 
 int rf_raster_alloc(const struct rf_read *read, struct rf_raster *raster)
 {
     const size_t bytes = (size_t)raster->channels * rf_sample_bytes(raster->sample);
-    const int status =
-        rf_check_size(read, (uint64_t)raster->width, (uint64_t)raster->height, bytes);
+    int status = rf_check_size(read, (uint64_t)raster->width, (uint64_t)raster->height, bytes);
 
     raster->pixels = NULL;
+    if (status == REFOCUS_OK) {
+        status = rf_check_memory(read, (uint64_t)raster->width * (uint64_t)raster->height * bytes);
+    }
     if (status != REFOCUS_OK) {
         return status;
     }

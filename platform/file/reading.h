@@ -3,7 +3,20 @@
 #define RF_FILE_READING_H
 
 #include <refocus/platform/file.h>
+#include "bytes.h"
 #include "raster.h"
+
+struct rf_gain_map;
+
+/* Bytes of the file for pictures that are made from the photo, see kept.c. */
+enum rf_kept_kind { RF_KEPT_NOTHING, RF_KEPT_JPEG, RF_KEPT_PNG, RF_KEPT_XMP };
+struct rf_kept {
+    enum rf_kept_kind kind;
+    struct refocus_blob bytes; /* owned */
+    bool gain_map;             /* the file has one, outside of these bytes or in them */
+    /* EXIF orientations by which the original and the depth in these bytes lie: */
+    int original_orientation, depth_orientation;
+};
 
 /* Readers of formats fill it, and read.c turns it into a photo. */
 struct rf_read {
@@ -11,19 +24,32 @@ struct rf_read {
     struct refocus_reason *reason;     /* never NULL */
     bool picture_always;               /* false: the main picture only when there is no depth */
     struct refocus_photo_info *info;
-    struct refocus_blob exif, icc;  /* owned */
+    struct refocus_blob exif, icc; /* owned */
+    struct rf_kept kept;
+    size_t file_bytes;              /* size of the file in memory */
     struct rf_raster image;         /* as stored */
+    struct rf_raster deep;          /* image of 16 bits or floats, once `image` is of 8 bits */
     struct rf_raster samples;       /* depth, as stored */
+    struct rf_raster matte;         /* white is subject */
+    struct rf_raster confidence;    /* for each sample: 255 is sure, 0 a guess */
     struct refocus_depth_map depth; /* meaning, values and range of the samples */
-    int orientation;                /* 1 to 8, to be applied to image and samples */
-    bool second;                    /* the second picture of a stereo file is meant */
+    int orientation;                /* 1 to 8, to be applied to image, samples and gain map */
+    struct rf_gain_map *gain;       /* NULL: no gain map is asked for */
+    double apple_headroom;          /* by an iPhone's EXIF; 0: not said */
+    /* Gain map and portrait matte of a JPEG, behind its main picture in the file. */
+    struct rf_bytes companion[2];
+    int companions;
+    bool second; /* the second picture of a stereo file is meant */
 };
 
 /* Sizes are checked here and nowhere else, in 64 bits and before memory is asked for: sides are
- * 1 to REFOCUS_MAX_SIDE, pixels and bytes within the limits. */
+ * at least 1, sides, pixels and bytes within the limits. */
 int rf_check_size(const struct rf_read *read, uint64_t width, uint64_t height,
                   uint64_t pixel_bytes);
 int rf_check_bytes(const struct rf_read *read, uint64_t bytes, const char *what);
+int rf_check_metadata(const struct rf_read *read, uint64_t bytes, const char *what);
+/* Whether so many more bytes fit beside the file and the pictures that there are. */
+int rf_check_memory(const struct rf_read *read, uint64_t more);
 /* Memory for a raster whose other fields are filled, within the limits. */
 int rf_raster_alloc(const struct rf_read *read, struct rf_raster *raster);
 

@@ -67,3 +67,22 @@ void rf_note(struct refocus_photo_info *info, const char *format, ...)
     write_line(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH, format, arguments);
     va_end(arguments);
 }
+
+void rf_leave_out(struct refocus_reason *reason, const char *format, ...)
+{
+    size_t used = strlen(reason->text);
+    va_list list;
+
+    used += (size_t)snprintf(reason->text + used, sizeof reason->text - used, "%s",
+                             used > 0 && used < sizeof reason->text - 2 ? "; " : "");
+    va_start(list, format);
+    vsnprintf(reason->text + used, sizeof reason->text - used, format, list);
+    va_end(list);
+}
+
+void rf_note_view(struct refocus_photo_info *info, const char *container, int number)
+{
+    info->views++;
+    rf_note(info, "%s: image %d is another view, for stereo; no depth is made of it unasked",
+            container, number);
+}

@@ -17,8 +17,12 @@ int rf_fail_memory(struct refocus_reason *reason);
 int rf_fail_errno(struct refocus_reason *reason, int error, const char *what);
 /* Report that a format needs a library which this build was made without. */
 int rf_fail_absent(struct refocus_reason *reason, const char *format, const char *library);
+/* Say what a writer leaves out, behind what was said before. */
+void rf_leave_out(struct refocus_reason *reason, const char *format, ...) RF_PRINTF(2, 3);
 /* Add a line of evidence; a line that finds no room is dropped. */
 void rf_note(struct refocus_photo_info *info, const char *format, ...) RF_PRINTF(2, 3);
+/* Count another view of the scene, the number of which is told. */
+void rf_note_view(struct refocus_photo_info *info, const char *container, int number);
 /* Replace everything but printable ASCII. Files may hold anything, and printable ASCII is what no
  * terminal obeys and every JSON writer takes. char may be signed or not, so both ends are checked.
  */

@@ -12,6 +12,10 @@ int rf_format_bytes(uint32_t format)
     case REFOCUS_FORMAT_RGBA8:
     case REFOCUS_FORMAT_BGRA8:
         return 4;
+    case REFOCUS_FORMAT_RGB16:
+        return 6;
+    case REFOCUS_FORMAT_RGB_FLOAT:
+        return 12;
     default:
         return 0;
     }

@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+enum { RF_FORMAT_GRAY8 = 0x10000 }; /* beside enum refocus_format, for JPEG alone */
+
 struct rf_rows {
     const uint8_t *top;
     ptrdiff_t stride;

@@ -58,7 +58,7 @@ char *refocus_file_place(const char *path)
 
 /* It uses open() with O_EXCL rather than mkstemp(), so that the umask decides the permissions of
  * new files. A file that replaces another is nobody else's before it has that one's mode. */
-static int open_temporary(struct rf_store *store, size_t folder)
+static int open_temporary(struct rf_store *store, size_t folder, const char *ending)
 {
     const unsigned process = (unsigned)getpid();
     struct stat old;
@@ -69,9 +69,9 @@ static int open_temporary(struct rf_store *store, size_t folder)
         int file;
 
         clock_gettime(CLOCK_MONOTONIC, &now);
-        snprintf(store->temporary + folder, 64, ".refocus-%u-%lx%x.tmp", process,
+        snprintf(store->temporary + folder, 64, ".refocus-%u-%lx%x.tmp%.8s", process,
                  (unsigned long)now.tv_nsec ^ ((unsigned long)(uintptr_t)store << 4),
-                 (unsigned)attempt);
+                 (unsigned)attempt, ending);
         file = open(store->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
         if (file >= 0 || errno != EEXIST) {
             return file;
@@ -110,7 +110,8 @@ static int take_over(int file, const char *path, struct refocus_reason *reason)
     mode_t mode;
 
     if (stat(path, &old) != 0) {
-        return REFOCUS_OK;
+        return errno == ENOENT ? REFOCUS_OK
+                               : rf_fail_errno(reason, errno, "cannot see whose it is");
     }
     if (fstat(file, &new) != 0) {
         return rf_fail_errno(reason, errno, "cannot write in its folder");
@@ -158,7 +159,9 @@ static void sync_folder(char *path)
     }
 }
 
-int rf_store_open(struct rf_store *store, const char *path, struct refocus_reason *reason)
+/* Make the temporary file, with the owner and mode that it is to have. */
+static int begin(struct rf_store *store, const char *path, const char *ending, int *made,
+                 struct refocus_reason *reason)
 {
     size_t folder;
     int file = -1, status;
@@ -176,23 +179,33 @@ int rf_store_open(struct rf_store *store, const char *path, struct refocus_reaso
     }
     if (status == REFOCUS_OK) {
         memcpy(store->temporary, store->path, folder);
-        file = open_temporary(store, folder);
+        file = open_temporary(store, folder, ending);
         status =
             file >= 0 ? REFOCUS_OK : rf_fail_errno(reason, errno, "cannot write in its folder");
     }
     if (status == REFOCUS_OK) {
         status = take_over(file, store->path, reason);
     }
-    if (status == REFOCUS_OK) {
-        store->stream = fdopen(file, "wb");
-        status =
-            store->stream ? REFOCUS_OK : rf_fail_errno(reason, errno, "cannot write in its folder");
-    }
     if (status != REFOCUS_OK) {
         if (file >= 0) {
             close(file);
             unlink(store->temporary);
         }
+        free(store->path);
+        free(store->temporary);
+    }
+    *made = file;
+    return status;
+}
+
+int rf_store_open(struct rf_store *store, const char *path, struct refocus_reason *reason)
+{
+    int file, status = begin(store, path, "", &file, reason);
+
+    if (status == REFOCUS_OK && !(store->stream = fdopen(file, "wb"))) {
+        status = rf_fail_errno(reason, errno, "cannot write in its folder");
+        close(file);
+        unlink(store->temporary);
         free(store->path);
         free(store->temporary);
     }
@@ -206,7 +219,31 @@ void rf_store_write(struct rf_store *store, const void *bytes, size_t size)
         if (fwrite(bytes, 1, size, store->stream) != size) {
             store->error = errno ? errno : EIO;
         }
+        store->written += size;
     }
+}
+
+int rf_store_open_memory(struct rf_store *store, struct refocus_reason *reason)
+{
+    memset(store, 0, sizeof *store);
+    store->stream = open_memstream(&store->bytes, &store->size);
+    return store->stream ? REFOCUS_OK : rf_fail_memory(reason);
+}
+
+int rf_store_close_memory(struct rf_store *store, int status, struct refocus_blob *blob,
+                          struct refocus_reason *reason)
+{
+    if ((fclose(store->stream) != 0 || store->error) && status == REFOCUS_OK) {
+        status = rf_fail_memory(reason);
+    }
+    if (status != REFOCUS_OK) {
+        free(store->bytes);
+        store->bytes = NULL;
+        store->size = 0;
+    }
+    blob->data = (uint8_t *)store->bytes;
+    blob->size = store->size;
+    return status;
 }
 
 int rf_store_close(struct rf_store *store, int status, struct refocus_reason *reason)
@@ -260,6 +297,29 @@ int refocus_file_write(const char *path, const void *bytes, size_t size,
     }
     rf_store_write(&store, bytes, size);
     return rf_store_close(&store, REFOCUS_OK, reason);
+}
+
+int refocus_file_temporary(const char *path, char **temporary, struct refocus_reason *reason)
+{
+    struct refocus_reason unused;
+    struct rf_store store;
+    const char *dot;
+    int file, status;
+
+    reason = reason ? reason : &unused;
+    reason->text[0] = '\0';
+    if (!path || !*path || !temporary) {
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "there is no name or no place for one");
+    }
+    *temporary = NULL;
+    dot = strrchr(path + folder_of(path), '.');
+    status = begin(&store, path, dot ? dot : "", &file, reason);
+    if (status == REFOCUS_OK) {
+        close(file);
+        free(store.path);
+        *temporary = store.temporary;
+    }
+    return status;
 }
 
 int refocus_file_move(const char *temporary, const char *path, struct refocus_reason *reason)

@@ -112,7 +112,7 @@ static int survey(struct rf_read *read, struct rf_bytes jpeg, const char *guid, 
     if (*count == 0) {
         return fail_chunks(read, "is missing");
     }
-    return rf_check_bytes(read, *length, "its extended XMP");
+    return rf_check_metadata(read, *length, "its extended XMP");
 }
 
 int rf_xmp_extended(struct rf_read *read, struct rf_bytes jpeg, const char *guid,

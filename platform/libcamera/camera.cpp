@@ -92,6 +92,23 @@ int set_control(struct refocus_source *source, const char *name, double value,
     return guarded(reason, [&] { return of(source)->set_control(name, value, reason); });
 }
 
+int get_lens(struct refocus_source *source, struct refocus_source_lens *lens,
+             struct refocus_reason *reason)
+{
+    return guarded(reason, [&] { return of(source)->get_lens(lens, reason); });
+}
+
+int set_focus(struct refocus_source *source, uint32_t mode, double position,
+              struct refocus_reason *reason)
+{
+    return guarded(reason, [&] { return of(source)->set_focus(mode, position, reason); });
+}
+
+int lock_exposure(struct refocus_source *source, bool lock, struct refocus_reason *reason)
+{
+    return guarded(reason, [&] { return of(source)->lock_exposure(lock, reason); });
+}
+
 void close_camera(struct refocus_source *source)
 {
     struct refocus_reason ignored;
@@ -128,11 +145,13 @@ int list(refocus_source_found *found, void *user)
 extern "C" {
 extern REFOCUS_API const struct rf_source_ops rf_source_libcamera;
 const struct rf_source_ops rf_source_libcamera = {
-    "libcamera",  REFOCUS_SOURCE_KIND_CAMERA,
-    open_camera,  get_mode,
-    start,        wait_frame,
-    release,      stop,
-    reopen,       set_control,
-    close_camera, list,
+    "libcamera",   REFOCUS_SOURCE_KIND_CAMERA,
+    open_camera,   get_mode,
+    start,         wait_frame,
+    release,       stop,
+    reopen,        set_control,
+    close_camera,  list,
+    get_lens,      set_focus,
+    lock_exposure,
 };
 }

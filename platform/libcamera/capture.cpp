@@ -99,8 +99,9 @@ int Capture::start(struct refocus_source *source, struct refocus_source_mode *mo
         return status;
     }
     ControlList controls(camera_->controls());
-    if (camera_->controls().find(controls::AfMode.id()) != camera_->controls().end())
+    if (has(controls::AfMode))
         controls.set(controls::AfMode, controls::AfModeContinuous);
+    position_ = NAN;
     int error = camera_->start(&controls);
     running_ = error == 0;
     for (auto &request : requests_)
@@ -201,6 +202,61 @@ int Capture::set_control(const char *name, double value, struct refocus_reason *
     return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "it has no control '%.60s'", name);
 }
 
+bool Capture::has(const ControlId &control) const
+{
+    return camera_->controls().find(control.id()) != camera_->controls().end();
+}
+
+int Capture::get_lens(struct refocus_source_lens *lens, struct refocus_reason *reason)
+{
+    if (!camera_)
+        return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the camera is gone");
+    if (!has(controls::AfMode))
+        return REFOCUS_OK;
+    lens->modes = 1 << REFOCUS_SOURCE_FOCUS_CONTINUOUS | 1 << REFOCUS_SOURCE_FOCUS_ONCE;
+    const auto range = camera_->controls().find(controls::LensPosition.id());
+    if (range == camera_->controls().end())
+        return REFOCUS_OK;
+    lens->modes |= 1 << REFOCUS_SOURCE_FOCUS_FIXED;
+    lens->dioptres = 1;
+    lens->least = range->second.min().get<float>();
+    lens->greatest = range->second.max().get<float>();
+    lens->position = position_;
+    return REFOCUS_OK;
+}
+
+int Capture::set_focus(uint32_t mode, double position, struct refocus_reason *reason)
+{
+    static const int32_t modes[] = {controls::AfModeContinuous, controls::AfModeAuto,
+                                    controls::AfModeManual};
+
+    if (!camera_)
+        return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the camera is gone");
+    std::lock_guard<std::mutex> guard(lock_);
+    wanted_[controls::AfMode.id()] = ControlValue(modes[mode]);
+    if (mode == REFOCUS_SOURCE_FOCUS_ONCE && has(controls::AfTrigger))
+        wanted_[controls::AfTrigger.id()] = ControlValue((int32_t)controls::AfTriggerStart);
+    if (mode == REFOCUS_SOURCE_FOCUS_FIXED)
+        wanted_[controls::LensPosition.id()] = ControlValue((float)position);
+    return REFOCUS_OK;
+}
+
+/* Exposure, gain and colour gains stay as they were when their algorithms stop. */
+int Capture::lock_exposure(bool lock, struct refocus_reason *reason)
+{
+    if (!camera_)
+        return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the camera is gone");
+    if (!has(controls::AeEnable) && !has(controls::AwbEnable))
+        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                               "it has no exposure that can be locked");
+    std::lock_guard<std::mutex> guard(lock_);
+    if (has(controls::AeEnable))
+        wanted_[controls::AeEnable.id()] = ControlValue(!lock);
+    if (has(controls::AwbEnable))
+        wanted_[controls::AwbEnable.id()] = ControlValue(!lock);
+    return REFOCUS_OK;
+}
+
 int Capture::configure(const struct refocus_source_config &wanted, struct refocus_reason *reason)
 {
     config_ = camera_->generateConfiguration({StreamRole::Viewfinder});
@@ -292,7 +348,7 @@ bool Capture::deliver(Request *request, struct refocus_frame **result)
     frame->buffer = (uint32_t)n;
     const auto lens = request->metadata().get(controls::LensPosition);
     if (lens)
-        frame->lens_dioptres = *lens;
+        position_ = frame->lens_dioptres = *lens;
     mappings_[n]->sync(true);
     *result = frame;
     return true;

@@ -3,6 +3,7 @@
 #ifndef RF_LIBCAMERA_CAPTURE_HPP
 #define RF_LIBCAMERA_CAPTURE_HPP
 
+#include <cmath>
 #include <deque>
 #include <map>
 #include <memory>
@@ -34,8 +35,12 @@ class Capture
              struct refocus_reason *reason);
     void release(struct refocus_source *source, const struct refocus_frame *frame);
     int set_control(const char *name, double value, struct refocus_reason *reason);
+    int get_lens(struct refocus_source_lens *lens, struct refocus_reason *reason);
+    int set_focus(uint32_t mode, double position, struct refocus_reason *reason);
+    int lock_exposure(bool lock, struct refocus_reason *reason);
 
   private:
+    bool has(const libcamera::ControlId &control) const;
     int configure(const struct refocus_source_config &wanted, struct refocus_reason *reason);
     int allocate(struct refocus_reason *reason);
     bool deliver(libcamera::Request *request, struct refocus_frame **result);
@@ -55,7 +60,8 @@ class Capture
     std::vector<std::unique_ptr<libcamera::Request>> requests_;
     struct refocus_frame frames_[RF_MOST_BUFFERS];
     bool running_ = false;
-    std::mutex lock_; /* guards the members below */
+    float position_ = NAN; /* where the lens was in the last frame */
+    std::mutex lock_;      /* guards the members below */
     std::deque<libcamera::Request *> done_;
     std::map<unsigned int, libcamera::ControlValue> wanted_;
     bool gone_ = false;

@@ -124,7 +124,7 @@ static int fail_format(int status, refocus_cv_reason *reason)
                ? status
                : refocus_cv::fail(reason, status,
                                   "OpenCV finds no depth network with this input in it; give an "
-                                  "ONNX file and its --preset");
+                                  "ONNX file and its --network");
 }
 
 int refocus_cv_estimator_create(struct refocus_estimator **result, const char *model,

@@ -1,64 +1,14 @@
-/* upsample.cpp: joint bilateral upsampling out of OpenCV's parts: one shifted map and guide a
- * tap. */
+/* upsample.cpp: a small map is brought to the photo's size by a filter of OpenCV's parts. */
 #include "guard.hpp"
+#include "joint_bilateral.hpp"
 #include "module.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
 namespace
 {
-
-int upsample(const refocus_image *photo, const refocus_disparity *map, float sigma, uint16_t *out)
-{
-    enum { REACH = 2 };
-    const cv::Size size(photo->width, photo->height);
-    const cv::Mat samples(map->height, map->width, map->bits == 16 ? CV_16U : CV_8U,
-                          const_cast<void *>(map->samples), (size_t)map->stride);
-    const double sx = map->width / (double)photo->width, sy = map->height / (double)photo->height;
-    cv::Mat guide, coarse, depth, total(size, CV_32F, cv::Scalar(0)), sum(total.clone());
-    cv::Mat at_x(size, CV_32F), at_y(size, CV_32F);
-
-    refocus_cv::view(photo).convertTo(guide, CV_32F);
-    samples.convertTo(depth, CV_32F, map->bits == 16 ? 1 : 257);
-    coarse.create(samples.size(), CV_32FC3);
-    for (int y = 0; y < coarse.rows;
-         y++) /* the value at the middle of each sample: resize() takes a corner */
-        for (int x = 0; x < coarse.cols; x++)
-            coarse.at<cv::Vec3f>(y, x) =
-                guide.at<cv::Vec3f>((int)((y + 0.5) / sy), (int)((x + 0.5) / sx));
-    for (int j = -REACH; j <= REACH; j++) {
-        for (int i = -REACH; i <= REACH; i++) {
-            cv::Mat near_by(size, CV_32F), colour, d, squares, likeness;
-
-            for (int y = 0; y < size.height; y++) {
-                const double v = (y + 0.5) * sy - 0.5, cy = std::floor(v + 0.5) + j;
-
-                for (int x = 0; x < size.width; x++) {
-                    const double u = (x + 0.5) * sx - 0.5, cx = std::floor(u + 0.5) + i;
-
-                    at_x.at<float>(y, x) = (float)cx;
-                    at_y.at<float>(y, x) = (float)cy;
-                    near_by.at<float>(y, x) =
-                        (float)std::exp(-((u - cx) * (u - cx) + (v - cy) * (v - cy)) / 2);
-                }
-            }
-            cv::remap(coarse, colour, at_x, at_y, cv::INTER_NEAREST, cv::BORDER_REPLICATE);
-            cv::remap(depth, d, at_x, at_y, cv::INTER_NEAREST, cv::BORDER_REPLICATE);
-            colour -= guide;
-            cv::transform(colour.mul(colour), squares, cv::Matx13f(1, 1, 1));
-            cv::exp(squares * (-1 / (2.0 * sigma * sigma)), likeness);
-            near_by = near_by.mul(likeness + 1e-9f);
-            total += near_by;
-            sum += near_by.mul(d);
-        }
-    }
-    sum /= total;
-    sum.convertTo(cv::Mat(size, CV_16U, out), CV_16U);
-    return REFOCUS_OK;
-}
 
 int bilinear(const refocus_image *photo, const refocus_disparity *map, cv::Mat &depth)
 {
@@ -147,6 +97,8 @@ int refocus_cv_upsample(const struct refocus_image *photo, const struct refocus_
 
     if (!take(photo, map, own_photo, own_map) || !good(photo, map, out) || !(sigma_range > 0))
         return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "no photo, or no map");
-    return refocus_cv::guarded(reason, REFOCUS_ERR_UNSUPPORTED,
-                               [&] { return upsample(photo, map, sigma_range, out); });
+    return refocus_cv::guarded(reason, REFOCUS_ERR_UNSUPPORTED, [&] {
+        refocus_cv::joint_bilateral(*photo, *map, sigma_range, out);
+        return REFOCUS_OK;
+    });
 }

@@ -35,10 +35,8 @@ static uint64_t smooth(uint32_t *bins, uint32_t *scratch)
 /* log2 in 1/16, linear between powers of two; of 1 and more. */
 static int log2_q4(uint64_t value)
 {
-    int bits = 0;
+    const int bits = 63 - __builtin_clzll(value);
 
-    for (uint64_t rest = value; rest > 1; rest >>= 1)
-        bits++;
     return bits * 16 + (int)(bits >= 4 ? value >> (bits - 4) & 15 : value << (4 - bits) & 15);
 }
 

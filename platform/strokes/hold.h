@@ -6,7 +6,8 @@
 
 /* Between hold and release strokes are only listed, so that each layer is selected and painted
  * once. Instead of release, return goes back to the first count strokes and needs no memory for it,
- * as the area of the last of their layers is kept. */
+ * as the area of the last of their layers is kept. Strokes that would take too long are not
+ * released: REFOCUS_ERR_SIZE. */
 int rf_strokes_hold(struct refocus_strokes *strokes, struct rf_spans *kept);
 int rf_strokes_release(struct refocus_strokes *strokes);
 void rf_strokes_return(struct refocus_strokes *strokes, int count, struct rf_spans *kept);

@@ -282,7 +282,11 @@ static int paint_all(struct reading *reading, json_t *root)
         status = paint(reading, (int)i, json_array_get(list, i));
     if (status == REFOCUS_OK) {
         status = rf_strokes_release(reading->strokes);
-        if (status != REFOCUS_OK)
+        if (status == REFOCUS_ERR_SIZE)
+            refuse(reading->reason, status,
+                   "its strokes reach over too much of the picture too often; give fewer or "
+                   "smaller ones");
+        else if (status != REFOCUS_OK)
             no_memory(reading->reason);
     }
     if (status != REFOCUS_OK)

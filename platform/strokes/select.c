@@ -185,6 +185,15 @@ static int select_coarse(struct rf_grid *grid, struct rf_selector *selector,
     return status;
 }
 
+int64_t rf_select_work(const struct rf_pyramid *pyramid, const struct rf_stroke *strokes, int count)
+{
+    enum { PER_CUT = 100 }; /* a pixel of the coarsest level takes a microsecond in all rounds */
+    struct rf_area area;
+    const int level = choose_area(pyramid, strokes, count, &area);
+
+    return (rf_area_pixels(area) << (2 * level)) + PER_CUT * rf_area_pixels(area);
+}
+
 int rf_select(struct rf_selector *selector, const struct rf_pyramid *pyramid,
               const struct rf_stroke *strokes, int count, struct rf_spans *spans)
 {

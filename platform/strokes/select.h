@@ -11,4 +11,8 @@
 int rf_select(struct rf_selector *selector, const struct rf_pyramid *pyramid,
               const struct rf_stroke *strokes, int count, struct rf_spans *spans);
 
+/* Work of such a selection, as in work.h. */
+int64_t rf_select_work(const struct rf_pyramid *pyramid, const struct rf_stroke *strokes,
+                       int count);
+
 #endif

@@ -7,6 +7,8 @@
 #include "fill.h"
 #include "hold.h"
 #include "select.h"
+#include "valid.h"
+#include "work.h"
 
 /* The strokes of a layer follow each other in the list. */
 struct layer {
@@ -27,51 +29,6 @@ struct refocus_strokes {
     int points;
     bool held; /* nothing is selected or painted until rf_strokes_release() */
 };
-
-static bool in_range(float value, float least, float greatest)
-{
-    return value >= least && value <= greatest;
-}
-
-static bool fill_is_valid(const struct refocus_fill *fill)
-{
-    const float far = 1048576;
-
-    if (fill->kind == REFOCUS_FILL_NONE)
-        return true;
-    if (fill->kind > REFOCUS_FILL_GRADIENT || !in_range(fill->d0, 0, 1))
-        return false;
-    return fill->kind == REFOCUS_FILL_SOLID ||
-           (in_range(fill->d1, 0, 1) && in_range(fill->x0, -far, far) &&
-            in_range(fill->y0, -far, far) && in_range(fill->x1, -far, far) &&
-            in_range(fill->y1, -far, far) &&
-            fmax(fabs((double)fill->x1 - (double)fill->x0),
-                 fabs((double)fill->y1 - (double)fill->y0)) >= 1);
-}
-
-static bool has_points(uint32_t kind)
-{
-    return kind != REFOCUS_STROKE_ALL && kind != REFOCUS_STROKE_FILL;
-}
-
-static bool begins_layer(uint32_t kind)
-{
-    return kind == REFOCUS_STROKE_ALL || kind == REFOCUS_STROKE_OBJECT ||
-           kind == REFOCUS_STROKE_BRUSH;
-}
-
-static bool selects(uint32_t kind)
-{
-    return kind == REFOCUS_STROKE_OBJECT || kind == REFOCUS_STROKE_MORE;
-}
-
-static bool stroke_is_valid(const struct refocus_stroke *stroke)
-{
-    return stroke->kind <= REFOCUS_STROKE_FILL && fill_is_valid(&stroke->fill) &&
-           (!has_points(stroke->kind) || in_range(stroke->radius, (float)0.5, 4096)) &&
-           (!selects(stroke->kind) || in_range(stroke->reach, 1, 64)) &&
-           (stroke->kind != REFOCUS_STROKE_FILL || stroke->fill.kind != REFOCUS_FILL_NONE);
-}
 
 static struct layer *last_layer(const struct refocus_strokes *strokes)
 {
@@ -266,9 +223,9 @@ int refocus_strokes_begin(struct refocus_strokes *strokes, const struct refocus_
                                       REFOCUS_SIZE_TO(struct refocus_stroke, fill), stroke)))
         return status;
     stroke = &own;
-    if (!strokes || !stroke_is_valid(stroke))
+    if (!strokes || !rf_stroke_is_valid(stroke))
         return REFOCUS_ERR_ARGUMENT;
-    if (!begins_layer(stroke->kind) &&
+    if (!rf_begins_layer(stroke->kind) &&
         (!last || (stroke->kind != REFOCUS_STROKE_FILL &&
                    strokes->strokes[last->first].stroke.kind != REFOCUS_STROKE_OBJECT)))
         return REFOCUS_ERR_STATE;
@@ -281,7 +238,7 @@ int refocus_strokes_begin(struct refocus_strokes *strokes, const struct refocus_
                          sizeof *strokes->layers);
     if (status != REFOCUS_OK)
         return status;
-    if (begins_layer(stroke->kind)) {
+    if (rf_begins_layer(stroke->kind)) {
         struct layer *const layer = &strokes->layers[strokes->layer_count++];
 
         memset(layer, 0, sizeof *layer);
@@ -294,7 +251,7 @@ int refocus_strokes_begin(struct refocus_strokes *strokes, const struct refocus_
     added->stroke.struct_size = sizeof *stroke;
     if (stroke->kind == REFOCUS_STROKE_ALL)
         status = update(strokes, false, changed);
-    else if (!begins_layer(stroke->kind) && stroke->fill.kind != REFOCUS_FILL_NONE &&
+    else if (!rf_begins_layer(stroke->kind) && stroke->fill.kind != REFOCUS_FILL_NONE &&
              !strokes->held)
         repaint(strokes, &last_layer(strokes)->spans, &last_layer(strokes)->spans, true, changed);
     if (status != REFOCUS_OK)
@@ -312,14 +269,15 @@ int refocus_strokes_extend(struct refocus_strokes *strokes, const float *points,
         memset(changed, 0, sizeof *changed);
     if (!strokes || !points || count < 1)
         return REFOCUS_ERR_ARGUMENT;
-    if (strokes->count == 0 || !has_points(strokes->strokes[strokes->count - 1].stroke.kind))
+    if (strokes->count == 0 || !rf_has_points(strokes->strokes[strokes->count - 1].stroke.kind))
         return REFOCUS_ERR_STATE;
     if (count > REFOCUS_MAX_STROKE_POINTS - strokes->points)
         return REFOCUS_ERR_SIZE;
     for (int i = 0; i < count; i++)
-        if (!in_range(points[2 * i], (float)-0.5, (float)strokes->pyramid.width[0] - (float)0.5) ||
-            !in_range(points[2 * i + 1], (float)-0.5,
-                      (float)strokes->pyramid.height[0] - (float)0.5))
+        if (!rf_in_bounds(points[2 * i], (float)-0.5,
+                          (float)strokes->pyramid.width[0] - (float)0.5) ||
+            !rf_in_bounds(points[2 * i + 1], (float)-0.5,
+                          (float)strokes->pyramid.height[0] - (float)0.5))
             return REFOCUS_ERR_ARGUMENT;
     last = &strokes->strokes[strokes->count - 1];
     status = reserve((void **)&last->points, &last->room, last->count + count, 2 * sizeof *points);
@@ -393,8 +351,27 @@ int rf_strokes_hold(struct refocus_strokes *strokes, struct rf_spans *kept)
     return status;
 }
 
+/* Strokes of a file are limited: whoever made it does not wait for them, as a finger does. */
+static int check_work(const struct refocus_strokes *strokes)
+{
+    const int64_t pixels = (int64_t)strokes->pyramid.width[0] * (int64_t)strokes->pyramid.height[0];
+    const int64_t most =
+        pixels < REFOCUS_MAX_STROKE_WORK / 64 ? REFOCUS_MAX_STROKE_WORK : 64 * pixels;
+    int64_t work = 0;
+
+    for (int i = 0; i < strokes->layer_count && work <= most; i++) {
+        const struct layer *const layer = &strokes->layers[i];
+
+        if (layer->stale)
+            work += rf_layer_work(&strokes->pyramid, &strokes->strokes[layer->first], layer->count);
+    }
+    return work <= most ? REFOCUS_OK : REFOCUS_ERR_SIZE;
+}
+
 int rf_strokes_release(struct refocus_strokes *strokes)
 {
+    if (check_work(strokes) != REFOCUS_OK)
+        return REFOCUS_ERR_SIZE;
     strokes->held = false;
     for (int i = 0; i < strokes->layer_count; i++) {
         struct layer *const layer = &strokes->layers[i];
@@ -458,31 +435,6 @@ static int take_base(struct refocus_strokes *strokes, const struct refocus_dispa
     return REFOCUS_OK;
 }
 
-/* Whether rows of so many bytes can lie so far apart, and the place of each is a
- * ptrdiff_t; rows >= 1. */
-static bool is_stride(ptrdiff_t stride, ptrdiff_t bytes, int32_t rows)
-{
-    const ptrdiff_t most = PTRDIFF_MAX / rows;
-
-    return stride >= -most && stride <= most && (rows == 1 || stride >= bytes || stride <= -bytes);
-}
-
-static bool is_photo(const struct refocus_image *photo)
-{
-    return refocus_format_bytes(photo->format) > 0 && photo->plane[0] && photo->width >= 1 &&
-           photo->width <= REFOCUS_MAX_SIDE && photo->height >= 1 &&
-           photo->height <= REFOCUS_MAX_SIDE &&
-           is_stride(photo->stride[0], refocus_plane_row_bytes(photo->format, 0, photo->width),
-                     photo->height);
-}
-
-static bool is_base(const struct refocus_disparity *base, const struct refocus_image *photo)
-{
-    return base->width == photo->width && base->height == photo->height && base->samples &&
-           (base->bits == 8 || base->bits == 16) &&
-           is_stride(base->stride, (ptrdiff_t)base->width * (base->bits / 8), base->height);
-}
-
 int refocus_strokes_create(struct refocus_strokes **strokes, const struct refocus_image *photo,
                            const struct refocus_disparity *base)
 {
@@ -499,7 +451,7 @@ int refocus_strokes_create(struct refocus_strokes **strokes, const struct refocu
         return status;
     photo = &own_photo;
     base = base ? &own_base : NULL;
-    if (!is_photo(photo) || (base && !is_base(base, photo)))
+    if (!rf_is_photo(photo) || (base && !rf_is_base(base, photo)))
         return REFOCUS_ERR_ARGUMENT;
     if ((uint64_t)photo->width * (uint64_t)photo->height > SIZE_MAX / 16)
         return REFOCUS_ERR_SIZE;
@@ -566,7 +518,7 @@ int refocus_strokes_selection(const struct refocus_strokes *strokes, uint8_t *ma
 {
     const struct layer *const layer = strokes ? last_layer(strokes) : NULL;
 
-    if (!strokes || !mask || width < 1 || height < 1 || !is_stride(stride, width, height))
+    if (!strokes || !mask || width < 1 || height < 1 || !rf_is_stride(stride, width, height))
         return REFOCUS_ERR_ARGUMENT;
     for (int y = 0; y < height; y++) {
         const int64_t rows = strokes->pyramid.height[0], columns = strokes->pyramid.width[0];

@@ -13,8 +13,8 @@
 enum { MOST_MODES = 256, MOST_NODES = 64 };
 
 struct camera {
-    struct rf_v4l2 device;
-    char *name; /* the name behind the colon */
+    struct rf_v4l2 device; /* first: lens.c goes by it */
+    char *name;            /* the name behind the colon */
     struct refocus_frame frame[RF_MOST_BUFFERS];
     bool source_changed; /* the signal at the input, not yet looked at */
     bool failed;
@@ -476,4 +476,7 @@ const struct rf_source_ops rf_source_v4l2 = {
     .set_control = set_control,
     .close = close_camera,
     .list = list,
+    .get_lens = rf_v4l2_get_lens,
+    .set_focus = rf_v4l2_set_focus,
+    .lock_exposure = rf_v4l2_lock_exposure,
 };

@@ -69,4 +69,11 @@ int rf_v4l2_dequeue(struct rf_v4l2 *device, struct rf_v4l2_done *done);
 /* Called before and after the processor reads exported buffers. */
 void rf_v4l2_sync(const struct rf_v4l2_buffer *buffer, bool begin);
 
+/* lens.c: functions of struct rf_source_ops; the state of the source begins with the device. */
+int rf_v4l2_get_lens(struct refocus_source *source, struct refocus_source_lens *lens,
+                     struct refocus_reason *reason);
+int rf_v4l2_set_focus(struct refocus_source *source, uint32_t mode, double position,
+                      struct refocus_reason *reason);
+int rf_v4l2_lock_exposure(struct refocus_source *source, bool lock, struct refocus_reason *reason);
+
 #endif

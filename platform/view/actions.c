@@ -66,7 +66,7 @@ void rf_window_tap(struct rf_window *w, double x, double y)
 
 void rf_window_blur(struct rf_window *w, double blur)
 {
-    w->state.blur = (float)clamp(blur, 0, REFOCUS_MAX_BLUR_RADIUS);
+    w->state.blur = (float)clamp(blur, 0, REFOCUS_PLAIN_BLUR_RADIUS);
     rf_window_show(w, "aperture");
 }
 

@@ -138,7 +138,7 @@ static int make_renderer(struct rf_session *s, struct refocus_renderer **rendere
                          int height, int reduction)
 {
     struct refocus_renderer_params params = refocus_renderer_params_default(
-        width, height, (float)REFOCUS_MAX_BLUR_RADIUS / (float)reduction);
+        width, height, (float)REFOCUS_PLAIN_BLUR_RADIUS / (float)reduction);
 
     params.threads = s->setup.threads;
     params.cpu = s->setup.cpu;

@@ -138,6 +138,8 @@ int refocus_aperture_create(struct refocus_aperture **aperture,
         add_profiles(*aperture, p);
     if (status == REFOCUS_OK)
         rf_chords_make(*aperture);
+    if (status == REFOCUS_OK)
+        rf_summed_light_make(*aperture);
     return status;
 }
 

@@ -3,6 +3,7 @@
 #ifndef RF_APERTURE_H
 #define RF_APERTURE_H
 
+#include <assert.h>
 #include <stdbool.h>
 
 #include <refocus/aperture.h>
@@ -28,6 +29,23 @@ struct rf_profile {
     double hole, edge;
 };
 
+/* How light is spread over an aperture that is not evenly open, as a summed-area table: light
+ * within a rectangle takes four look-ups. Cells are squares of the aperture without its squeeze,
+ * which goes from -1 to 1 in x and y; those of a mask are its pixels. */
+enum { RF_SUMMED_SIDE = REFOCUS_MAX_APERTURE_SIDE, RF_SUMMED_POINTS = 4 /* across a cell, down */ };
+struct rf_summed_light {
+    int side; /* cells across, and down */
+    struct rf_summed_side {
+        uint32_t before[RF_SUMMED_SIDE + 1][RF_SUMMED_SIDE + 1]; /* sums of cells above and left */
+        uint8_t first[RF_SUMMED_SIDE], end[RF_SUMMED_SIDE]; /* cells of each row that have light */
+        int most;                                           /* light of the brightest cell */
+    } behind, in_front; /* sides of the focus; that in front is set where they differ */
+};
+static_assert((uint64_t)RF_SUMMED_SIDE * RF_SUMMED_SIDE * 255 * RF_SUMMED_POINTS *
+                      RF_SUMMED_POINTS <=
+                  UINT32_MAX,
+              "a sum of all cells");
+
 /* The tables of masks and outlines. A disc has none, so that the constant one is small. */
 struct rf_aperture_tables {
     uint8_t mask[REFOCUS_MAX_APERTURE_SIDE * REFOCUS_MAX_APERTURE_SIDE];
@@ -35,6 +53,7 @@ struct rf_aperture_tables {
     double vertex_x[RF_OUTLINE + 1], vertex_y[RF_OUTLINE + 1]; /* an outline, y up */
     double area[RF_OUTLINE + 1]; /* sums of the triangles before a vertex, 1 = all */
     int16_t chord[RF_CHORD_SETS][RF_CHORDS + 1][2]; /* first and last x, Q14 */
+    struct rf_summed_light light;                   /* set if `summed` is */
 };
 
 struct refocus_aperture {
@@ -48,7 +67,8 @@ struct refocus_aperture {
     struct rf_profile behind, before;  /* light for blurs behind and before the focus */
     bool figure;                       /* an outline that is no iris: a heart or a star */
     int chord_sets; /* most chords in a row of an outline; 0: more than are kept, or no outline */
-    double chord_area; /* area within the outline */
+    double chord_area;                    /* area within the outline */
+    const struct rf_summed_light *summed; /* set where there are no chords, or NULL */
 };
 
 /* Whether rays before the focus differ from those behind it. */
@@ -80,6 +100,10 @@ bool rf_aperture_fills_square(const struct refocus_aperture *a);
 /* Makes the chords of an iris or a figure that is evenly lit, once all else but its id is known.
  * Discs and masks have none. */
 void rf_chords_make(struct refocus_aperture *aperture);
+
+/* Measures the light of apertures without chords (rf_chords_make()), once all else but their id is
+ * known. */
+void rf_summed_light_make(struct refocus_aperture *aperture);
 
 /* The disc that a NULL aperture stands for. */
 extern const struct refocus_aperture rf_disc;

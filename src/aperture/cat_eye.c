@@ -22,36 +22,55 @@ static int16_t to_q15(double v)
     return (int16_t)floor((v > 1 ? 1 : v) * ONE + 0.5);
 }
 
-/* Adds up areas: area[i] is that of a quarter of the aperture up to i / STEPS of its half width. */
-static void add_up(double pushed, double area[STEPS + 1])
+/* The area of a quarter of the aperture up to (i + 1) / STEPS of its half width, from that up to i
+ * / STEPS. */
+static double area_after(double area, int i, double pushed)
 {
-    area[0] = 0;
-    for (int i = 0; i < STEPS; i++)
-        area[i + 1] =
-            area[i] + height_at((i + 0.5) / STEPS * (1 - pushed), pushed) * (1 - pushed) / STEPS;
+    return area + height_at((i + 0.5) / STEPS * (1 - pushed), pushed) * (1 - pushed) / STEPS;
+}
+
+/* Heights vanish at the very end, so the last knot is just before it. */
+static int step_of(int knot)
+{
+    return knot < RF_CAT_KNOTS ? knot * (STEPS / RF_CAT_KNOTS) : STEPS - 1;
+}
+
+/* The whole area; part[k] is that up to knot k. */
+static double area_of(double pushed, double part[RF_CAT_KNOTS + 1])
+{
+    double area = 0;
+
+    for (int i = 0, k = 0; i < STEPS; i++) {
+        if (i == step_of(k))
+            part[k++] = area;
+        area = area_after(area, i, pushed);
+    }
+    return area;
 }
 
 void rf_cat_eye_make(struct rf_cat_eye *eye)
 {
-    double whole[STEPS + 1], cut[STEPS + 1];
+    double whole[RF_CAT_KNOTS + 1], parts[RF_CAT_KNOTS + 1];
+    double all;
 
     if (eye->ready)
         return;
-    add_up(0, whole);
+    all = area_of(0, whole);
     for (int level = 0; level < RF_CAT_LEVELS; level++) {
-        const double pushed = (double)level / RF_CAT_LEVELS;
+        const double pushed = (double)level / RF_CAT_LEVELS, cut = area_of(pushed, parts);
+        double area = 0, next = area_after(0, 0, pushed);
         int at = 0;
 
-        add_up(pushed, cut);
         for (int k = 0; k <= RF_CAT_KNOTS; k++) {
-            /* Heights vanish at the very end, so look just before it. */
-            const int knot = k < RF_CAT_KNOTS ? k * (STEPS / RF_CAT_KNOTS) : STEPS - 1;
-            const double share = whole[knot] / whole[STEPS] * cut[STEPS];
+            const int knot = step_of(k);
+            const double share = whole[k] / all * cut;
             double x;
 
-            while (at < STEPS - 1 && cut[at + 1] <= share)
-                at++;
-            x = (at + (share - cut[at]) / (cut[at + 1] - cut[at])) / STEPS * (1 - pushed);
+            while (at < STEPS - 1 && next <= share) {
+                area = next;
+                next = area_after(next, ++at, pushed);
+            }
+            x = (at + (share - area) / (next - area)) / STEPS * (1 - pushed);
             eye->to[level][k] = to_q15(k < RF_CAT_KNOTS ? x : 1 - pushed);
             eye->height[level][k] =
                 to_q15(height_at(x, pushed) / height_at((double)knot / STEPS, 0));

@@ -2,6 +2,7 @@
 #include "aperture/aperture.h"
 #include "aperture/shape.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -52,28 +53,56 @@ static void hilbert(int at, int *x, int *y)
     }
 }
 
-/* A place, in 1/256 of a cell of the reduced mask. */
-struct place {
-    int32_t x, y;
+/* The light of each cell of the reduced mask. */
+struct cells {
+    const uint8_t *reduced;
+    const struct rf_profile *profile;
+    bool plain; /* all of it lies in the hole: an even shape is better than none */
 };
 
-/* Moves each place to the middle of the light that is nearest to it: one step of Lloyd's. */
-static void relax(const uint8_t *cell, int count, struct place *place, struct rf_run *run)
+static int light_of(const struct cells *cells, int i)
 {
-    int64_t sum_x[REFOCUS_MAX_RAYS] = {0}, sum_y[REFOCUS_MAX_RAYS] = {0};
-    int64_t sum[REFOCUS_MAX_RAYS] = {0};
+    const double x = (2 * (i % RF_CURVE_SIDE) + 1.0) / RF_CURVE_SIDE - 1;
+    const double y = (2 * (i / RF_CURVE_SIDE) + 1.0) / RF_CURVE_SIDE - 1;
+
+    if (cells->plain || !cells->reduced[i])
+        return cells->reduced[i];
+    return (uint8_t)floor(cells->reduced[i] * rf_profile_density(cells->profile, x * x + y * y) +
+                          0.5);
+}
+
+static int64_t total_of(const struct cells *cells)
+{
+    int64_t total = 0;
+
+    for (int i = 0; i < RF_CURVE_SIDE * RF_CURVE_SIDE; i++)
+        total += light_of(cells, i);
+    return total;
+}
+
+/* Places lie in (u, v) of the rays to come, in 1/256 of a cell of the reduced mask. */
+static_assert(256 * RF_CURVE_SIDE <= INT16_MAX, "a place fits a ray");
+static_assert((uint64_t)255 * RF_CURVE_SIDE * RF_CURVE_SIDE * RF_CURVE_SIDE <= UINT32_MAX,
+              "sums of all cells fit 32 bits");
+
+/* Moves each place to the middle of the light that is nearest to it: one step of Lloyd's. */
+static void relax(const struct cells *cells, int count, struct refocus_ray *place,
+                  struct rf_run *run)
+{
+    uint32_t sum[REFOCUS_MAX_RAYS] = {0}; /* light; and times cells across and down */
+    uint32_t sum_x[REFOCUS_MAX_RAYS] = {0}, sum_y[REFOCUS_MAX_RAYS] = {0};
 
     for (int y = 0; y < RF_CURVE_SIDE && !rf_run_cancelled(run); y++) {
         for (int x = 0; x < RF_CURVE_SIDE; x++) {
-            const int weight = cell[y * RF_CURVE_SIDE + x];
+            const uint32_t weight = (uint32_t)light_of(cells, y * RF_CURVE_SIDE + x);
             const int32_t cx = 256 * x + 128, cy = 256 * y + 128;
-            int64_t least = INT64_MAX;
+            int32_t least = INT32_MAX;
             int nearest = 0;
 
             if (!weight)
                 continue;
             for (int n = 0; n < count; n++) {
-                const int64_t dx = place[n].x - cx, dy = place[n].y - cy;
+                const int32_t dx = place[n].u - cx, dy = place[n].v - cy;
 
                 if (dx * dx + dy * dy < least) {
                     least = dx * dx + dy * dy;
@@ -81,35 +110,16 @@ static void relax(const uint8_t *cell, int count, struct place *place, struct rf
                 }
             }
             sum[nearest] += weight;
-            sum_x[nearest] += (int64_t)weight * cx;
-            sum_y[nearest] += (int64_t)weight * cy;
+            sum_x[nearest] += weight * (uint32_t)x;
+            sum_y[nearest] += weight * (uint32_t)y;
         }
     }
     for (int n = 0; n < count; n++) {
         if (sum[n]) {
-            place[n].x = (int32_t)(sum_x[n] / sum[n]);
-            place[n].y = (int32_t)(sum_y[n] / sum[n]);
+            place[n].u = (int16_t)((256 * (int64_t)sum_x[n] + 128 * (int64_t)sum[n]) / sum[n]);
+            place[n].v = (int16_t)((256 * (int64_t)sum_y[n] + 128 * (int64_t)sum[n]) / sum[n]);
         }
     }
-}
-
-/* Computes the light of each cell of the reduced mask. */
-static void weigh_cells(const struct refocus_aperture *a, bool before,
-                        uint8_t cell[RF_CURVE_SIDE * RF_CURVE_SIDE])
-{
-    const struct rf_profile *profile = before ? &a->before : &a->behind;
-    bool any = false;
-
-    for (int i = 0; i < RF_CURVE_SIDE * RF_CURVE_SIDE; i++) {
-        const double x = (2 * (i % RF_CURVE_SIDE) + 1.0) / RF_CURVE_SIDE - 1;
-        const double y = (2 * (i / RF_CURVE_SIDE) + 1.0) / RF_CURVE_SIDE - 1;
-        const double density = rf_profile_density(profile, x * x + y * y);
-
-        cell[i] = (uint8_t)floor(a->tables->reduced[i] * density + 0.5);
-        any = any || cell[i];
-    }
-    if (!any) /* all of it lies in the hole: an even shape is better than none */
-        memcpy(cell, a->tables->reduced, RF_CURVE_SIDE * RF_CURVE_SIDE);
 }
 
 /* Spreads points at equal steps of light along a Hilbert curve, then relaxes them by a few steps.
@@ -117,27 +127,27 @@ static void weigh_cells(const struct refocus_aperture *a, bool before,
 static void mask_rays(const struct refocus_aperture *a, int count, bool before,
                       struct refocus_ray *rays, struct rf_run *run)
 {
-    struct place place[REFOCUS_MAX_RAYS];
-    uint8_t cell[RF_CURVE_SIDE * RF_CURVE_SIDE];
-    int64_t total = 0, passed = 0;
+    struct cells cells = {a->tables->reduced, before ? &a->before : &a->behind, false};
+    int64_t total = total_of(&cells), passed = 0;
     int n = 0;
 
-    weigh_cells(a, before, cell);
-    for (int i = 0; i < RF_CURVE_SIDE * RF_CURVE_SIDE; i++)
-        total += cell[i];
+    cells.plain = total == 0;
+    if (cells.plain)
+        total = total_of(&cells);
     for (int i = 0; i < RF_CURVE_SIDE * RF_CURVE_SIDE; i++) {
         int x, y;
 
         hilbert(i, &x, &y);
-        passed += cell[y * RF_CURVE_SIDE + x];
+        passed += light_of(&cells, y * RF_CURVE_SIDE + x);
         while (n < count && (2 * n + 1) * total <= 2 * count * passed)
-            place[n++] = (struct place){256 * x + 128, 256 * y + 128};
+            rays[n++] =
+                (struct refocus_ray){(int16_t)(256 * x + 128), (int16_t)(256 * y + 128), 255};
     }
     for (int pass = 0; pass < 4; pass++)
-        relax(cell, count, place, run);
+        relax(&cells, count, rays, run);
     for (n = 0; n < count; n++)
-        rays[n] = rf_squeezed_ray(a, place[n].x / (128.0 * RF_CURVE_SIDE) - 1,
-                                  place[n].y / (128.0 * RF_CURVE_SIDE) - 1);
+        rays[n] = rf_squeezed_ray(a, rays[n].u / (128.0 * RF_CURVE_SIDE) - 1,
+                                  rays[n].v / (128.0 * RF_CURVE_SIDE) - 1);
 }
 
 const struct rf_shape rf_shape_mask = {
@@ -193,5 +203,6 @@ int refocus_aperture_create_mask(struct refocus_aperture **aperture, const uint8
     a->id = rf_shape_hash(3, a->tables->mask, sizeof a->tables->mask);
     a->id = rf_shape_hash(a->id, &width, sizeof width);
     a->id = rf_shape_hash(a->id, &height, sizeof height);
+    rf_summed_light_make(a);
     return REFOCUS_OK;
 }

@@ -14,7 +14,7 @@
  * most twice that. */
 static const int class_rays[] = {24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
 enum { CLASSES = sizeof class_rays / sizeof *class_rays, DENSER = 2 };
-enum { MASK_SIDE = 2 * REFOCUS_MAX_BLUR_RADIUS + 1 };
+enum { MASK_SIDE = 2 * REFOCUS_PLAIN_BLUR_RADIUS + 1 };
 static_assert(MASK_SIDE * MASK_SIDE == RF_FULL_RAYS, "a ray for each pixel of the largest mask");
 
 static uint64_t total_weight(const struct rf_ray_set *set)

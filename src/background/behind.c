@@ -54,31 +54,40 @@ void rf_behind_load(const struct rf_executor *exec, const struct refocus_image *
     rf_pool_run(exec->pool, load_band, &load, (image->height + ROWS - 1) / ROWS);
 }
 
-/* The pixels each way that the light of a blur is the mean of. */
-static int reach_of(const struct rf_behind_pass *pass, int blur)
+/* The steps of the pre-filter that the light of a blur takes. */
+static int steps_of(const struct rf_behind_pass *pass, int blur)
 {
     int steps = 0;
 
     while (steps < pass->steps && abs(blur) > pass->above[steps])
         steps++;
-    return (1 << steps) - 1;
+    return steps;
+}
+
+/* The first place from v - reach on that is in the picture and a multiple of `apart` away from v.
+ */
+static int first_of(int v, int reach, int apart)
+{
+    return v < reach ? v % apart : v - reach;
 }
 
 /* The mean light, half up, of the layer's pixels around pixel (x, y) of the photo whose disparity
- * is within 1/32 of that one's. */
-static void mean_around(const struct rf_behind_pass *pass, int x, int y, int reach,
+ * is within 1/32 of that one's; of more than 15 x 15, every so many across and down. */
+static void mean_around(const struct rf_behind_pass *pass, int x, int y, int steps,
                         uint16_t light[3])
 {
+    enum { MOST = 3 };
     const struct rf_behind *behind = pass->behind;
-    const int x0 = rf_within(x - reach, behind->width - 1),
-              y0 = rf_within(y - reach, behind->height - 1);
+    const int apart = steps > MOST ? 1 << (steps - MOST) : 1;
+    const int reach = apart * ((1 << (steps > MOST ? MOST : steps)) - 1);
+    const int x0 = first_of(x, reach, apart), y0 = first_of(y, reach, apart);
     const int x1 = rf_within(x + reach, behind->width - 1),
               y1 = rf_within(y + reach, behind->height - 1);
     const int own = behind->disparity[(size_t)y * (size_t)behind->width + (size_t)x];
     uint32_t sum[3] = {0}, count = 0; /* 225 at the most */
 
-    for (int j = y0; j <= y1; j++) {
-        for (int i = x0; i <= x1; i++) {
+    for (int j = y0; j <= y1; j += apart) {
+        for (int i = x0; i <= x1; i += apart) {
             const size_t at = (size_t)j * (size_t)behind->width + (size_t)i;
             const uint8_t *code = behind->code + 4 * at;
 
@@ -107,7 +116,7 @@ static void put_row(const struct rf_viewport *view, const struct rf_behind_pass 
 
         if (blur[x] != RF_NO_BLUR || !rf_is_behind(pass->behind, photo_x, photo_y, disparity[x]))
             continue;
-        mean_around(pass, photo_x, photo_y, reach_of(pass, own_blur[x]), light);
+        mean_around(pass, photo_x, photo_y, steps_of(pass, own_blur[x]), light);
         for (int c = 0; c < 3; c++)
             pass->background.light.channel[c][at + x] = light[c];
         blur[x] = own_blur[x];

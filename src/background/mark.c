@@ -7,11 +7,11 @@
 #include "kernels/kernels.h"
 #include "support/compare.h"
 
-int rf_mark_reach(bool plain, int max_blur_radius)
+int rf_mark_reach(bool plain, int max_blur_radius, int unit)
 {
-    static_assert(2 * RF_SPREAD_MARGIN - 1 >= 2 * 2 * REFOCUS_MAX_BLUR_RADIUS,
+    static_assert(2 * 256 - 1 >= 2 * 2 * RF_PLAIN_RADIUS && RF_PLAIN_RADIUS >= RF_UNIT_RADIUS,
                   "the cone has fallen by the largest difference of blurs");
-    return rf_smaller((plain ? 2 : 4) * max_blur_radius, 2 * RF_SPREAD_MARGIN - 1);
+    return rf_smaller((plain ? 2 : 4) * max_blur_radius, 2 * rf_spread_margin(unit) - 1);
 }
 
 /* Dilated values are s + 2^15, so that 0 lies below all of them. */
@@ -35,7 +35,7 @@ void rf_background_dilate(const struct rf_executor *exec, const struct rf_viewpo
             return;
         bias_row(row, mark->blur.at + (first + i * step) * mark->blur.stride, view->width);
         if (i > 0)
-            exec->kernels->dilate_from(row, row - next, view->width);
+            exec->kernels->dilate_from(row, row - next, mark->blur.unit, view->width);
     }
 }
 
@@ -51,8 +51,9 @@ void rf_background_mark_rows(const struct rf_executor *exec, const struct rf_vie
                              const struct rf_mark *mark, int y0, int y1, int worker)
 {
     const int w = view->width;
-    uint16_t *row = rf_scratch(exec, worker) + RF_SPREAD_MARGIN;
-    uint16_t *spare = row + w + 2 * RF_SPREAD_MARGIN;
+    const int unit = mark->blur.unit, margin = rf_spread_margin(unit);
+    uint16_t *row = rf_scratch(exec, worker) + margin;
+    uint16_t *spare = row + w + 2 * margin;
 
     for (int y = y0; y < y1; y++) {
         const uint16_t *down = mark->cone.from_above + y * mark->cone.stride;
@@ -62,8 +63,9 @@ void rf_background_mark_rows(const struct rf_executor *exec, const struct rf_vie
 
         for (int x = 0; x < w; x++)
             row[x] = down[x] > up[x] ? down[x] : up[x];
-        dilated = exec->kernels->spread_row(row, spare, mark->reach, w);
-        exec->kernels->mark_foreground(blur, mark->blur.at + y * mark->blur.stride, dilated, w);
+        dilated = exec->kernels->spread_row(row, spare, mark->reach, unit, w);
+        exec->kernels->mark_foreground(blur, mark->blur.at + y * mark->blur.stride, dilated, unit,
+                                       w);
         blur[w] = RF_NO_BLUR; /* a column more if the width is odd */
         copy_row(mark, y, w);
     }

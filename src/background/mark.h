@@ -20,8 +20,8 @@
 #include "image/viewport.h"
 #include "support/executor.h"
 
-/* Signed blur + 2^15, dilated from above and from below: 0 is below all blurs. Padded; columns -1
- * and `width` are written. */
+/* Signed blur, as it is stored, + 2^15, dilated from above and from below: 0 is below all blurs.
+ * Padded; columns -1 and `width` are written. */
 struct rf_dilated_blur {
     uint16_t *from_above, *from_below;
     ptrdiff_t stride;
@@ -29,8 +29,7 @@ struct rf_dilated_blur {
 
 struct rf_mark {
     int planes;                  /* planes of light: 3, or 1 where it is luminance */
-    int reach;                   /* steps along a row that the cone is followed for, at most
-                                    2 RF_SPREAD_MARGIN - 1 */
+    int reach;                   /* steps along a row that the cone is followed for: spread_row */
     struct rf_blur_q8 blur;      /* read */
     struct rf_light_q12 smooth;  /* read */
     struct rf_dilated_blur cone; /* written by rf_background_dilate(), then read; its rows may lie
@@ -41,7 +40,7 @@ struct rf_mark {
 
 /* How many steps the cone is followed for: it falls by half a pixel of blur for each pixel, and
  * blurs of a plain lens differ by K at most, those of tilts and fields by twice that. */
-int rf_mark_reach(bool plain, int max_blur_radius);
+int rf_mark_reach(bool plain, int max_blur_radius, int unit);
 
 /* Dilates along columns and diagonals: from above, or from below. Both may run at once. */
 void rf_background_dilate(const struct rf_executor *exec, const struct rf_viewport *view,

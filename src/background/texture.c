@@ -253,7 +253,7 @@ static void predict(const struct step *step, const struct window *w, const struc
 /* How much of its residual a pixel of that blur gets. */
 static int fade_of(const struct step *step, int blur)
 {
-    const int64_t limit = (int64_t)RF_TEXTURE_BLUR << step->level;
+    const int64_t limit = ((int64_t)RF_TEXTURE_BLUR << step->level) >> step->texture->unit;
 
     return (int)(abs(blur) >= limit ? 0
                                     : rf_smaller((int)((limit - abs(blur)) * 1024 / limit), 256));

@@ -36,7 +36,8 @@ uint64_t rf_texture_scratch_bytes(void);
 struct rf_texture {
     struct rf_texture_scratch *scratch; /* one of each worker */
     const struct rf_transfer *transfer; /* residuals are in codes */
-    int same;                           /* Q7.8: blurs of one surface differ by no more */
+    int same;                           /* blurs of one surface differ by no more, as is stored */
+    int unit;                           /* unit of the blurs */
 };
 
 /* Pulls all levels, as rf_background_pull() does, with texture. */

@@ -7,18 +7,21 @@
 
 #include "tables/transfer.inc"
 
+const uint16_t *rf_light_of_codes(uint32_t blend)
+{
+    return blend == REFOCUS_BLEND_STORED  ? stored_to_light
+           : blend == REFOCUS_BLEND_GAMMA ? gamma_to_light
+                                          : srgb_to_light;
+}
+
 void rf_transfer_init(struct rf_transfer *transfer, int blend)
 {
-    const uint16_t *light = srgb_to_light, *boundary = srgb_boundary;
+    const uint16_t *const light = rf_light_of_codes((uint32_t)blend);
+    const uint16_t *const boundary = blend == REFOCUS_BLEND_STORED  ? stored_boundary
+                                     : blend == REFOCUS_BLEND_GAMMA ? gamma_boundary
+                                                                    : srgb_boundary;
     int code = 0;
 
-    if (blend == REFOCUS_BLEND_STORED) {
-        light = stored_to_light;
-        boundary = stored_boundary;
-    } else if (blend == REFOCUS_BLEND_GAMMA) {
-        light = gamma_to_light;
-        boundary = gamma_boundary;
-    }
     for (int i = 0; i < 256; i++)
         transfer->to_light[i] = light[i];
     for (int mean = 0; mean < (int)sizeof transfer->to_code; mean++) {

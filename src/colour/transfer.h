@@ -23,6 +23,9 @@ struct rf_transfer {
     uint8_t to_code[RF_MEAN_MAX + 4]; /* code of a Q14 mean */
 };
 
+/* The Q12 value of each of 256 codes. */
+const uint16_t *rf_light_of_codes(uint32_t blend);
+
 void rf_transfer_init(struct rf_transfer *transfer, int blend);
 
 /*

@@ -74,10 +74,8 @@ void rf_yuv_curve_init(struct rf_yuv_curve *curve, uint32_t matrix, uint32_t ran
     const double kr = hd ? 0.2126 : 0.299, kb = hd ? 0.0722 : 0.114, kg = 1 - kr - kb;
     const double range_of[2] = {2 * (1 - kb), 2 * (1 - kr)}, share[2] = {kb, kr};
     const int black = limited ? 16 : 0;
-    struct rf_transfer full;
 
-    rf_transfer_init(&full, (int)blend);
-    set_light(curve, full.to_light);
+    set_light(curve, rf_light_of_codes(blend));
     set_tones(curve);
     set_codes(curve, black, per_luma, limited ? 235 : 255);
     curve->kr = rounded(RF_SHARE * kr);

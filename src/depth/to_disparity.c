@@ -285,24 +285,41 @@ static struct refocus_depth_report report_of(const struct conversion *conversion
     return report;
 }
 
-static int take_values(struct conversion *conversion)
+uint64_t refocus_repair_memory(int32_t width, int32_t height, int32_t speckle)
+{
+    if (width < 1 || height < 1 || width > REFOCUS_MAX_SIDE || height > REFOCUS_MAX_SIDE ||
+        speckle < 0 || speckle > REFOCUS_MAX_SPECKLE)
+        return 0;
+    return sizeof(struct values) + (uint64_t)width * (uint64_t)height * (speckle > 1 ? 5 : 1);
+}
+
+static int take_values(struct conversion *conversion, const struct refocus_repair_params *params)
 {
     const struct refocus_depth_map *map = conversion->map;
 
     if (map->sample == REFOCUS_SAMPLE_F32 || (int64_t)map->width * map->height < LARGE)
         return REFOCUS_OK;
-    conversion->values = malloc(sizeof *conversion->values);
+    conversion->values = params->memory ? params->memory : malloc(sizeof *conversion->values);
     return conversion->values ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
 }
 
-/* Memory for the state of samples, and with @p specks for finding patches. */
-static int take_memory(const struct refocus_depth_map *map, bool specks, uint8_t **state,
-                       uint32_t **work)
+/* Memory for the state of samples, and with specks for finding patches: behind the values where
+ * the caller gives it. */
+static int take_memory(const struct refocus_depth_map *map,
+                       const struct refocus_repair_params *params, uint8_t **state, uint32_t **work)
 {
     const uint64_t samples = (uint64_t)map->width * (uint64_t)map->height;
+    const bool specks = params->speckle > 1;
 
     if (samples > SIZE_MAX / sizeof **work || (specks && samples > INT32_MAX))
         return REFOCUS_ERR_MEMORY;
+    if (params->memory) {
+        uint8_t *const behind = (uint8_t *)params->memory + sizeof(struct values);
+
+        *work = specks ? (uint32_t *)(void *)behind : NULL;
+        *state = behind + (specks ? (size_t)samples * sizeof **work : 0);
+        return REFOCUS_OK;
+    }
     *state = malloc((size_t)samples);
     *work = specks && *state ? malloc((size_t)samples * sizeof **work) : NULL;
     if (*state && (*work || !specks))
@@ -326,6 +343,10 @@ static void write_confidence(const struct refocus_depth_map *map, const uint8_t 
 static bool good_repair(const struct refocus_repair_params *params,
                         const struct refocus_depth_map *map)
 {
+    if (params->memory &&
+        ((uintptr_t)params->memory % sizeof(uint32_t) ||
+         params->memory_bytes < refocus_repair_memory(map->width, map->height, params->speckle)))
+        return false;
     return params->speckle >= 0 && params->speckle <= REFOCUS_MAX_SPECKLE &&
            (!params->confidence ||
             rf_good_stride(params->confidence_stride, map->width, map->height));
@@ -358,7 +379,7 @@ int refocus_depth_repair(const struct refocus_depth_map *given_map,
                          ptrdiff_t stride, struct refocus_depth_report *report)
 {
     struct refocus_depth_map own_map;
-    struct refocus_repair_params own_params;
+    struct refocus_repair_params own_params = {.memory = NULL};
     const struct refocus_depth_map *const map = &own_map;
     const struct refocus_repair_params *const params = &own_params;
     struct conversion conversion = {.map = map};
@@ -373,7 +394,7 @@ int refocus_depth_repair(const struct refocus_depth_map *given_map,
     if (status == REFOCUS_OK && !good_repair(params, map))
         status = REFOCUS_ERR_ARGUMENT;
     if (status == REFOCUS_OK)
-        status = take_values(&conversion);
+        status = take_values(&conversion, params);
     if (status == REFOCUS_OK)
         status = measure(&conversion);
     if (status != REFOCUS_OK)
@@ -382,7 +403,7 @@ int refocus_depth_repair(const struct refocus_depth_map *given_map,
     /* A map of one depth is all 0, holes and all. */
     if ((conversion.unknown > 0 && (conversion.scale != 0 || params->confidence)) ||
         params->speckle > 1) {
-        status = take_memory(map, params->speckle > 1, &state, &work);
+        status = take_memory(map, params, &state, &work);
         if (status != REFOCUS_OK)
             goto done;
     }
@@ -404,6 +425,8 @@ int refocus_depth_repair(const struct refocus_depth_map *given_map,
     if (report)
         status = refocus_struct_write(report, FIRST_REPORT, &found, sizeof found);
 done:
+    if (own_params.memory)
+        return status;
     free(work);
     free(state);
     free(conversion.values);

@@ -334,13 +334,12 @@ static void fill_band(void *context, int item, int worker)
     const int first = item * SPAN - PAD, y0 = row_of(up, first);
     int y1 = y0;
 
-    (void)worker;
     for (int i = 0; i < SPAN; i++) {
         const int begin = y1;
 
         y1 = row_of(up, first + i + 1);
         if (begin < y1)
-            rf_upsample_rows(up, first + i, begin, y1);
+            rf_upsample_rows(up, first + i, begin, y1, worker);
     }
     for (int y = y0 + 1; y < y1 - 1 && !rf_run_cancelled(up->run); y++)
         settle_row(up, y);

@@ -7,7 +7,7 @@
 #include "image/planes.h"
 #include "kernels/kernels.h"
 #include "support/arena.h"
-#include "support/pool.h"
+#include "support/executor.h"
 
 enum {
     RF_UPSAMPLE_PAD = 2,    /* samples beyond the map's border, repeated */
@@ -71,6 +71,7 @@ struct rf_upsampler {
     struct rf_taps *across, *down; /* width and height of them */
     struct rf_span *span;          /* columns + 2 of them */
     struct rf_run *run;
+    struct rf_shares shares; /* the caller's: rf_upsample_share() bytes for each worker */
 
     struct rf_disparity_q16 out;
 };
@@ -96,6 +97,9 @@ void rf_upsample(struct rf_upsampler *up, struct rf_pool *pool);
 void rf_find_spans(struct rf_upsampler *up);
 
 /* Writes rows y0 to y1 - 1 of pixels, whose taps begin in row `first` of the samples. */
-void rf_upsample_rows(const struct rf_upsampler *up, int first, int y0, int y1);
+void rf_upsample_rows(const struct rf_upsampler *up, int first, int y0, int y1, int worker);
+
+/* Bytes of a worker's share. */
+uint64_t rf_upsample_share(void);
 
 #endif

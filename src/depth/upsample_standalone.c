@@ -27,6 +27,14 @@ static bool good_params(const struct refocus_upsample_params *params,
             rf_good_stride(params->confidence_stride, map->width, map->height));
 }
 
+/* Lays out all that upsampling needs. */
+static void lay_out(struct rf_upsampler *up, int threads, struct rf_arena *arena)
+{
+    rf_upsampler_lay_out(up, arena);
+    up->shares.size = rf_upsample_share();
+    up->shares.at = rf_arena_take(arena, (uint64_t)threads, up->shares.size);
+}
+
 int refocus_upsample(const struct refocus_image *photo, const struct refocus_disparity *map,
                      const struct refocus_upsample_params *given, uint16_t *out, ptrdiff_t stride)
 {
@@ -39,8 +47,8 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
     struct refocus_disparity own_map;
     struct refocus_upsample_params own_params;
     const struct refocus_upsample_params *const params = &own_params;
+    int status, threads;
     void *block;
-    int status;
 
     if ((status = rf_read_image(NULL, "photo", &own_photo, photo)) ||
         (status = rf_read_map(NULL, "map", &own_map, map)) ||
@@ -61,6 +69,7 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
         copy_map(map, out, stride);
         return REFOCUS_OK;
     }
+    threads = rf_thread_count(params->threads);
     struct rf_upsampler up = {
         .kernels = &kernels,
         .photo = photo,
@@ -71,7 +80,7 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
         .rows = rf_upsample_samples(map->height, photo->height),
         .out = {out, stride / 2},
     };
-    rf_upsampler_lay_out(&up, &arena);
+    lay_out(&up, threads, &arena);
     if (arena.used > PTRDIFF_MAX)
         return REFOCUS_ERR_SIZE;
     block = malloc((size_t)arena.used);
@@ -79,9 +88,9 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
         return REFOCUS_ERR_MEMORY;
     arena.base = (uint8_t *)block + (-(uintptr_t)block & (RF_ARENA_ALIGN - 1));
     arena.used = 0;
-    rf_upsampler_lay_out(&up, &arena);
+    lay_out(&up, threads, &arena);
     atomic_init(&run.state, RF_RUN_RUNNING);
-    status = rf_pool_start(&pool, rf_thread_count(params->threads), NULL, &run);
+    status = rf_pool_start(&pool, threads, NULL, &run);
     if (status == REFOCUS_OK) {
         rf_upsample(&up, &pool);
         rf_pool_end(&pool);

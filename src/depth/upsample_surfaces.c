@@ -329,28 +329,33 @@ static void list_unsure(const struct rf_upsampler *up, int y)
     unsure[0] = (uint16_t)n;
 }
 
-void rf_upsample_rows(const struct rf_upsampler *up, int first, int y0, int y1)
+uint64_t rf_upsample_share(void)
+{
+    return sizeof(struct patch);
+}
+
+void rf_upsample_rows(const struct rf_upsampler *up, int first, int y0, int y1, int worker)
 {
     const int width = up->photo->width, cells = up->columns + 1;
     const uint16_t *wide[RF_TAPS];
-    struct patch patch;
+    struct patch *const patch = rf_share(&up->shares, worker);
 
-    patch.up = up;
-    patch.row = first;
-    patch.bytes = refocus_format_bytes(up->photo->format);
+    patch->up = up;
+    patch->row = first;
+    patch->bytes = refocus_format_bytes(up->photo->format);
     for (int i = 0; i < RF_TAPS; i++)
         wide[i] = up->wide.at + clamp(first + i, up->rows - 1) * up->wide.stride;
     for (int y = y0; y < y1 && !rf_run_cancelled(up->run); y++) {
         up->kernels->blend4(up->out.at + y * up->out.stride, wide, up->down[y].share, width);
         memset(up->sure.at + y * up->sure.stride, 255, (size_t)width);
     }
-    for (patch.y0 = y0; patch.y0 < y1; patch.y0 = patch.y1) {
-        patch.y1 = patch.y0 + RUN < y1 ? patch.y0 + RUN : y1;
-        patch.from = patch.ready = 0;
+    for (patch->y0 = y0; patch->y0 < y1; patch->y0 = patch->y1) {
+        patch->y1 = patch->y0 + RUN < y1 ? patch->y0 + RUN : y1;
+        patch->from = patch->ready = 0;
         for (int i = 0; i < KINDS; i++)
-            patch.lies.alike[i] = -1;
+            patch->lies.alike[i] = -1;
         for (int i = 0; i < cells && !rf_run_cancelled(up->run); i += RF_CELLS)
-            fill_cells(&patch, i, cells - i < RF_CELLS ? cells - i : RF_CELLS);
+            fill_cells(patch, i, cells - i < RF_CELLS ? cells - i : RF_CELLS);
     }
     for (int y = y0; y < y1; y++)
         list_unsure(up, y);

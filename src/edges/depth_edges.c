@@ -8,6 +8,7 @@
 #include <refocus/render.h>
 
 #include "colour/guide.h"
+#include "depth/upsample.h"
 #include "edges/place.h"
 #include "image/format.h"
 #include "image/read.h"
@@ -70,13 +71,16 @@ static void copy_map(const struct refocus_disparity *map, struct rf_disparity_q1
 }
 
 /* Sets the pointers, or with arena->base == NULL only counts. */
-static void lay_out(struct rf_place_edges *place, struct guide *guide, struct rf_arena *arena)
+static void lay_out(struct rf_place_edges *place, struct guide *guide, int threads,
+                    struct rf_arena *arena)
 {
     const struct refocus_image *photo = guide->photo;
     const int32_t width = photo->width, height = photo->height;
 
     place->memory = rf_arena_take(
         arena, rf_place_edges_bytes(width, height, place->map->width, place->map->height), 1);
+    place->shares.size = rf_upsample_share();
+    place->shares.at = rf_arena_take(arena, (uint64_t)threads, place->shares.size);
     if (!refocus_format_is_yuv(photo->format))
         return;
     guide->curve = rf_arena_take(arena, 1, sizeof *guide->curve);
@@ -95,7 +99,7 @@ static int run(struct rf_place_edges *place, int threads, struct refocus_depth_e
     void *block;
     int status;
 
-    lay_out(place, &guide, &arena);
+    lay_out(place, &guide, threads, &arena);
     if (arena.used > PTRDIFF_MAX)
         return REFOCUS_ERR_SIZE;
     block = malloc((size_t)arena.used);
@@ -103,7 +107,7 @@ static int run(struct rf_place_edges *place, int threads, struct refocus_depth_e
         return REFOCUS_ERR_MEMORY;
     arena.base = (uint8_t *)block + (-(uintptr_t)block & (RF_ARENA_ALIGN - 1));
     arena.used = 0;
-    lay_out(place, &guide, &arena);
+    lay_out(place, &guide, threads, &arena);
     atomic_init(&run_state.state, RF_RUN_RUNNING);
     status = rf_pool_start(&pool, threads, NULL, &run_state);
     if (status == REFOCUS_OK) {

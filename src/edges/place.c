@@ -129,6 +129,7 @@ static void upsample(const struct rf_place_edges *place, const struct rf_edges *
         .map = map,
         .columns = rf_upsample_samples(map->width, place->photo->width),
         .rows = rf_upsample_samples(map->height, place->photo->height),
+        .shares = place->shares,
         .out = place->out,
     };
 

@@ -12,7 +12,7 @@
 #include "edges/edges.h"
 #include "image/planes.h"
 #include "kernels/kernels.h"
-#include "support/pool.h"
+#include "support/executor.h"
 
 struct rf_place_edges {
     const struct rf_kernels *kernels;
@@ -21,6 +21,7 @@ struct rf_place_edges {
     const struct refocus_disparity *map;
     struct rf_last_edges *last;  /* the frame before, which this one replaces; NULL: a still */
     void *memory;                /* rf_place_edges_bytes(), aligned to RF_ARENA_ALIGN */
+    struct rf_shares shares;     /* rf_upsample_share() bytes each */
     struct rf_disparity_q16 out; /* is of the photo's size, apart from the map and from memory */
 };
 

@@ -39,7 +39,7 @@ struct rf_focus_plan {
     uint32_t number;              /* counts renders with maps, which may change in between */
     int width, height;            /* pixels of the whole photo */
     uint16_t least, most;         /* disparities are clamped to these */
-    uint16_t limit;               /* |s| at most, Q7.8 */
+    uint16_t limit;               /* |s| at most, as it is stored */
     int32_t share;                /* how much of depth counts, Q16 */
     int64_t tilt, tilt_x, tilt_y; /* at pixel (0, 0), and a pixel's step: Q24 */
     int bands;                    /* 1 or more when any is wider than nothing, else 0 */
@@ -59,7 +59,7 @@ void rf_focus_plan_make(struct rf_focus_plan *plan, const struct rf_settings *pa
  * focus has it; else it may be all of max_blur_radius, K. */
 float rf_focus_largest(const struct rf_focus_plan *plan, float max_blur_radius);
 
-/* Signed blur of n pixels of disparities from (x, y) on, Q7.8. */
+/* Signed blur of n pixels of disparities from (x, y) on, Q7.8 of 2^plan->focus.unit pixels. */
 void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur, const uint16_t *disparity, int x,
                   int y, int n);
 

@@ -6,13 +6,18 @@
 #include <string.h>
 
 #include "aperture/aperture.h"
+#include "image/planes.h"
 #include "support/compare.h"
 
 struct rf_focus rf_focus_of(float focus_disparity, float max_blur_radius)
 {
+    const int unit = rf_unit_of(max_blur_radius);
+
     return (struct rf_focus){
         .disparity = (uint16_t)floor((double)focus_disparity * 65535 + 0.5),
-        .radius = (uint16_t)floor((double)max_blur_radius * 256 * 65536 / 65535 + 0.5),
+        .radius =
+            (uint16_t)floor((double)max_blur_radius / (1 << unit) * 256 * 65536 / 65535 + 0.5),
+        .unit = (uint16_t)unit,
     };
 }
 
@@ -85,7 +90,8 @@ void rf_focus_plan_make(struct rf_focus_plan *plan, const struct rf_settings *p,
     plan->height = height;
     plan->least = (uint16_t)to_fixed(p->least_disparity, RF_ONE);
     plan->most = (uint16_t)to_fixed(p->most_disparity, RF_ONE);
-    plan->limit = (uint16_t)to_fixed(p->blur_limit, 256);
+    plan->limit =
+        (uint16_t)rf_smaller(to_fixed(p->blur_limit, 256.0 / (1 << focus.unit)), UINT16_MAX);
     plan->share = to_fixed(p->depth_share, 65536);
     plan->surface = p->focus_map;
     plan->sharp = p->sharp_map;
@@ -101,5 +107,7 @@ float rf_focus_largest(const struct rf_focus_plan *plan, float max_blur_radius)
 {
     const int df = plan->focus.disparity, farther = rf_larger(df, UINT16_MAX - df);
 
-    return plan->plain ? ((float)farther * plan->focus.radius / 65536 + 1) / 256 : max_blur_radius;
+    return plan->plain ? ((float)farther * plan->focus.radius / 65536 + 1) / 256 *
+                             (float)(1 << plan->focus.unit)
+                       : max_blur_radius;
 }

@@ -96,6 +96,18 @@ void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
 {
     const int at = rect.y0 % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
 
+    if (f->deep_out->on) {
+        rf_encode_deep(f, rect,
+                       (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at},
+                       RF_TILE, 1);
+        return;
+    }
+    if (f->dither) {
+        rf_encode_dithered(f, rect,
+                           (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at},
+                           RF_TILE, 1);
+        return;
+    }
     if (f->bright) /* highlights make means above white */
         f->exec->kernels->clamp_row(mean[0], RF_MEAN_MAX, 3 * RF_TILE * RF_TILE);
     encode(f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at}, RF_TILE);
@@ -105,7 +117,24 @@ void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)
 {
     const struct rf_order o = rf_order_of(f->out->format);
     const uint8_t *to_code = f->transfer->to_code;
+    const ptrdiff_t first = rect.y0 * f->light.stride + rect.x0;
 
+    if (f->deep_out->on) {
+        rf_encode_deep(f, rect,
+                       (const uint16_t *const[3]){f->light.channel[0] + first,
+                                                  f->light.channel[1] + first,
+                                                  f->light.channel[2] + first},
+                       f->light.stride, 4);
+        return;
+    }
+    if (f->dither) {
+        rf_encode_dithered(f, rect,
+                           (const uint16_t *const[3]){f->light.channel[0] + first,
+                                                      f->light.channel[1] + first,
+                                                      f->light.channel[2] + first},
+                           f->light.stride, 4);
+        return;
+    }
     for (int y = rect.y0; y < rect.y1; y++) {
         const uint8_t *alpha = f->alpha.at + y * f->alpha.stride;
         uint8_t *out = pixel(f, o.bytes, rect.x0, y);

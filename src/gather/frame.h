@@ -12,6 +12,7 @@
 #include "focus/focus.h"
 #include "gather/work_memory.h"
 #include "image/chroma.h"
+#include "image/deep.h"
 #include "image/planes.h"
 #include "image/viewport.h"
 #include "passes/prefilter.h"
@@ -53,6 +54,9 @@ struct rf_frame {
     const struct rf_bins *bins;         /* one for each tile, row by row */
     const struct rf_yuv *yuv;           /* yuv->on: the photo is one of Y, U and V */
     struct rf_chroma_planes chroma;     /* valid if yuv->on */
+    const struct rf_deep *deep;         /* deep->on: the photo is deep */
+    const struct rf_deep *deep_out;     /* deep_out->on: `out` is */
+    bool dither;                        /* `out` is of 8 bits and to be dithered: by *deep_out */
     const struct rf_transfer *transfer; /* the curve of the blend */
     const uint16_t *light_weight;       /* eq. 5 for each Q12 light, Q15 */
     const struct rf_ray_sets *ray_sets;
@@ -72,7 +76,7 @@ struct rf_frame {
     struct rf_rect region; /* pixels of the window to render; `out` covers just these */
     struct rf_reach reach;
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
-    int prefilter_above[RF_PREFILTER_STEPS];    /* |s| that each step begins at, Q7.8 */
+    int prefilter_above[RF_PREFILTER_STEPS];    /* |s| that each step begins at, as it is stored */
     bool prefilter_fades;                       /* steps set in gradually: rf_prefilter_rows() */
     struct rf_thin_pass thin;     /* thin structures, composited over the means of rays */
     bool weighted;                /* eq. 5 weights differ from 1 */
@@ -97,6 +101,25 @@ static inline bool rf_weighs(const struct rf_settings *params)
 static inline bool rf_is_sweep(const struct rf_frame *f)
 {
     return f->params->method == REFOCUS_METHOD_SWEEP;
+}
+
+static inline bool rf_is_search(const struct rf_frame *f)
+{
+    return f->params->method == REFOCUS_METHOD_SEARCH;
+}
+
+/* Whether the search looks at light that highlights were subtracted from. It never gathers them:
+ * rays of one test see pixels whose circle of confusion does not reach theirs, and what is
+ * many times as bright as white would show there. */
+static inline bool rf_searches_subtracted(const struct rf_frame *f)
+{
+    return rf_is_search(f) && f->splats;
+}
+
+/* The light that the search looks at: of a photo of Y, U and V luminance, D_b and D_r. */
+static inline struct rf_light_q12 rf_searched_light(const struct rf_frame *f)
+{
+    return f->yuv->on || rf_searches_subtracted(f) ? f->smooth : f->light;
 }
 
 /* Whether rays skip the test of the deepest surface in reach and see the background layer there:
@@ -132,15 +155,15 @@ static inline uint32_t rf_weight_of(const struct rf_frame *f, uint16_t *const li
     return f->light_weight[most];
 }
 
-/* The offset of a ray in whole pixels: u s, Q15 times Q7.8, rounded half up. For u = 16384 (0.5)
- * and s = 768 (3 pixels) it is 1.5 pixels, which rounds to 2. */
+/* The offset of a ray in whole pixels, of blurs without a unit: u s, Q15 times Q7.8, rounded half
+ * up. For u = 16384 (0.5) and s = 768 (3 pixels) it is 1.5 pixels, which rounds to 2. */
 static_assert(INT16_MAX * (127 * 256) + (1 << 22) <= INT32_MAX, "the product and its rounding");
 static inline int rf_offset(int u, int s)
 {
     return (u * s + (1 << 22)) >> 23;
 }
 
-/* The signed blur of the nearest plane, d = 1, and of the farthest, d = 0, Q7.8. */
+/* The signed blur of the nearest plane, d = 1, and of the farthest, d = 0, as it is stored. */
 static inline int rf_nearest_blur(const struct rf_frame *f)
 {
     return -(int)(((uint32_t)(65535 - f->focus.disparity) * f->focus.radius + (1 << 15)) >> 16);
@@ -166,6 +189,16 @@ void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_
 /* Copies the pixels of a tile that is sharp: they come out as they went in. */
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
 
+/* Does all of this for a deep output picture: values, `pitch` from row to row a Q14 mean when they
+ * are `scale` times as large, from the first of `rect` on. Means that are a pixel's own light are
+ * its own in full. */
+void rf_encode_deep(const struct rf_frame *f, struct rf_rect rect, const uint16_t *const mean[3],
+                    ptrdiff_t pitch, int scale);
+
+/* Does so for a picture of 8 bits, dithered. */
+void rf_encode_dithered(const struct rf_frame *f, struct rf_rect rect,
+                        const uint16_t *const mean[3], ptrdiff_t pitch, int scale);
+
 /* Do so for a photo of Y, U and V, whose means are in job->luma and job->chroma. */
 void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rect rect,
                          struct rf_decode_job *job);
@@ -176,6 +209,11 @@ void rf_write_pixel(const struct rf_frame *f, int x, int y, const uint8_t rgb[3]
 
 /* Renders the pixels `rect` of tile (tx, ty), which lie inside that tile. */
 typedef void rf_tile_fn(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker);
-rf_tile_fn rf_sweep_tile, rf_sweep_yuv_tile, rf_search_tile;
+rf_tile_fn rf_sweep_tile, rf_sweep_yuv_tile, rf_search_tile, rf_search_yuv_tile;
+
+/* Bytes of the share of a worker in f->exec that each of them needs. */
+uint64_t rf_sweep_share(void);
+uint64_t rf_sweep_yuv_share(void);
+uint64_t rf_search_share(void);
 
 #endif

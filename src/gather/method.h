@@ -19,6 +19,7 @@ typedef void rf_exact_init_fn(struct rf_exact *exact, uint32_t blend, double sig
 struct rf_method {
     rf_tile_fn *tile;             /* called for each tile; else NULL, and */
     rf_frame_fn *frame;           /* this once for the whole frame */
+    rf_tile_fn *yuv_tile;         /* called for each tile of a photo of Y, U and V; NULL: refused */
     rf_work_bytes_fn *work_bytes; /* NULL: none */
     rf_exact_init_fn *exact;      /* fills f->exact of methods in double precision; else NULL */
     bool layers; /* it needs the pre-filter, the bins of tiles and the hidden background */

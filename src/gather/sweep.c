@@ -27,6 +27,7 @@
 #include "thin/thin.h"
 
 #include <assert.h>
+#include <stdalign.h>
 #include <string.h>
 
 enum { LANES = RF_TILE * RF_TILE };
@@ -34,10 +35,10 @@ enum { LANES = RF_TILE * RF_TILE };
 /* Where at most RF_RAY_CHUNK rays look for the slabs of a tile and, last, for the hidden
  * background. */
 struct lookups {
-    int rays;
     int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
     int32_t cell[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
     int32_t weight_offset[RF_MAX_SLABS][RF_RAY_CHUNK];
+    int rays; /* last, so that rows begin with cache lines */
 };
 
 /* Rays of one side of the focus, u and v apart: they are those of the set, or were made for the
@@ -81,10 +82,11 @@ static void set_lookups(struct lookups *lookups, const struct rf_frame *f,
 
         if (f->weighted && k < plan->slabs)
             f->exec->kernels->aim(lookups->weight_offset[k], lookups->cell[k], aims->u, aims->v,
-                                  scaled, (int32_t)f->weight.stride, (int32_t)f->range.stride,
-                                  lookups->rays);
+                                  scaled, f->blur.unit, (int32_t)f->weight.stride,
+                                  (int32_t)f->range.stride, lookups->rays);
         f->exec->kernels->aim(lookups->offset[k], lookups->cell[k], aims->u, aims->v, scaled,
-                              (int32_t)f->view->stride, (int32_t)f->range.stride, lookups->rays);
+                              f->blur.unit, (int32_t)f->view->stride, (int32_t)f->range.stride,
+                              lookups->rays);
     }
 }
 
@@ -101,6 +103,20 @@ union tally {
     uint64_t weighted[4][LANES]; /* for weights that differ too much for 16 bits */
 };
 
+/* The share of a worker, for a tile until its means are computed. Vectors of sums that cross cache
+ * lines cost a twentieth of a frame. */
+struct share {
+    alignas(64) union tally run; /* rays of equal weight */
+    alignas(64) struct rf_sums sums;
+    alignas(64) struct lookups lookups;
+    alignas(64) struct rf_sorted_rays sorted;
+};
+
+uint64_t rf_sweep_share(void)
+{
+    return sizeof(struct share);
+}
+
 static bool has_wide_sums(const struct rf_frame *f)
 {
     return f->weighted && !f->premultiplied;
@@ -113,10 +129,11 @@ struct strip {
 };
 
 static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                        const struct lookups *lookups, int tx, int ty, struct strip strip,
-                        union tally *run)
+                        struct share *share, int tx, int ty, struct strip strip)
 {
     enum { CELLS = RF_TILE / RF_CELL, STRIP_CELLS = RF_STRIP / RF_CELL };
+    const struct lookups *lookups = &share->lookups;
+    union tally *const run = &share->run;
     const int first = strip.first, y = ty * RF_TILE + strip.y, x = tx * RF_TILE;
     const ptrdiff_t at = y * f->view->stride + x, weight_at = y * f->weight.stride + x;
     const uint32_t *range =
@@ -124,7 +141,6 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
     /* The vectors of sweep_weighted hold 8 times white at the most. */
     rf_sweep_weighted_fn *const weighted =
         f->bright == RF_BRIGHTEST ? rf_sweep_weighted_c : f->exec->kernels->sweep_weighted;
-    struct rf_sorted_rays sorted;
     const struct rf_sort_job sort = {
         .range = range,
         .below = strip.step > 2 ? range + STRIP_CELLS * f->range.stride : NULL,
@@ -145,7 +161,7 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
         .blur = f->blur.at + at,
         .stride = strip.step * f->view->stride,
         .pitch = f->light.channel[1] - f->light.channel[0],
-        .rays = &sorted,
+        .rays = &share->sorted,
         .steps = rf_steps_of(plan),
         .bright = f->bright,
         .lanes = strip.rows * RF_TILE,
@@ -153,7 +169,7 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
         .weight_stride = strip.step * f->weight.stride,
     };
 
-    f->exec->kernels->sort_rays(&sorted, &sort);
+    f->exec->kernels->sort_rays(&share->sorted, &sort);
     if (has_wide_sums(f))
         weighted((uint64_t *const[4]){run->weighted[0] + first, run->weighted[1] + first,
                                       run->weighted[2] + first, run->weighted[3] + first},
@@ -167,14 +183,13 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
 
 /* Sweeps the rows of a tile that are computed. */
 static void sweep_strips(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                         const struct lookups *lookups, int tx, int ty, struct rf_tile_rows rows,
-                         union tally *run)
+                         struct share *share, int tx, int ty, struct rf_tile_rows rows)
 {
     const int count = rows.step <= 2 ? rows.count / 2 : rows.count;
 
     for (int i = 0; i < rows.count; i += count)
-        sweep_strip(f, plan, lookups, tx, ty,
-                    (struct strip){rf_row_at(rows, i), rows.step, count, i * RF_TILE}, run);
+        sweep_strip(f, plan, share, tx, ty,
+                    (struct strip){rf_row_at(rows, i), rows.step, count, i * RF_TILE});
 }
 
 static void clear_run(const struct rf_frame *f, union tally *run, int lanes)
@@ -202,7 +217,7 @@ static void add_run(const struct rf_frame *f, const union tally *run, uint64_t r
 }
 
 /* Rays come in runs of equal weight; a run is summed plainly and counts as often as it weighs. The
- * sum of a set of equal rays is left in `run`; others are added up in `sums`. */
+ * sum of a set of equal rays is left in share->run; others are added up in share->sums. */
 static_assert((uint64_t)RF_FULL_RAYS * RF_MOST_GAIN * RF_LIGHT_MAX <= UINT32_MAX,
               "a run of all rays of the brightest light fits 32 bits");
 static_assert((uint64_t)RF_FULL_RAYS * RF_MOST_GAIN * RF_LIGHT_MAX * RF_WEIGHT_MAX < UINT64_C(1)
@@ -210,28 +225,28 @@ static_assert((uint64_t)RF_FULL_RAYS * RF_MOST_GAIN * RF_LIGHT_MAX * RF_WEIGHT_M
               "and of weighted light what kernels->weighted_means takes");
 static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
                        const struct rf_tile_rays *tile_rays, int tx, int ty,
-                       struct rf_tile_rows rows, union tally *run, struct rf_sums *sums)
+                       struct rf_tile_rows rows, struct share *share)
 {
     const struct rf_ray_set *set = tile_rays->set;
     const int background_blur = background_blur_of(f, tx, ty);
-    struct lookups lookups;
+    struct lookups *const lookups = &share->lookups;
     const int lanes = rows.count * RF_TILE;
     int rays = 0; /* in this run */
 
-    clear_run(f, run, lanes);
-    for (int n = 0; n < set->count; n += lookups.rays) {
+    clear_run(f, &share->run, lanes);
+    for (int n = 0; n < set->count; n += lookups->rays) {
         const struct refocus_ray *ray = &set->ray[n];
 
         if (rf_cancelled(f->exec))
             return;
-        lookups.rays = rf_rays_of_equal_weight(set, n);
-        rays += lookups.rays;
-        set_lookups(&lookups, f, plan, tile_rays, n, background_blur);
-        sweep_strips(f, plan, &lookups, tx, ty, rows, run);
+        lookups->rays = rf_rays_of_equal_weight(set, n);
+        rays += lookups->rays;
+        set_lookups(lookups, f, plan, tile_rays, n, background_blur);
+        sweep_strips(f, plan, share, tx, ty, rows);
         if (!set->equal &&
-            (n + lookups.rays == set->count || ray[lookups.rays].weight != ray->weight)) {
-            add_run(f, run, ray->weight, (uint64_t)rays, sums);
-            clear_run(f, run, lanes);
+            (n + lookups->rays == set->count || ray[lookups->rays].weight != ray->weight)) {
+            add_run(f, &share->run, ray->weight, (uint64_t)rays, &share->sums);
+            clear_run(f, &share->run, lanes);
             rays = 0;
         }
     }
@@ -253,7 +268,7 @@ static void clamp_run(union tally *run, int lanes, bool wide, uint32_t rays)
 
 /* Computes the means of channels `from` to `to` - 1 of a tile from rays of equal weight. */
 static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                        const struct rf_tile_rays *tile_rays, int tx, int ty,
+                        const struct rf_tile_rays *tile_rays, int tx, int ty, struct share *share,
                         uint16_t mean[3][LANES], int from, int to)
 {
     const uint32_t count = (uint32_t)tile_rays->set->count;
@@ -262,22 +277,22 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
     const uint16_t softness = rf_softness(f, plan, background_blur);
     const int lanes = rows.count * RF_TILE;
     uint16_t computed[LANES];
-    union tally run;
+    union tally *const run = &share->run;
 
-    sweep_rays(f, plan, tile_rays, tx, ty, rows, &run, NULL);
+    sweep_rays(f, plan, tile_rays, tx, ty, rows, share);
     if (rf_cancelled(f->exec))
         return;
     if (!f->premultiplied && rf_exceeds_means(plan))
-        clamp_run(&run, lanes, f->weighted, count);
+        clamp_run(run, lanes, f->weighted, count);
     for (int c = from; c < to; c++) {
         uint16_t *out = rows.step > 1 ? computed : mean[c];
 
         if (f->premultiplied)
-            f->exec->kernels->premultiplied_means(out, run.sum[c], run.sum[3], lanes);
+            f->exec->kernels->premultiplied_means(out, run->sum[c], run->sum[3], lanes);
         else if (f->weighted)
-            f->exec->kernels->weighted_means(out, run.weighted[c], run.weighted[3], lanes);
+            f->exec->kernels->weighted_means(out, run->weighted[c], run->weighted[3], lanes);
         else
-            f->exec->kernels->means(out, run.sum[c], rf_mean_scale(count), lanes);
+            f->exec->kernels->means(out, run->sum[c], rf_mean_scale(count), lanes);
         if (softness)
             f->exec->kernels->soften(out, rows.count, 1, rows.step == 1, softness);
         if (rows.step > 1)
@@ -287,23 +302,22 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
 
 /* Computes these means from rays that do not weigh the same. */
 static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                       const struct rf_tile_rays *rays, int tx, int ty, uint16_t mean[3][LANES],
-                       int from, int to)
+                       const struct rf_tile_rays *rays, int tx, int ty, struct share *share,
+                       uint16_t mean[3][LANES], int from, int to)
 {
     const uint64_t most = 4 * RF_MOST_MEAN;
     const uint64_t unit =
         f->premultiplied ? 8192 : 4; /* light is Q13 times weight Q12, or plain Q12 */
     const uint16_t softness = rf_softness(f, plan, background_blur_of(f, tx, ty));
-    struct rf_sums sums;
-    union tally run;
+    struct rf_sums *const sums = &share->sums;
 
-    memset(&sums, 0, sizeof sums);
-    sweep_rays(f, plan, rays, tx, ty, (struct rf_tile_rows){1, RF_TILE}, &run, &sums);
+    memset(sums, 0, sizeof *sums);
+    sweep_rays(f, plan, rays, tx, ty, (struct rf_tile_rows){1, RF_TILE}, share);
     if (rf_cancelled(f->exec)) /* a cancelled run has no weights to divide by */
         return;
     for (int c = from; c < to; c++) {
         for (int i = 0; i < LANES; i++) {
-            const uint64_t w = sums.weight[i], v = (unit * sums.light[c][i] + w / 2) / w;
+            const uint64_t w = sums->weight[i], v = (unit * sums->light[c][i] + w / 2) / w;
 
             mean[c][i] = (uint16_t)(v < most ? v : most);
         }
@@ -317,8 +331,8 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
     struct rf_tile_plan plan;
     struct rf_tile_rays rays;
     uint16_t mean[3][LANES];
+    void *const share = rf_share(&f->exec->shares, worker);
 
-    (void)worker;
     rf_plan_tile(f->view, f->bins, &f->reach, tx, ty, &plan);
     if (plan.sharp && f->thin.disc_scale && rf_has_coverage(&f->thin, tx, ty)) {
         rf_thin_sharp_means(&f->thin, tx, ty, mean);
@@ -339,18 +353,18 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         if (pass)
             rf_use_green_rays(&rays, f->params->fringe);
         if (rays.set->equal)
-            sweep_means(f, &plan, &rays, tx, ty, mean, from, to);
+            sweep_means(f, &plan, &rays, tx, ty, share, mean, from, to);
         else
-            sweep_sums(f, &plan, &rays, tx, ty, mean, from, to);
+            sweep_sums(f, &plan, &rays, tx, ty, share, mean, from, to);
     }
     if (f->splats)
-        rf_splat_highlights(&f->splat, &plan, tx, ty,
+        rf_splat_highlights(&f->splat, &plan, tx, ty, share,
                             (uint16_t *const[3]){mean[0], mean[1], mean[2]});
     if (f->thin.mattes)
         rf_matte_over(&f->thin, tx, ty, mean);
     if (f->thin.disc_scale)
         rf_coverage_over(&f->thin, tx, ty, mean);
-    if (f->splats && plan.highlight)
+    if (f->splats && plan.highlight && !f->deep_out->on)
         f->exec->kernels->clamp_row(mean[0], RF_MEAN_MAX, 3 * LANES);
     if (!rf_cancelled(f->exec))
         rf_encode_means(f, rect, mean);

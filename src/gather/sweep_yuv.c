@@ -9,6 +9,7 @@
 #include "gather/sums.h"
 #include "gather/tile_rows.h"
 
+#include <stdalign.h>
 #include <string.h>
 
 enum { LANES = RF_TILE * RF_TILE };
@@ -27,7 +28,7 @@ struct tile {
     const struct rf_frame *f;
     struct rf_tile_plan plan;
     const struct rf_ray_set *set;
-    int background_blur;                        /* at the tile's middle, Q7.8 */
+    int background_blur;                        /* at the tile's middle, as it is stored */
     const uint32_t *range;                      /* from the tile's first cell on */
     const uint16_t *weight, *background_weight; /* eq. 5 from its first pixel on, or NULL */
     struct plane luma, chroma;
@@ -36,14 +37,14 @@ struct tile {
 /* At most RF_RAY_CHUNK rays of one weight, where they look for the slabs of the tile and for the
  * hidden background, and which of these lookups need a test. */
 struct lookups {
-    int rays;
-    const int16_t *u, *v;
-    int16_t own_u[RF_RAY_CHUNK], own_v[RF_RAY_CHUNK];
     int32_t offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
     int32_t cell[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
     /* The lookups in chroma of the first rays, which it shares: */
     int32_t chroma_offset[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
     int32_t chroma_pixel[RF_MAX_SLABS + 1][RF_RAY_CHUNK];
+    int16_t own_u[RF_RAY_CHUNK], own_v[RF_RAY_CHUNK];
+    const int16_t *u, *v;
+    int rays;
     struct rf_sorted_rays sorted;
 };
 
@@ -65,6 +66,17 @@ struct sums {
     uint64_t weighted_run[2][LANES], weight_run[2][LANES];
     uint64_t sum[2][LANES], weight[2][LANES];
 };
+
+/* The share of a worker, for a tile until its means are computed. */
+struct share {
+    alignas(64) struct sums sums;
+    alignas(64) struct lookups lookups;
+};
+
+uint64_t rf_sweep_yuv_share(void)
+{
+    return sizeof(struct share);
+}
 
 /* Whether weights differ too much for products of 16 bits. */
 static bool has_wide_sums(const struct tile *tile)
@@ -126,11 +138,11 @@ static void sort_rays(const struct tile *tile, struct lookups *lookups, int shar
         const int blur = k < tile->plan.slabs ? tile->plan.slab[k].centre : tile->background_blur;
 
         tile->f->exec->kernels->aim(lookups->offset[k], lookups->cell[k], lookups->u, lookups->v,
-                                    blur, (int32_t)tile->f->view->stride,
+                                    blur, tile->f->blur.unit, (int32_t)tile->f->view->stride,
                                     (int32_t)tile->f->range.stride, lookups->rays);
-        tile->f->exec->kernels->aim_chroma(lookups->chroma_offset[k], lookups->chroma_pixel[k],
-                                           lookups->u, lookups->v, blur, tile->chroma.down,
-                                           (int32_t)tile->f->view->stride, shared);
+        tile->f->exec->kernels->aim_chroma(
+            lookups->chroma_offset[k], lookups->chroma_pixel[k], lookups->u, lookups->v, blur,
+            tile->f->blur.unit, tile->chroma.down, (int32_t)tile->f->view->stride, shared);
     }
     tile->f->exec->kernels->sort_rays(&lookups->sorted, &job);
 }
@@ -172,25 +184,26 @@ static void add_run(const struct tile *tile, struct sums *sums, uint64_t weight,
 }
 
 /* Sums the rays run by run, as sweep_rays() of sweep.c does. */
-static void sweep_rays(const struct tile *tile, struct sums *sums)
+static void sweep_rays(const struct tile *tile, struct share *share)
 {
     const struct rf_ray_set *set = tile->set;
     int rays[2] = {0, 0}; /* in this run */
-    struct lookups lookups;
+    struct lookups *const lookups = &share->lookups;
+    struct sums *const sums = &share->sums;
 
     clear_run(tile, sums);
     for (int n = 0, end; n < set->count; n = end) {
         const uint64_t weight = set->ray[n].weight;
         int shared;
 
-        set_rays(&lookups, set, n);
-        end = n + lookups.rays;
+        set_rays(lookups, set, n);
+        end = n + lookups->rays;
         shared = rf_shared_rays(set, n, end);
-        rays[0] += lookups.rays;
+        rays[0] += lookups->rays;
         rays[1] += shared;
-        sort_rays(tile, &lookups, shared);
-        sweep_plane(tile, false, &lookups.sorted, sums);
-        sweep_plane(tile, true, &lookups.sorted, sums);
+        sort_rays(tile, lookups, shared);
+        sweep_plane(tile, false, &lookups->sorted, sums);
+        sweep_plane(tile, true, &lookups->sorted, sums);
         if (!set->equal && (end == set->count || set->ray[end].weight != weight)) {
             add_run(tile, sums, weight, rays);
             rays[0] = rays[1] = 0;
@@ -229,7 +242,7 @@ static void compute_means(const struct tile *tile, bool chroma, struct sums *sum
         kernels->between_chroma(mean, computed);
 }
 
-static void sweep_means(struct tile *tile, struct sums *sums, struct rf_decode_job *means)
+static void sweep_means(struct tile *tile, struct share *share, struct rf_decode_job *means)
 {
     const struct rf_frame *f = tile->f;
 
@@ -237,25 +250,26 @@ static void sweep_means(struct tile *tile, struct sums *sums, struct rf_decode_j
     tile->chroma.computed = tile->chroma.down
                                 ? rf_chroma_rows(f, &tile->plan, tile->background_blur)
                                 : tile->luma.computed;
-    sweep_rays(tile, sums);
-    compute_means(tile, false, sums, means->luma);
-    compute_means(tile, true, sums, means->chroma);
+    sweep_rays(tile, share);
+    compute_means(tile, false, &share->sums, means->luma);
+    compute_means(tile, true, &share->sums, means->chroma);
 }
 
 /* Computes the means of rays that do not weigh the same. */
-static void sweep_sums(struct tile *tile, struct sums *sums, struct rf_decode_job *means)
+static void sweep_sums(struct tile *tile, struct share *share, struct rf_decode_job *means)
 {
     const int lanes[2] = {LANES, tile->chroma.rows * RF_TILE};
     /* Light is Q12 where it is plain; premultiplied it is Q13, chroma Q12, times weights of Q12. */
     const uint64_t plain[2] = {4, 4}, premultiplied[2] = {1 << 13, 1 << 14};
     const uint64_t *unit = tile->f->premultiplied ? premultiplied : plain;
+    struct sums *const sums = &share->sums;
     uint16_t *const mean[2] = {means->luma, means->chroma};
 
     tile->luma.computed = (struct rf_tile_rows){1, tile->luma.rows};
     tile->chroma.computed = (struct rf_tile_rows){1, tile->chroma.rows};
     memset(sums->sum, 0, sizeof sums->sum);
     memset(sums->weight, 0, sizeof sums->weight);
-    sweep_rays(tile, sums);
+    sweep_rays(tile, share);
     for (int p = 0; p < 2; p++)
         for (int i = 0; i < lanes[p]; i++) {
             const uint64_t w = sums->weight[p][i], v = (unit[p] * sums->sum[p][i] + w / 2) / w;
@@ -295,9 +309,8 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
 {
     struct rf_decode_job means;
     struct tile tile;
-    struct sums sums;
+    void *const share = rf_share(&f->exec->shares, worker);
 
-    (void)worker;
     tile.f = f;
     tile.background_blur = f->bins[(size_t)ty * f->view->tiles_x + tx].background_blur;
     rf_plan_tile(f->view, f->bins, &f->reach, tx, ty, &tile.plan);
@@ -308,10 +321,10 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
     tile.set = rf_choose_ray_set(f->ray_sets, tile.plan.reach, tile.plan.undersampled);
     set_planes(&tile, tx, ty);
     if (tile.set->equal)
-        sweep_means(&tile, &sums, &means);
+        sweep_means(&tile, share, &means);
     else
-        sweep_sums(&tile, &sums, &means);
+        sweep_sums(&tile, share, &means);
     if (f->splats)
-        rf_splat_highlights(&f->splat, &tile.plan, tx, ty, (uint16_t *const[3]){means.luma});
+        rf_splat_highlights(&f->splat, &tile.plan, tx, ty, share, (uint16_t *const[3]){means.luma});
     rf_encode_yuv_means(f, tx, ty, rect, &means);
 }

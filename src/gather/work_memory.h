@@ -7,7 +7,7 @@
 /* The largest picture and lens that memory must suffice for. */
 struct rf_limits {
     int width, height, pad, threads;
-    float max_blur_radius;
+    float max_blur_radius; /* largest blur of these methods, at most RF_PLAIN_RADIUS */
 };
 
 /* Memory of the methods that work on whole frames, one at a time. */

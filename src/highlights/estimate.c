@@ -15,9 +15,11 @@
  * By day most of what is clipped is paper, sky and skin, which have lost little. What the model
  * adds is limited by how dark the surroundings are: with t = (0.30 - U_4) / 0.24 from 0 to 1,
  *
- *     log2(gain) <= 1/2 + 5 t^2, and that times (1 + t) / 2.
+ *     log2(gain) <= 3/4 + (5.5 - 3/4) t^2,
  *
- * What is large, or hardly brighter than white, is left as it is.
+ * and a speck on something bright, on a petal or on a cheek, gets nothing.
+ * What is large, or hardly brighter than white by the model, is left as it is. A fixed gain goes to
+ * what is left.
  */
 #include "highlights/estimate.h"
 
@@ -27,8 +29,9 @@
 #include "support/log2.h"
 
 enum { FEATURES = 25 };
-#define MOST_STOPS    4.0    /* a gain of 16 */
-#define LEAST_STOPS   0.5    /* less is nothing, all of it counts from 1 on */
+#define MOST_STOPS    4.0 /* a gain of 16 */
+#define DAY_STOPS     0.75
+#define NIGHT_STOPS   5.5
 #define LEAST_CLIPPED 0.005f /* the least part of a cell that is clipped, for an estimate */
 
 static const struct {
@@ -151,30 +154,49 @@ static double softplus(double z)
     return fmax(z, 0) + rf_log2(1 + rf_exp_minus(fabs(z))) * 0.69314718055994531;
 }
 
-/* The estimate of a cell; most of them are nothing by day, and need no model then. */
-static double lost_of(const struct rf_light_grid *grid, int x, int y)
+/* How far what is clipped is a speck on something bright: 0 to 1. */
+static double speck(const struct rf_light_grid *grid, const struct rf_grid_place *near)
+{
+    return smoothstep(unclipped(grid, RF_GRID_UNCLIPPED, near), 0.2, 0.45) *
+           (1 - smoothstep(mean_at(grid, RF_GRID_CLIPPED, near), 0.1, 0.4));
+}
+
+/* How much of an estimate of so many stops is taken, 0 to 1: by day it begins at 1 stop and is all
+ * from 1.8 on, by night at 0.5 and from 1 on. */
+static double part_of(double stops, double night)
+{
+    return smoothstep(stops, 1 - 0.5 * night, 1.8 - 0.8 * night);
+}
+
+/* Returns how much light a cell has lost, as times its own. For a fixed gain that is RF_MOST_GAIN -
+ * 1 wherever the model has 1.5 stops and more, day or night, and a part of it from 0.5 on. */
+static double lost_of(const struct rf_light_grid *grid, int x, int y, bool fixed)
 {
     struct rf_grid_place place[RF_GRID_SCALES];
-    double feature[FEATURES], z = constant, night, most, part, large, stops;
+    double feature[FEATURES], z = constant, dark, night, large, part, stops;
 
     for (int k = 0; k < RF_GRID_SCALES; k++)
         place[k] = rf_grid_place(grid, k, x, y);
-    night = within((0.30 - unclipped(grid, RF_GRID_UNCLIPPED, &place[4])) / 0.24, 0, 1);
-    most = 0.5 + 5 * night * night;
-    part = 0.5 + 0.5 * night;
     large = smoothstep(mean_at(grid, RF_GRID_CLIPPED, &place[3]), 0.6, 0.9);
-    if (most * part <= LEAST_STOPS || large >= 1)
+    if (large >= 1)
         return 0;
     set_features(grid, place, feature);
     for (int i = 0; i < FEATURES; i++)
         z += model[i].weight * within((feature[i] - model[i].mean) / model[i].deviation, -3, 3);
-    stops = fmin(fmin(softplus(4 * z) / 4, most) * part, MOST_STOPS);
-    return (rf_exp2(stops) - 1) * smoothstep(stops, LEAST_STOPS, 1) * (1 - large);
+    stops = softplus(4 * z) / 4;
+    if (fixed)
+        return (RF_MOST_GAIN - 1) * smoothstep(stops, 0.5, 1.5) * (1 - large);
+    dark = within((0.30 - unclipped(grid, RF_GRID_UNCLIPPED, &place[4])) / 0.24, 0, 1);
+    night = dark * dark;
+    part = part_of(stops, night) * (1 - large) * (1 - (1 - night) * speck(grid, &place[2]));
+    stops = fmin(fmin(stops, DAY_STOPS + (NIGHT_STOPS - DAY_STOPS) * night), MOST_STOPS);
+    return (rf_exp2(stops) - 1) * part;
 }
 
 struct job {
     const struct rf_estimate *estimate;
     double scale;
+    bool fixed; /* gain */
 };
 
 static void estimate_row(void *context, int item, int worker)
@@ -187,13 +209,14 @@ static void estimate_row(void *context, int item, int worker)
         const ptrdiff_t at = (ptrdiff_t)item * grid->width + x;
         const bool clipped = grid->plane[RF_GRID_CLIPPED].scale[0][at] >= LEAST_CLIPPED;
 
-        job->estimate->lost[at] = clipped ? (float)(lost_of(grid, x, item) * job->scale) : -1;
+        job->estimate->lost[at] =
+            clipped ? (float)(lost_of(grid, x, item, job->fixed) * job->scale) : -1;
     }
 }
 
 void rf_estimate_make(const struct rf_estimate *estimate, float scale)
 {
-    struct job job = {estimate, (double)scale};
+    struct job job = {estimate, scale > 0 ? (double)scale : 1, !(scale > 0)};
 
     rf_pool_run(estimate->grid->exec->pool, estimate_row, &job, estimate->grid->height);
 }

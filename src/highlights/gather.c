@@ -8,6 +8,7 @@
 
 #include "highlights/clipped.h"
 #include "highlights/in_window.h"
+#include "highlights/known.h"
 #include "highlights/patch.h"
 #include "tiles/ranges.h"
 #include "tiles/tiles.h"
@@ -46,11 +47,6 @@ static void for_each(const struct gather *g, int part,
     }
 }
 
-static int blur_at(const struct gather *g, int x, int y)
-{
-    return g->window->blur.at[y * g->window->blur.stride + x];
-}
-
 /* Half a gap of the rays at a blur, in pixels. */
 static int reach_of(int blur, double gap)
 {
@@ -67,7 +63,7 @@ static int reach_of(int blur, double gap)
 static void widen_pixel(const struct gather *g, int cx, int cy)
 {
     const struct rf_viewport *view = g->window->view;
-    const int16_t own = (int16_t)blur_at(g, cx, cy);
+    const int own = rf_window_blur(g->window, cx, cy);
     const int reach = reach_of(own, g->gap);
 
     for (int y = cy - reach; y <= cy + reach; y++) {
@@ -77,8 +73,9 @@ static void widen_pixel(const struct gather *g, int cx, int cy)
             if (x < 0 || y < 0 || x >= view->width || y >= view->height ||
                 dx * dx + dy * dy > reach * reach + 1)
                 continue;
-            if (blur_at(g, x, y) > own + ALIKE && abs(blur_at(g, x, y)) > BLURRED)
-                rf_set_blur(g->patch, x, y, own);
+            if (rf_window_blur(g->window, x, y) > own + ALIKE &&
+                abs(rf_window_blur(g->window, x, y)) > BLURRED)
+                rf_set_blur(g->patch, x, y, rf_in_units(own, g->window->blur.unit));
         }
     }
 }
@@ -96,9 +93,9 @@ static void note_undersampled(const struct gather *g, const struct rf_highlight 
         if (!rf_place_in(w->view, run, i, &x, &y) || rf_is_edge(run, i))
             continue;
         bins = &w->bins[(size_t)(y / RF_TILE) * w->view->tiles_x + x / RF_TILE];
-        blur = abs(blur_at(g, x, y));
-        if (blur > from && blur > bins->undersampled)
-            bins->undersampled = (int16_t)blur;
+        blur = abs(rf_window_blur(g->window, x, y));
+        if (blur > from && rf_in_units(blur, w->blur.unit) > bins->undersampled)
+            bins->undersampled = rf_in_units(blur, w->blur.unit);
     }
 }
 
@@ -112,7 +109,7 @@ static void widen_run(const struct gather *g, const struct rf_highlight *run)
         return;
     for (int i = 0, x, y; i < run->count; i++)
         if (rf_place_in(w->view, run, i, &x, &y) && !rf_is_edge(run, i) &&
-            near.most > blur_at(g, x, y) + ALIKE)
+            near.most > rf_window_blur(g->window, x, y) + ALIKE)
             widen_pixel(g, x, y);
 }
 
@@ -135,7 +132,7 @@ static void raise_run(const struct gather *g, const struct rf_highlight *run)
 
         if (!rf_place_in(g->window->view, run, i, &x, &y) || rf_is_edge(run, i))
             continue;
-        reach = 1 + reach_of(blur_at(g, x, y), g->gap);
+        reach = 1 + reach_of(rf_window_blur(g->window, x, y), g->gap);
         rf_force_foreground(g->window->view, g->foreground,
                             (struct rf_rect){x - reach, y - reach, x + reach, y + reach});
     }
@@ -158,10 +155,9 @@ static void gain_of(const struct rf_highlight *run, int i, int blur, int share, 
     /* from half a pixel of blur on, all of it from one pixel and a half on */
     const int blurred = rf_is_edge(run, i) ? 0 : rf_ramp(abs(blur), 128, 384);
 
-    static_assert((int64_t)3 * RF_LIGHT_MAX * ((RF_MOST_GAIN - 1) * 85 + 1) <= INT32_MAX,
-                  "the light of the largest gain in Q8");
-    static_assert(3 * RF_LIGHT_MAX * ((RF_MOST_GAIN - 1) * 85 + 1) / 256 * 256 <= INT32_MAX,
-                  "and that times a ramp in Q8");
+    static_assert((int64_t)3 * RF_LIGHT_MAX * ((RF_MOST_GAIN - 1) * 85 + 1) <= INT32_MAX &&
+                      (int64_t)UINT16_MAX * ((RF_KNOWN_GAIN - 1) * 85 + 1) <= INT32_MAX,
+                  "the light of the largest gain in Q8, and that times a ramp in Q8 over 2^8");
     for (int c = 0; c < 3; c++)
         gained[c] = (((run->boost[c] * share) >> 8) * blurred) >> 8;
 }
@@ -170,7 +166,7 @@ static void gain_of(const struct rf_highlight *run, int i, int blur, int share, 
 static int places_of(const struct gather *g, int cx, int cy, int reach, ptrdiff_t place[PLACES])
 {
     const struct rf_viewport *view = g->window->view;
-    const int own = blur_at(g, cx, cy);
+    const int own = rf_window_blur(g->window, cx, cy);
     int count = 0;
 
     for (int y = cy - reach; y <= cy + reach; y++) {
@@ -178,7 +174,8 @@ static int places_of(const struct gather *g, int cx, int cy, int reach, ptrdiff_
             const int dx = x - cx, dy = y - cy;
 
             if (x >= 0 && y >= 0 && x < view->width && y < view->height &&
-                dx * dx + dy * dy <= reach * reach + 1 && abs(blur_at(g, x, y) - own) <= ALIKE)
+                dx * dx + dy * dy <= reach * reach + 1 &&
+                abs(rf_window_blur(g->window, x, y) - own) <= ALIKE)
                 place[count++] = y * g->light.stride + x;
         }
     }
@@ -219,9 +216,9 @@ static void boost_pixel(const struct gather *g, const struct rf_highlight *run, 
 
     if (!rf_place_in(g->window->view, run, i, &x, &y))
         return;
-    reach = spread_of(run, blur_at(g, x, y), g->gap);
+    reach = spread_of(run, rf_window_blur(g->window, x, y), g->gap);
     places = places_of(g, x, y, reach, place);
-    gain_of(run, i, blur_at(g, x, y), g->share, gained);
+    gain_of(run, i, rf_window_blur(g->window, x, y), g->share, gained);
     for (int k = 0; k < places; k++) {
         for (int c = 0; c < g->window->channels; c++) {
             uint16_t *const at = g->light.channel[c] + place[k];

@@ -1,12 +1,11 @@
-/* highlights.h: finds small lights that the photo's white point cut off, and gives their discs the
- * light that they lost.
+/* highlights.h: gives the discs of clipped highlights the light that the photo's white point cut
+ * off.
  *
  * A highlight out of focus is a disc whose brightness is the highlight's, spread over the disc. In
  * the photo the highlight is clipped to white, so its disc would come out grey. The steps, in the
  * order in which the renderer takes them:
  *
- *     detect      finds connected clipped pixels, classifies each component as a highlight or as
- *                 something merely white (classify.c), and lists the highlights by rows
+ *     estimate    lists the clipped pixels by rows, with the light that each has lost (estimate.h)
  *     silhouettes gives pixels at the edge of something bright the depth that they belong to
  *     mark        tells, for a lens setting, which pixels of a highlight are only the silhouette of
  *                 a sharper one, and how far the others are out of focus
@@ -34,6 +33,7 @@
 #include <refocus/render.h>
 
 #include "focus/focus.h"
+#include "image/deep.h"
 #include "image/photo_source.h"
 #include "image/planes.h"
 #include "image/viewport.h"
@@ -47,7 +47,8 @@
 /* The pixels of a highlight in one row, and what the marks of a lens setting say of them. */
 struct rf_highlight {
     uint16_t x, y;     /* the first pixel, in the photo */
-    uint16_t boost[3]; /* Q12 light that a gain of 4 adds, at most 3 * 4095: mean of the pixels */
+    uint16_t boost[3]; /* Q12 light that a gain of 4 adds: mean of the pixels. At most 3 * 4095,
+                          but for known light (known.h) */
     uint8_t count;     /* pixels, 1 to RF_HIGHLIGHT_RUN */
     uint8_t size; /* pixels that the highlight is wide in its narrow direction, or so; 255: more */
 
@@ -55,15 +56,17 @@ struct rf_highlight {
     uint16_t edges;         /* a bit for each pixel that is the silhouette of something bright and
                                sharper; gathering leaves those alone that are mostly that, splats
                                of them fade */
-    int16_t blur;           /* mean of the others, Q7.8, or of most; RF_NO_BLUR where they differ */
+    int16_t blur;           /* mean of the others, as is stored, or of most; RF_NO_BLUR where they
+                               differ */
     uint16_t weight;        /* how many of the pixels are no edges, 256 for each */
     uint16_t subtracted[3]; /* Q12 light that was subtracted from what rays hit, mean by weight */
     uint8_t rows;  /* rows from this one on that are splatted as one; 0: splatted with one above */
     uint8_t below; /* how much further on in the list the next of these rows is */
 };
 
-/* The photo's rows are listed in parts, each with room for one run in 76 pixels; of more than fit,
- * the first stay, row by row, and the others stay as they are in the photo. */
+/* The photo's rows are listed in parts, each with room for one run in 76 pixels, or in 12 where
+ * light above white is known; of more than fit, the first stay, row by row, and the others stay as
+ * they are in the photo. */
 enum {
     RF_HIGHLIGHT_RUN = 16,
     RF_HIGHLIGHT_STACK = 4, /* most rows that are splatted as one */
@@ -72,12 +75,13 @@ enum {
 };
 
 struct rf_highlight_list {
-    struct rf_highlight *run; /* row by row once all are found */
+    struct rf_highlight *run; /* row by row */
     uint32_t count, capacity;
 };
 
 struct rf_highlights {
-    struct rf_highlight_list part[RF_HIGHLIGHT_PARTS];
+    struct rf_highlight_list *part; /* RF_HIGHLIGHT_PARTS of them */
+    uint8_t *by_rays; /* known light of a tile of the photo is left to the rays; else not valid */
 };
 
 /* Pixels at the edge of something bright that are rendered at another depth than the map gives. */
@@ -92,16 +96,22 @@ struct rf_silhouettes {
     uint32_t count, capacity;
 };
 
-/* Gives the lists of photos up to that size their memory. */
+/* Gives the lists of photos up to that size their memory; more if photos may hold light above
+ * white. */
 void rf_lay_out_highlights(struct rf_highlights *highlights, struct rf_arena *arena, int max_width,
-                           int max_height);
+                           int max_height, bool known);
 void rf_lay_out_silhouettes(struct rf_silhouettes *silhouettes, struct rf_arena *arena,
                             int max_width, int max_height);
 
-/* Lists the highlights of the photo anew. Reads the photo's light. What a cancelled run leaves is
- * of no use. */
-void rf_detect_highlights(const struct rf_executor *exec, const struct rf_photo_source *photo,
-                          struct rf_highlights *highlights);
+/* Forgets all highlights. */
+void rf_clear_highlights(struct rf_highlights *highlights);
+
+/* Adds one. Of more than there is room for, the first by rows stay, in whichever order they come.
+ * Rows of different parts may run at once. */
+void rf_list_highlight(struct rf_highlights *highlights, const struct rf_highlight *run);
+
+/* Puts them in the order of the rows. */
+void rf_sort_highlights(const struct rf_executor *exec, struct rf_highlights *highlights);
 
 /* Whether any row of the window has some. */
 bool rf_has_highlights(const struct rf_highlights *highlights, const struct rf_viewport *view);
@@ -115,6 +125,7 @@ struct rf_highlight_window {
     struct rf_highlights *highlights; /* highlights of the photo */
     struct rf_bins *bins;             /* bins of each tile of the window */
     int channels;                     /* channels of light: 3, or 1 for a photo of Y, U and V */
+    const struct rf_deep *known;      /* the photo, if it holds what is above white, else NULL */
 };
 
 /* The places where the blur of a pixel is kept: its plane, the bins of its tile and the extremes of
@@ -184,16 +195,23 @@ void rf_mark_highlights(const struct rf_executor *exec, const struct rf_highligh
  * in place of pi. Rows of large discs are drawn as one, the mean of their chords, where nothing
  * occludes them.
  *
- * Apertures are evenly open, and their rows are one chord or two: discs, irises, hearts and stars.
- * The first chords of all rows are drawn as one aperture, and so are the second ones.
+ * Rows of discs, irises, hearts and stars are one chord or two: the first chords of all rows are
+ * drawn as one aperture, and so are the second ones. A lens with a cat's eye cuts chords off as it
+ * does at the place of the highlight, so that no disc shows the tiles, in which rays see it
+ * change. Of masks, rings and discs with bright edges, a row of the aperture lets through what is
+ * summed up of it between the ends of the run. With colour fringes, red and blue are drawn first,
+ * then green. Only masks and rings through a cat's eye, which moves their light, are left to the
+ * rays.
  */
 struct rf_splat {
     const struct rf_executor *exec;
     struct rf_highlight_window window;
     struct rf_range_plane range;
     const struct refocus_aperture *aperture;
-    float gain;         /* 1 to 16 */
-    int largest_radius; /* largest radius of the frame's plain focus, Q7.8: struct rf_focus */
+    float gain;            /* 1 to RF_MOST_GAIN, or RF_KNOWN_GAIN (known.h) */
+    float cat_eye, fringe; /* struct refocus_look_params */
+    int largest_radius; /* largest radius of the frame's plain focus, 1/256 pixel: struct rf_focus
+                         */
 };
 
 /* Whether discs through that aperture can be splatted with these parameters, and there is a gain.
@@ -201,14 +219,19 @@ struct rf_splat {
 bool rf_can_splat(const struct rf_settings *params, const struct refocus_aperture *aperture);
 
 /* Subtracts what marked highlights have beyond their surroundings from the light that the
- * pre-filter starts from. Reads light and blur; writes the difference to `out`, in tiles whose bins
+ * pre-filter starts from, where they are not so wide that rays `gap` times their blur apart show
+ * them evenly. Reads light and blur; writes the difference to `out`, in tiles whose bins
  * it marks as subtracted, and notes in the highlights how much it was. */
 void rf_subtract_highlights(const struct rf_executor *exec,
-                            const struct rf_highlight_window *window, struct rf_light_q12 out);
+                            const struct rf_highlight_window *window,
+                            const struct rf_photo_source *photo, double gap,
+                            struct rf_light_q12 out);
 
-/* Adds the discs that reach a tile to its means, Q14 and 65535 at most, one for each channel. */
+/* Adds the discs that reach a tile to its means, Q14 and 65535 at most, one for each channel,
+ * working in rf_splat_share() bytes at `share`. */
 void rf_splat_highlights(const struct rf_splat *splat, const struct rf_tile_plan *plan, int tx,
-                         int ty, uint16_t *const mean[3]);
+                         int ty, void *share, uint16_t *const mean[3]);
+uint64_t rf_splat_share(void);
 
 /* Widens marked highlights that rays `gap` times their blur apart would miss: pixels around them
  * take their blur. Reads and writes blur; notes in bins where few rays hit a highlight. */

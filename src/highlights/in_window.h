@@ -13,8 +13,8 @@ struct rf_highlight_parts {
 };
 struct rf_highlight_parts rf_parts_in(const struct rf_viewport *view);
 
-/* The most that blurs around one may differ by for a run to be drawn as one disc, Q7.8: half a
- * pixel, and 1/32 of large ones. */
+/* The most that blurs around one may differ by for a run to be drawn as one disc, 1/256 pixel: half
+ * a pixel, and 1/32 of large ones. */
 static inline int rf_alike_within(int blur)
 {
     const int size = blur < 0 ? -blur : blur;
@@ -49,7 +49,13 @@ static inline bool rf_is_edge(const struct rf_highlight *run, int i)
     return run->edges >> i & 1;
 }
 
-/* The blurs of a region. */
+/* The blur of a pixel of the window, 1/256 pixel. */
+static inline int rf_window_blur(const struct rf_highlight_window *w, int x, int y)
+{
+    return rf_in_pixels(w->blur.at[y * w->blur.stride + x], w->blur.unit);
+}
+
+/* The blurs of a region, 1/256 pixel. */
 struct rf_blur_extent {
     int least, most;
     int sharpest; /* least |s| */
@@ -69,7 +75,9 @@ static inline struct rf_blur_extent rf_blur_extent(const struct rf_blur_q8 *blur
             in.sharpest = abs(s[x]) < in.sharpest ? abs(s[x]) : in.sharpest;
         }
     }
-    return in;
+    return (struct rf_blur_extent){rf_in_pixels(in.least, blur->unit),
+                                   rf_in_pixels(in.most, blur->unit),
+                                   rf_in_pixels(in.sharpest, blur->unit)};
 }
 
 /* How much of its light a pixel of a highlight keeps, 0 to 256: less where it is but the edge, by

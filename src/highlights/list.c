@@ -1,25 +1,30 @@
 /* list.c: the lists that highlights are kept in, and where each row of the photo has its own. */
 #include "highlights/highlights.h"
 
-#include "highlights/detect.h"
+#include <string.h>
+
 #include "highlights/in_window.h"
 #include "support/places.h"
 
-static uint32_t capacity_of(int max_width)
+static uint32_t capacity_of(int max_width, bool known)
 {
-    return (uint32_t)max_width * RF_HIGHLIGHT_ROWS / 76 + 6;
+    return (uint32_t)max_width * RF_HIGHLIGHT_ROWS / (known ? 12 : 76) + 6;
 }
 
 void rf_lay_out_highlights(struct rf_highlights *highlights, struct rf_arena *arena, int max_width,
-                           int max_height)
+                           int max_height, bool known)
 {
     const int parts = (max_height + RF_HIGHLIGHT_ROWS - 1) / RF_HIGHLIGHT_ROWS;
 
+    highlights->part = rf_arena_take(arena, RF_HIGHLIGHT_PARTS, sizeof *highlights->part);
+    if (highlights->part)
+        memset(highlights->part, 0, RF_HIGHLIGHT_PARTS * sizeof *highlights->part);
     for (int part = 0; part < parts; part++) {
-        struct rf_highlight_list *list = &highlights->part[part];
+        const uint32_t capacity = capacity_of(max_width, known);
+        struct rf_highlight *const run = rf_arena_take(arena, capacity, sizeof *run);
 
-        list->capacity = capacity_of(max_width);
-        list->run = rf_arena_take(arena, list->capacity, sizeof *list->run);
+        if (highlights->part)
+            highlights->part[part] = (struct rf_highlight_list){.run = run, .capacity = capacity};
     }
 }
 

@@ -2,7 +2,6 @@
  * highlights. */
 #include <string.h>
 
-#include "highlights/detect.h"
 #include "highlights/estimate.h"
 #include "highlights/highlights.h"
 #include "support/compare.h"

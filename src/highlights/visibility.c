@@ -41,16 +41,19 @@ struct occluder {
 };
 
 /* Leaves out of a slab the run itself and surfaces that are about as near. */
-static struct occluder occluder_of(const struct rf_slab *slab, const struct rf_splat_run *run)
+static struct occluder occluder_of(const struct rf_slab *slab, const struct rf_splat_run *run,
+                                   int unit)
 {
-    const int most = run->blur - NEARER - slab->low;
+    const int most = ((run->blur - NEARER) >> unit) - slab->low;
     struct occluder occluder = {*slab, 0};
 
     if (most < slab->width) {
         occluder.slab.width = (uint16_t)most;
         occluder.slab.centre = (int16_t)(slab->low + (most + 1) / 2);
     }
-    occluder.part = (double)occluder.slab.centre / run->blur;
+    occluder.part = (double)rf_in_pixels(occluder.slab.centre, unit) / run->blur;
+    if (occluder.part < 0)
+        occluder.part *= run->across;
     return occluder;
 }
 
@@ -173,11 +176,11 @@ static int rows_alike(double part, int radius)
 /* Where pixels look for an occluder on the way to the run. None looks farther away than its disc
  * reaches and half its rows, nor farther than `far`. */
 static struct rf_disc_way way_to(const struct rf_splat_run *run, const struct occluder *occluder,
-                                 int far)
+                                 int far, int unit, int blur_unit)
 {
-    const int farthest = run->radius / 2 + RF_SPLAT_UNIT * run->rows;
-    static_assert(REFOCUS_MAX_BLUR_RADIUS * 256 / 2 + RF_SPLAT_UNIT * RF_HIGHLIGHT_STACK <=
-                      INT16_MAX,
+    const int farthest = (run->radius / 2 + RF_SPLAT_UNIT * run->rows) >> unit;
+    const double part = fabs(occluder->part);
+    static_assert(224 * 256 / 2 + RF_SPLAT_UNIT * RF_HIGHLIGHT_STACK <= INT16_MAX,
                   "the way of a pixel fits 16 bits");
     static const int aside[4] = {14, 6, 2, 10}; /* so that the ways lead to all of a highlight */
     struct rf_disc_way way = {.rows = rows_alike(occluder->part, run->radius),
@@ -185,22 +188,27 @@ static struct rf_disc_way way_to(const struct rf_splat_run *run, const struct oc
                               .middle = run->middle,
                               .aside = aside[run->turn & 3],
                               .mirrored = run->turn & 1};
-    double times, limit;
+    double whole = 1 << (16 + unit), times, limit; /* all of the way */
 
     while (farthest << way.shift <= INT16_MAX / 4)
         way.shift++;
+    /* The kernel is quickest without a unit, which places within 126 pixels do not need. */
+    for (; way.unit < blur_unit && (part * whole > (double)INT16_MAX * (1 << way.shift) ||
+                                    part * run->radius > 256 * 126 << way.unit);
+         way.unit++)
+        whole /= 2;
     /* No pixel is as far away as the farthest. So there is a bit for a slab that is more than half
      * of the way to a run that is out of focus by 64 pixels and more. */
-    if (fabs(occluder->part) * (65536 >> way.shift) > INT16_MAX && farthest << way.shift <= 1 << 14)
+    if (part * whole > (double)INT16_MAX * (1 << way.shift) && farthest << way.shift <= 1 << 14)
         way.shift++;
-    times = floor(occluder->part * (65536 >> way.shift) + 0.5);
-    limit = floor(far * 8388608.0 / (farthest << way.shift));
+    times = floor(occluder->part * whole / (1 << way.shift) + 0.5);
+    limit = floor(far * (double)(1 << (23 - way.unit)) / (farthest << way.shift));
     way.times = (int16_t)clamp(times, limit < INT16_MAX ? limit : INT16_MAX);
     return way;
 }
 
 /* Merges a slab with the last one, if both are narrow enough together; returns whether. */
-static bool merges(struct rf_visibility *tile, const struct rf_slab *next)
+static bool merges(struct rf_visibility *tile, const struct rf_slab *next, int unit)
 {
     struct rf_slab *last = tile->slab + tile->slabs - 1;
     int width;
@@ -208,7 +216,7 @@ static bool merges(struct rf_visibility *tile, const struct rf_slab *next)
     if (!tile->slabs || last->centre == 0 || next->centre == 0)
         return false;
     width = next->low + next->width - last->low;
-    if (width > TOGETHER || (last->low < 0) != (next->low < 0))
+    if (width > TOGETHER >> unit || (last->low < 0) != (next->low < 0))
         return false;
     last->width = (uint16_t)width;
     last->centre = (int16_t)(last->low + (width + 1) / 2);
@@ -224,7 +232,7 @@ void rf_visibility_begin(struct rf_visibility *tile, const struct rf_splat *spla
     tile->count = 0;
     tile->slabs = 0;
     for (int k = 0; k < plan->slabs; k++)
-        if (!merges(tile, &plan->slab[k]))
+        if (!merges(tile, &plan->slab[k], splat->window.blur.unit))
             tile->slab[tile->slabs++] = plan->slab[k];
 }
 
@@ -236,12 +244,12 @@ static float apart(const struct rf_splat_run *one, const struct rf_splat_run *ot
     const int blurs = abs(one->blur - other->blur) * RF_SPLAT_UNIT / 256;
     const int away = rf_larger(right, down) + blurs;
 
-    return (float)abs(centre * away) / (float)(RF_SPLAT_UNIT * one->radius);
+    return (float)abs(centre) * (float)away / (float)(RF_SPLAT_UNIT * one->radius);
 }
 
 static bool can_reuse(const struct rf_look_at *look, const struct rf_look_at *wanted, int centre)
 {
-    return look->slab == wanted->slab && look->run.set == wanted->run.set &&
+    return look->slab == wanted->slab && look->run.layer == wanted->run.layer &&
            look->first <= wanted->first && look->end >= wanted->end &&
            (look->run.blur < 0) == (wanted->run.blur < 0) &&
            apart(&look->run, &wanted->run, centre) <= 0.25f;
@@ -265,14 +273,14 @@ static void set_occlusion(struct rf_occlusion *occlusion, const struct rf_visibi
     const struct rf_blur_q8 *plane = &tile->splat->window.blur;
     const struct rf_splat_run *run = &occlusion->look.run;
     const struct rf_slab *slab = &tile->slab[occlusion->look.slab];
-    const struct occluder occluder = occluder_of(slab, run);
+    const struct occluder occluder = occluder_of(slab, run, plane->unit);
     const int16_t *const blur = plane->at + tile->ty * RF_TILE * plane->stride + tile->tx * RF_TILE;
     struct rf_disc_way way;
 
     occlusion->hidden = hidden_by(&occluder, tile, run, job);
     if (occlusion->hidden != RF_HIDDEN_PARTLY)
         return;
-    way = way_to(run, &occluder, farthest_look(tile->splat));
+    way = way_to(run, &occluder, farthest_look(tile->splat), job->unit, plane->unit);
     tile->splat->exec->kernels->occlude_disc(occlusion->visible, blur, plane->stride,
                                              &occluder.slab, job, &way);
     occlusion->hidden = hidden_in(occlusion->visible, job->first, job->end);
@@ -283,7 +291,8 @@ static const struct rf_occlusion *occlusion_of(struct rf_visibility *tile,
                                                const struct rf_splat_run *run, int slab)
 {
     const struct rf_look_at wanted = {*run, job->first, job->end, slab};
-    const int centre = tile->slab[slab].centre;
+    const int unit = tile->splat->window.blur.unit;
+    const int centre = rf_in_pixels(tile->slab[slab].centre, unit);
     /* The result for a slab farther out serves no other row. */
     const bool kept = 4 * abs(centre) <= run->radius;
     struct rf_occlusion *occlusion = &tile->other;
@@ -317,19 +326,20 @@ static void subtract_occluded(struct rf_visibility *tile, struct rf_disc_job *jo
     job->visible = tile->visible;
 }
 
-static bool is_nearer(const struct rf_slab *slab, const struct rf_splat_run *run)
+static bool is_nearer(const struct rf_slab *slab, const struct rf_splat_run *run, int unit)
 {
-    return slab->low <= run->blur - NEARER;
+    return rf_in_pixels(slab->low, unit) <= run->blur - NEARER;
 }
 
 enum rf_hidden rf_run_hidden(const struct rf_visibility *tile, const struct rf_disc_job *job,
                              const struct rf_splat_run *run, uint64_t *clear)
 {
+    const int unit = tile->splat->window.blur.unit;
     enum rf_hidden hidden = RF_HIDDEN_NOWHERE;
 
     *clear = 0;
-    for (int k = 0; k < tile->slabs && is_nearer(&tile->slab[k], run); k++) {
-        const struct occluder occluder = occluder_of(&tile->slab[k], run);
+    for (int k = 0; k < tile->slabs && is_nearer(&tile->slab[k], run, unit); k++) {
+        const struct occluder occluder = occluder_of(&tile->slab[k], run, unit);
         const enum rf_hidden by = hidden_by(&occluder, tile, run, job);
 
         if (by == RF_HIDDEN_WHOLLY)
@@ -345,8 +355,10 @@ enum rf_hidden rf_run_hidden(const struct rf_visibility *tile, const struct rf_d
 bool rf_run_visible(struct rf_visibility *tile, struct rf_disc_job *job,
                     const struct rf_splat_run *run, uint64_t clear)
 {
+    const int unit = tile->splat->window.blur.unit;
+
     job->visible = NULL;
-    for (int k = 0; k < tile->slabs && is_nearer(&tile->slab[k], run); k++) {
+    for (int k = 0; k < tile->slabs && is_nearer(&tile->slab[k], run, unit); k++) {
         const struct rf_occlusion *occlusion;
 
         if (k < 64 && clear >> k & 1)

@@ -21,10 +21,11 @@ struct rf_splat_run {
     int from, to;     /* RF_SPLAT_UNIT */
     int middle, rows; /* place of the middle in half pixels, and number of rows */
     int turn;         /* number of the run among those of as many rows, in the photo */
-    int set;          /* number of the chord in each row of the aperture; rows may have several */
-    int blur;         /* Q7.8, signed */
-    int radius;
-    double light[3]; /* light of all its pixels, Q12 times 256 */
+    int layer;        /* number of the layer (sprite.h) */
+    int blur;         /* 1/256 pixel, signed */
+    int radius;       /* radius of its disc in this layer */
+    double across;    /* factor of the way that rays go on the other side of the focus */
+    double light[3];  /* light of all its pixels, Q12 times 256 */
 };
 
 /* An occlusion tells which pixels of a tile see a run past the surfaces of one slab. A slab in

@@ -13,7 +13,7 @@ void rf_yuv_set_blend(struct rf_yuv *yuv, uint32_t blend)
 
 void rf_yuv_begin(struct rf_yuv *yuv, const struct refocus_image *photo, uint32_t blend)
 {
-    yuv->on = refocus_format_is_yuv(photo->format);
+    yuv->on = rf_is_yuv8(photo->format);
     if (!yuv->on)
         return;
     yuv->down = rf_chroma_down(photo->format);

@@ -10,11 +10,14 @@ static const struct layout {
     struct {
         int pair, down;
     } plane[PLANES];
+    int bytes; /* a sample has so many */
 } layouts[] = {
-    [REFOCUS_FORMAT_NV12] = {2, {{0, 0}, {2, 1}}},
-    [REFOCUS_FORMAT_NV21] = {2, {{0, 0}, {2, 1}}},
-    [REFOCUS_FORMAT_I420] = {3, {{0, 0}, {1, 1}, {1, 1}}},
-    [REFOCUS_FORMAT_YUYV] = {1, {{4, 0}}},
+    [REFOCUS_FORMAT_NV12] = {2, {{0, 0}, {2, 1}}, 1},
+    [REFOCUS_FORMAT_NV21] = {2, {{0, 0}, {2, 1}}, 1},
+    [REFOCUS_FORMAT_I420] = {3, {{0, 0}, {1, 1}, {1, 1}}, 1},
+    [REFOCUS_FORMAT_YUYV] = {1, {{4, 0}}, 1},
+    [REFOCUS_FORMAT_P010] = {2, {{0, 0}, {4, 1}}, 2},
+    [REFOCUS_FORMAT_P016] = {2, {{0, 0}, {4, 1}}, 2},
 };
 
 int refocus_format_bytes(uint32_t format)
@@ -26,6 +29,16 @@ int refocus_format_bytes(uint32_t format)
     case REFOCUS_FORMAT_RGBA8:
     case REFOCUS_FORMAT_BGRA8:
         return 4;
+    case REFOCUS_FORMAT_RGB16:
+    case REFOCUS_FORMAT_RGB_HALF:
+        return 6;
+    case REFOCUS_FORMAT_RGBA16:
+    case REFOCUS_FORMAT_RGBA_HALF:
+        return 8;
+    case REFOCUS_FORMAT_RGB_FLOAT:
+        return 12;
+    case REFOCUS_FORMAT_RGBA_FLOAT:
+        return 16;
     }
     return 0;
 }
@@ -51,7 +64,7 @@ ptrdiff_t refocus_plane_row_bytes(uint32_t format, int plane, int32_t width)
         return (ptrdiff_t)width * refocus_format_bytes(format);
     if (layouts[format].plane[plane].pair)
         return ((ptrdiff_t)width + 1) / 2 * layouts[format].plane[plane].pair;
-    return width;
+    return (ptrdiff_t)width * layouts[format].bytes;
 }
 
 int32_t refocus_plane_rows(uint32_t format, int plane, int32_t height)

@@ -26,6 +26,19 @@ static inline struct rf_order rf_order_of(uint32_t format)
     }
 }
 
+/* Whether a format has more than 8 bits a channel: refocus_prepare() and refocus_render() take it.
+ */
+static inline bool rf_is_deep(uint32_t format)
+{
+    return format >= REFOCUS_FORMAT_RGB16 && format <= REFOCUS_FORMAT_P016;
+}
+
+/* Whether a format has 8 bits of Y, U and V: planes of luminance and chroma are for these. */
+static inline bool rf_is_yuv8(uint32_t format)
+{
+    return refocus_format_is_yuv(format) && !rf_is_deep(format);
+}
+
 /* Whether rows of `bytes` bytes, `rows` of them, can lie `stride` apart: without overlap, and so
  * that the place of each row is a ptrdiff_t. No -stride here, which PTRDIFF_MIN has not. */
 static inline bool rf_good_stride(ptrdiff_t stride, ptrdiff_t bytes, int rows)

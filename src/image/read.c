@@ -39,22 +39,53 @@ static int check_plane(const struct rf_log *log, const char *name,
     return REFOCUS_OK;
 }
 
+/* The fields that belong to deep formats. */
+static int check_light(const struct rf_log *log, const char *name,
+                       const struct refocus_image *image)
+{
+    const bool deep = rf_is_deep(image->format);
+
+    if (image->transfer > (deep ? REFOCUS_TRANSFER_GAMMA : 0))
+        return wrong(log, name, "transfer", image->transfer, deep ? "0 to 6" : "0 with 8 bits");
+    if (image->gamma != 0 && !(deep && image->gamma >= 1 && image->gamma <= 5))
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "%s->gamma is %.9g, may be 0%s", name,
+                         (double)image->gamma, deep ? " or 1 to 5" : " with 8 bits");
+    if (image->white != 0 && !(deep && image->white >= 1 / 65536.0f && image->white <= 65536))
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "%s->white is %.9g, may be 0%s", name,
+                         (double)image->white, deep ? " or 2^-16 to 2^16" : " with 8 bits");
+    return image->reserved ? wrong(log, name, "reserved", image->reserved, "0") : REFOCUS_OK;
+}
+
 int rf_read_image(const struct rf_log *log, const char *name, struct refocus_image *own,
                   const struct refocus_image *given)
 {
+    const int status = rf_read_any_image(log, name, own, given);
+
+    if (!status && rf_is_deep(own->format))
+        return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED, "%s->format is %u, may be 1 to 8 here", name,
+                         (unsigned)own->format);
+    return status;
+}
+
+int rf_read_any_image(const struct rf_log *log, const char *name, struct refocus_image *own,
+                      const struct refocus_image *given)
+{
     int status = rf_read_struct(log, name, own, sizeof *own,
                                 REFOCUS_SIZE_TO(struct refocus_image, range), given);
+    uint32_t most_matrix;
 
     if (status)
         return status;
     if (!refocus_format_planes(own->format))
-        return wrong(log, name, "format", own->format, "1 to 8");
+        return wrong(log, name, "format", own->format, "1 to 16");
+    most_matrix = rf_is_deep(own->format) ? REFOCUS_MATRIX_BT2020 : REFOCUS_MATRIX_BT709;
     if ((status = check_sides(log, name, own->width, own->height)))
         return status;
-    if (refocus_format_is_yuv(own->format) && own->matrix > REFOCUS_MATRIX_BT709)
-        return wrong(log, name, "matrix", own->matrix, "0 to 1");
+    if (refocus_format_is_yuv(own->format) && own->matrix > most_matrix)
+        return wrong(log, name, "matrix", own->matrix, most_matrix > 1 ? "0 to 2" : "0 to 1");
     if (refocus_format_is_yuv(own->format) && own->range > REFOCUS_RANGE_FULL)
         return wrong(log, name, "range", own->range, "0 to 1");
+    status = check_light(log, name, own);
     for (int i = 0; !status && i < refocus_format_planes(own->format); i++)
         status = check_plane(log, name, own, i);
     return status;

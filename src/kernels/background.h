@@ -8,8 +8,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The cone of the background mark falls by half a pixel a pixel; Q7.8. */
+/* The cone of the background mark falls by half a pixel a pixel; Q7.8. Blurs of a unit are in
+ * 2^unit pixels, and falls so much less, half up. */
 enum { RF_CONE_STEP = 128, RF_CONE_DIAGONAL = 181 };
+static inline int rf_cone_fall(int fall, int unit)
+{
+    return (fall + (1 << unit >> 1)) >> unit;
+}
 static_assert(RF_CONE_DIAGONAL * RF_CONE_DIAGONAL < 2 * RF_CONE_STEP * RF_CONE_STEP &&
                   (2 * RF_CONE_DIAGONAL + 1) * (2 * RF_CONE_DIAGONAL + 1) >
                       8 * RF_CONE_STEP * RF_CONE_STEP,
@@ -20,21 +25,24 @@ enum { RF_NO_BLUR = INT16_MIN };
 
 /*
  * spread_row: grey dilation of a row by the cone to both sides, of values at most
- * `reach` cone steps apart, reach at most 2 RF_SPREAD_MARGIN - 1. Values are s + 2^15.
- * Returns where the result is, row or spare; both are n long, with RF_SPREAD_MARGIN
- * elements before and after them that are overwritten.
+ * `reach` cone steps apart, reach at most 2 M - 1, M = rf_spread_margin(unit). Values are s +
+ * 2^15. Returns where the result is, row or spare; both are n long, with M elements before and
+ * after them that are overwritten.
  */
-enum { RF_SPREAD_MARGIN = 256 };
-typedef uint16_t *rf_spread_row_fn(uint16_t *row, uint16_t *spare, int reach, int n);
+static inline int rf_spread_margin(int unit)
+{
+    return 256 << unit;
+}
+typedef uint16_t *rf_spread_row_fn(uint16_t *row, uint16_t *spare, int reach, int unit, int n);
 
 /* dilate_from: the cone from the three nearest pixels of the row before or after, whose
  * elements -1 and n are read. Values are s + 2^15. */
-typedef void rf_dilate_from_fn(uint16_t *row, const uint16_t *before, int n);
+typedef void rf_dilate_from_fn(uint16_t *row, const uint16_t *before, int unit, int n);
 
 /* mark_foreground: the blur of pixels that are not foreground, RF_NO_BLUR of those whose dilated
  * value is more than half a pixel above their own. `dilated` is s + 2^15. */
 typedef void rf_mark_foreground_fn(int16_t *background_blur, const int16_t *blur,
-                                   const uint16_t *dilated, int n);
+                                   const uint16_t *dilated, int unit, int n);
 
 /* push: n parents of 2 x 2 children: the mean of the known ones, half up, and their
  * farthest blur; 0 and RF_NO_BLUR if none is known. */

@@ -10,11 +10,12 @@
 /* Focus and blur in fixed point. */
 struct rf_focus {
     uint16_t disparity; /* df, Q16 with 65535 = 1 */
-    uint16_t radius;    /* K in Q8.8, scaled by 65536 / 65535 */
+    uint16_t radius;    /* K in Q8.8 of 2^unit pixels, scaled by 65536 / 65535 */
+    uint16_t unit;      /* unit of the blurs: image/planes.h */
 };
 
 /*
- * signed_blur: s = K (df - d), Yang et al. 2016, eq. 4. Q7.8 pixels, rounded half up in
+ * signed_blur: s = K (df - d), Yang et al. 2016, eq. 4. Q7.8 of 2^unit pixels, rounded half up in
  * magnitude: within 1/512 pixel for this focus, within 1.25/256 of that of real K and df.
  */
 static_assert((uint64_t)UINT16_MAX * (127 * 256 + 1) + (1 << 15) <= UINT32_MAX,

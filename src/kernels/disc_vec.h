@@ -21,16 +21,21 @@ static inline struct rf_disc_row rf_disc_row_of(const struct rf_disc_job *job, i
                                 vec_u16_set((uint16_t)(job->from - left + RF_DISC_SIGN))};
 }
 
-/* Where pixels from x on are, 1/64 pixel, RF_DISC_SIGN added. */
-static inline vec_u16 rf_disc_place_of(int x)
+/* Where pixels from x on are, in 2^unit / 64 pixel, RF_DISC_SIGN added. */
+static inline vec_u16 rf_disc_place_of(int x, int unit)
 {
-#define AT(x) (uint16_t)(64 * (x) + RF_DISC_SIGN)
-    static const uint16_t place[RF_TILE] = {AT(0),  AT(1),  AT(2),  AT(3), AT(4),  AT(5),
-                                            AT(6),  AT(7),  AT(8),  AT(9), AT(10), AT(11),
-                                            AT(12), AT(13), AT(14), AT(15)};
+#define ROW(each)                                                                                  \
+    {                                                                                              \
+        AT(0, each), AT(1, each), AT(2, each), AT(3, each), AT(4, each), AT(5, each), AT(6, each), \
+            AT(7, each), AT(8, each), AT(9, each), AT(10, each), AT(11, each), AT(12, each),       \
+            AT(13, each), AT(14, each), AT(15, each)                                               \
+    }
+#define AT(x, each) (uint16_t)((each) * (x) + RF_DISC_SIGN)
+    static const uint16_t place[RF_DISC_MOST_UNIT + 1][RF_TILE] = {ROW(64), ROW(32), ROW(16)};
 #undef AT
+#undef ROW
 
-    return vec_u16_load(place + x);
+    return vec_u16_load(place[unit] + x);
 }
 
 /* The part that pixels see begins `left` beyond rf_disc_first(), and ends `right` beyond

@@ -5,7 +5,8 @@ void rf_draw_disc_c(uint16_t *const mean[3], const struct rf_disc_job *job)
 {
     for (int y = job->first; y < job->end; y++) {
         for (int x = 0; x < RF_TILE; x++) {
-            const int first = 64 * x + job->left[y], last = 64 * x + job->right[y];
+            const int at = (64 >> job->unit) * x;
+            const int first = at + job->left[y], last = at + job->right[y];
             const int from = first > job->from ? first : job->from;
             const int to = last < job->to ? last : job->to;
             const int i = y * RF_TILE + x;

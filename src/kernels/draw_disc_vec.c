@@ -32,7 +32,7 @@ void RF_VEC(rf_draw_disc)(uint16_t *const mean[3], const struct rf_disc_job *job
         const struct rf_disc_row row = rf_disc_row_of(job, y);
 
         for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
-            const vec_u16 place = rf_disc_place_of(x);
+            const vec_u16 place = rf_disc_place_of(x, job->unit);
             const vec_u16 v =
                 rf_disc_seen(&row, rf_disc_first(&row, place), rf_disc_last(&row, place));
             vec_u16 seen = vec_s16_max(v, zero);

@@ -4,7 +4,7 @@
 
 static int go(const struct rf_disc_way *way, int v)
 {
-    return (v * (1 << way->shift) * way->times + (1 << 22)) >> 23;
+    return (v * (1 << way->shift) * way->times + (1 << (22 - way->unit))) >> (23 - way->unit);
 }
 
 void rf_occlude_disc_c(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
@@ -12,20 +12,21 @@ void rf_occlude_disc_c(uint16_t *visible, const int16_t *blur, ptrdiff_t stride,
                        const struct rf_disc_way *way)
 {
     const uint16_t low = rf_range_from(slab), to = rf_range_to(slab, slab);
+    const int pixel = 64 >> job->unit;
 
     for (int i = 2 * RF_TILE * job->first; i < 2 * RF_TILE * job->end; i++) {
         const int y = i / RF_TILE / 2, x = i % RF_TILE, side = i / RF_TILE % 2 ? 1 : -1;
         const int like = y - (y - job->first) % way->rows;
-        const int first = rf_larger(64 * x + job->left[like], job->from);
-        const int last = rf_smaller(64 * x + job->right[like], job->to);
+        const int first = rf_larger(pixel * x + job->left[like], job->from);
+        const int last = rf_smaller(pixel * x + job->right[like], job->to);
         const bool right = way->mirrored ? side < 0 : side > 0;
         const int aside =
             right ? (16 - way->aside) * (last - first) / 16 : -(way->aside * (last - first) / 16);
-        const int whole = job->from + job->to - 128 * x;
+        const int whole = job->from + job->to - 2 * pixel * x;
         const int away =
-            first < last ? first + last - 128 * x + aside
+            first < last ? first + last - 2 * pixel * x + aside
                          : rf_larger(rf_smaller(whole, 2 * job->right[like]), 2 * job->left[like]);
-        const int down = go(way, 64 * way->middle - 128 * like + 32 * side);
+        const int down = go(way, pixel * way->middle - 2 * pixel * like + pixel / 2 * side);
 
         const int16_t hit = blur[(like + down) * stride + x + go(way, away)];
 

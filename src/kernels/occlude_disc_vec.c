@@ -10,6 +10,24 @@
 
 static const uint16_t column[RF_TILE] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
+/* (s times + 2^(22 - unit)) >> (23 - unit), of signed lanes. Of a unit, the high half is made of
+ * the unsigned one, and shifted by another high half. */
+static inline vec_u16 offset_of(vec_u16 s, const struct rf_disc_way *way)
+{
+    const vec_u16 times = vec_u16_set((uint16_t)way->times);
+    vec_u16 high;
+
+    if (!way->unit)
+        return vec_u16_offset(s, times);
+    high = vec_u16_sub(vec_u16_mul_high(s, times),
+                       vec_u16_and(vec_s16_less(s, vec_u16_set(0)), times));
+    if (way->times < 0)
+        high = vec_u16_sub(high, s);
+    high = vec_u16_add(high, vec_u16_set((uint16_t)((64 >> way->unit) + RF_DISC_SIGN)));
+    return vec_u16_sub(vec_u16_mul_high(high, vec_u16_set((uint16_t)(1 << (9 + way->unit)))),
+                       vec_u16_set((uint16_t)(RF_DISC_SIGN >> (7 - way->unit))));
+}
+
 /* Finds the places in a row of blurs, counted from way->most pixels before the tile on, where
  * pixels look for each of the two masks. */
 static inline void find_places(uint16_t *at, const struct rf_disc_job *job, int y,
@@ -18,7 +36,7 @@ static inline void find_places(uint16_t *at, const struct rf_disc_job *job, int 
     const struct rf_disc_row row = rf_disc_row_of(job, y);
     const vec_u16 both = vec_u16_set((uint16_t)(job->left[y] + job->right[y]));
     const vec_u16 power = vec_u16_set((uint16_t)(1 << way->shift));
-    const vec_u16 times = vec_u16_set((uint16_t)way->times), zero = vec_u16_set(0);
+    const vec_u16 zero = vec_u16_set(0);
     const vec_u16 before = vec_u16_set((uint16_t)(way->aside << 12));
     const vec_u16 after = vec_u16_set((uint16_t)((16 - way->aside) << 12));
     const vec_u16 middle = vec_u16_set((uint16_t)(job->from + job->to + RF_DISC_SIGN));
@@ -29,7 +47,7 @@ static inline void find_places(uint16_t *at, const struct rf_disc_job *job, int 
     uint16_t *const right = way->mirrored ? at : at + RF_TILE * RF_TILE;
 
     for (int x = 0; x < RF_TILE; x += (int)VEC_U16) {
-        const vec_u16 place = rf_disc_place_of(x);
+        const vec_u16 place = rf_disc_place_of(x, job->unit);
         const vec_u16 first = rf_disc_first(&row, place), last = rf_disc_last(&row, place);
         const vec_u16 seen = rf_disc_seen(&row, first, last), some = vec_s16_less(zero, seen);
         const vec_u16 sum = vec_u16_add(vec_u16_add(first, last), both);
@@ -43,8 +61,8 @@ static inline void find_places(uint16_t *at, const struct rf_disc_job *job, int 
 
         const vec_u16 own = vec_u16_add(vec_u16_load(column + x), to);
 
-        vec_u16_store(left + x, vec_u16_add(own, vec_u16_offset(vec_u16_mul(a, power), times)));
-        vec_u16_store(right + x, vec_u16_add(own, vec_u16_offset(vec_u16_mul(b, power), times)));
+        vec_u16_store(left + x, vec_u16_add(own, offset_of(vec_u16_mul(a, power), way)));
+        vec_u16_store(right + x, vec_u16_add(own, offset_of(vec_u16_mul(b, power), way)));
     }
 }
 
@@ -74,15 +92,16 @@ void RF_VEC(rf_occlude_disc)(uint16_t *visible, const int16_t *blur, ptrdiff_t s
 {
     const vec_u16 from = vec_u16_set(rf_range_from(slab));
     const vec_u16 to = vec_u16_set(rf_range_to(slab, slab));
-    const int step = way->times * (1 << way->shift), half = 1 << 22;
+    const int step = way->times * (1 << way->shift), shift = 23 - way->unit,
+              half = 1 << (shift - 1), pixel = 64 >> job->unit;
     uint16_t at[2 * RF_TILE * RF_TILE], *const second = at + RF_TILE * RF_TILE;
 
     for (int y = job->first; y < job->end; y += way->rows)
         find_places(at + y * RF_TILE, job, y, way);
     for (int y = job->first; y < job->end; y += way->rows) {
-        const int down = 64 * way->middle - 128 * y;
-        const int above = y + (((down - 32) * step + half) >> 23);
-        const int below = y + (((down + 32) * step + half) >> 23);
+        const int down = pixel * (way->middle - 2 * y);
+        const int above = y + (((down - pixel / 2) * step + half) >> shift);
+        const int below = y + (((down + pixel / 2) * step + half) >> shift);
 
         look_up(at + y * RF_TILE, blur + above * stride - way->most);
         look_up(second + y * RF_TILE, blur + below * stride - way->most);

@@ -17,10 +17,11 @@ enum { RF_RAY_CHUNK = 64 };
  * 127 pixels at the most, so what lies outside of a slab of 480 is never mistaken for inside. */
 static_assert(UINT16_MAX + 1 - 2 * 127 * 256 > 480, "slabs are told apart modulo 2^16");
 
-/* aim: where n rays see the blur s: x = round(u s), y = round(v s), half up, as an offset
- * x + y stride, and as one of cells: floor(x / RF_CELL) + floor(y / RF_CELL) cell_stride. */
+/* aim: where n rays see the blur s, Q7.8 of 2^unit pixels, unit 0 to RF_MAX_UNIT: x = round(u s), y
+ * = round(v s), half up, as an offset x + y stride, and as one of cells: floor(x / RF_CELL) +
+ * floor(y / RF_CELL) cell_stride. */
 typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const int16_t *v, int blur,
-                       int32_t stride, int32_t cell_stride, int n);
+                       int unit, int32_t stride, int32_t cell_stride, int n);
 
 /*
  * aim_chroma: where n rays see the blur s, as aim says, in samples of chroma that are two pixels
@@ -28,7 +29,7 @@ typedef void rf_aim_fn(int32_t *offset, int32_t *cell, const int16_t *u, const i
  * s / 2) and y = round(v s / 2^down); of their pixels: 2 x + 2^down y stride.
  */
 typedef void rf_aim_chroma_fn(int32_t *offset, int32_t *pixel, const int16_t *u, const int16_t *v,
-                              int blur, int down, int32_t stride, int n);
+                              int blur, int unit, int down, int32_t stride, int n);
 
 /*
  * sort_rays: culls the tests that the rays of a strip need not make.

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { RF_THIN_REACH = 10 };
+enum { RF_THIN_REACH = 10, RF_THIN_SHARE = 20480 };
 
 /* A mixture: a pixel of which alpha is of a thin structure and the rest of its background. */
 struct rf_thin {
@@ -30,7 +30,7 @@ struct rf_thin_tile {
 /*
  * find_thin: which pixels of a tile are mixtures, C = alpha N + (1 - alpha) F, and of
  * what (thin/thin.h); those found first by rows, `most` of them at the most. Returns
- * how many.
+ * how many. It works in RF_THIN_SHARE bytes at `share`, aligned as any type.
  *
  * With J = 65535 / 32, and where only pixels of the photo count:
  *
@@ -66,6 +66,7 @@ struct rf_thin_tile {
  * alpha of 255. The near disparity is its own of what is kept, else the greatest of
  * N's; the far one is d.
  */
-typedef int rf_find_thin_fn(struct rf_thin *out, const struct rf_thin_tile *tile, int most);
+typedef int rf_find_thin_fn(struct rf_thin *out, const struct rf_thin_tile *tile, int most,
+                            void *share);
 
 #endif

@@ -19,15 +19,14 @@
 
 #include "depth/dequantise.h"
 #include "image/format.h"
+#include "support/compare.h"
 
 #define SMOOTHEST 0.71
 
 enum { BLOCK = 8, LEVEL_WIDTH = 256 / RF_NOISE_LEVELS, FEW = 24, SHARP = 128 };
 static_assert(16 * BLOCK * (BLOCK - 2) * (2 * 251) * (2 * 251) <= INT32_MAX,
               "squares of second differences of codes from 2 to 253, in 1/16");
-static_assert((REFOCUS_MAX_BLUR_RADIUS * 256) >> 5 <
-                  sizeof((struct rf_grain *)0)->lost / sizeof((struct rf_grain *)0)->lost[0],
-              "the largest blur has its place in the table");
+enum { PLACES = sizeof((struct rf_grain *)0)->lost / sizeof((struct rf_grain *)0)->lost[0] };
 
 static int luma(int r, int g, int b)
 {
@@ -57,7 +56,7 @@ static bool is_blurred(const struct rf_look *look, int x0, int y0)
     _Static_assert((int)BLOCK <= (int)RF_DEQUANTISE_PATCH, "blocks are patches");
     rf_blurs_at(look, x0, y0, BLOCK, BLOCK, blur);
     for (int i = 0; i < BLOCK * BLOCK; i++)
-        if (abs(blur[i]) >= SHARP)
+        if (rf_in_pixels(abs(blur[i]), look->plan->focus.unit) >= SHARP)
             return true;
     return false;
 }
@@ -155,7 +154,7 @@ void rf_measure_grain(const struct rf_look *look)
     for (int i = 0; i < RF_NOISE_LEVELS; i++)
         sigma[i] = sigma_of(grain->blocks[i]);
     fill_levels(sigma, grain->sigma);
-    for (int i = 0; i < 1024; i++) {
+    for (int i = 0; i < PLACES; i++) {
         const double radius = (i * 32 + 16) / 256.0, area = 3.14159265358979 * radius * radius;
         const double left = area > 1 ? 1 / area : 1;
 
@@ -202,8 +201,9 @@ void rf_add_grain(const struct rf_look *look, const struct rf_canvas *canvas, st
 
     for (int y = rect.y0; y < rect.y1; y++) {
         for (int x = rect.x0; x < rect.x1; x++) {
-            const int lost =
-                look->grain->lost[abs(canvas->blur.at[y * canvas->blur.stride + x]) >> 5];
+            const int16_t s = canvas->blur.at[y * canvas->blur.stride + x];
+            const int place = rf_in_pixels(abs(s), canvas->blur.unit) >> 5;
+            const int lost = look->grain->lost[rf_smaller(place, PLACES - 1)];
             uint8_t *code[3];
             int64_t add;
             int change;

@@ -40,7 +40,8 @@ struct rf_grain {
     /* number of blocks by luma and by variance, 1/16 code^2 */
     uint32_t blocks[RF_NOISE_LEVELS][RF_NOISE_BINS];
     uint16_t sigma[RF_NOISE_LEVELS]; /* standard deviation of luma, 1/256 code */
-    uint8_t lost[1024];              /* how much of the grain a blur takes, Q8, by |s| >> 5 */
+    uint8_t lost[1024];              /* how much of the grain a blur takes, Q8, by |s| in 1/8 pixel;
+                                        the last one is of all larger ones */
 };
 
 /* The look of a frame. */
@@ -77,8 +78,8 @@ void rf_measure_grain(const struct rf_look *look);
 void rf_add_stars(const struct rf_look *look, const struct rf_canvas *canvas, struct rf_rect rect);
 void rf_add_grain(const struct rf_look *look, const struct rf_canvas *canvas, struct rf_rect rect);
 
-/* Signed blurs of a few pixels of the photo, at most RF_DEQUANTISE_PATCH in width and height, row
- * by row. */
+/* Signed blurs, as they are stored, of a few pixels of the photo, at most RF_DEQUANTISE_PATCH in
+ * width and height, row by row. */
 void rf_blurs_at(const struct rf_look *look, int x, int y, int width, int height, int16_t *blur);
 
 /* Finds the codes R, G, B of a pixel of the window in the picture. */

@@ -66,7 +66,7 @@ static void add_pixel(const struct rf_look *look, const struct rf_highlight *run
     int blur;
 
     rf_blurs_at(look, x, run->y, 1, 1, &signed_blur);
-    blur = abs(signed_blur);
+    blur = rf_in_pixels(abs(signed_blur), look->plan->focus.unit);
     star->x0 = x < star->x0 ? x : star->x0;
     star->x1 = x > star->x1 ? x : star->x1;
     star->y1 = run->y;

@@ -24,7 +24,7 @@
 enum {
     CHANNELS = 5, /* light times weight, weight, coverage; premultiplied by coverage */
     LEVELS = 8,   /* level 7 is as wide as a disc of radius 181 */
-    BORDERS = REFOCUS_MAX_BLUR_RADIUS + 2,
+    BORDERS = REFOCUS_PLAIN_BLUR_RADIUS + 2,
     ONE = 1 << 24, /* alpha */
     ROWS = 8,
 };

@@ -1,4 +1,4 @@
-/* interpolated.c: depth of field from three pictures, NVIDIA 2004: the cheapest preview.
+/* interpolated.c: depth of field from three pictures, NVIDIA 2004: a quick preview.
  *
  * A table gives each disparity a blurriness of 0 to 1. The colour is interpolated between
  * three targets: the picture itself (0), one blurred by a radius of r1 c0 (1/2) and one

@@ -169,7 +169,7 @@ void rf_target_make(struct rf_target_work *work, struct rf_target *target, doubl
 {
     struct rf_pool *pool = work->f->exec->pool;
 
-    shape(work, target, radius < REFOCUS_MAX_BLUR_RADIUS ? radius : REFOCUS_MAX_BLUR_RADIUS);
+    shape(work, target, radius < REFOCUS_PLAIN_BLUR_RADIUS ? radius : REFOCUS_PLAIN_BLUR_RADIUS);
     work->target = target;
     rf_pool_run(pool, across_row, work, target->height);
     rf_pool_run(pool, down_row, work, target->height);

@@ -38,7 +38,7 @@ static inline int rf_clamp(int v, int most)
     return v < 0 ? 0 : v > most ? most : v;
 }
 
-/* Sets size and light for a blur radius in pixels that is cut at REFOCUS_MAX_BLUR_RADIUS. */
+/* Sets size and light for a blur radius in pixels that is cut at REFOCUS_PLAIN_BLUR_RADIUS. */
 void rf_target_make(struct rf_target_work *work, struct rf_target *target, double radius);
 
 #endif

@@ -5,7 +5,7 @@
 #include "gather/frame.h"
 
 /* A ray covers at most K + 2 pixels along its longer axis. */
-enum { RF_MAX_STEPS = REFOCUS_MAX_BLUR_RADIUS + 3 };
+enum { RF_MAX_STEPS = REFOCUS_PLAIN_BLUR_RADIUS + 3 };
 
 /* A pixel on the way of a ray and the disparities that the ray can hit there. */
 struct rf_step {

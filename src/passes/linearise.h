@@ -9,6 +9,7 @@
 #include <refocus/image.h>
 
 #include "colour/transfer.h"
+#include "image/deep.h"
 #include "image/planes.h"
 #include "image/viewport.h"
 #include "support/executor.h"
@@ -23,6 +24,18 @@ struct rf_linearise {
 /* Writes light and alpha of the whole window. */
 void rf_linearise(const struct rf_executor *exec, const struct rf_viewport *view,
                   const struct rf_linearise *pass);
+
+struct rf_linearise_deep {
+    const struct rf_deep *photo;        /* as large as the window */
+    const struct rf_transfer *transfer; /* linear light */
+    struct rf_light_q12 light;          /* written up to white, with its border */
+    struct rf_alpha_u8 alpha;           /* written */
+    const struct refocus_image *guide;  /* written in RGB8, or NULL */
+};
+
+/* Does so with a deep photo. */
+void rf_linearise_deep(const struct rf_executor *exec, const struct rf_viewport *view,
+                       const struct rf_linearise_deep *pass);
 
 /* Changes rows y0 to y1 - 1 of light from one blend to another. */
 void rf_reblend_rows(const struct rf_viewport *view, const struct rf_transfer *from,

@@ -8,22 +8,31 @@
 
 #include "image/border.h"
 #include "kernels/kernels.h"
+#include "support/compare.h"
 
 enum {
     RUN = 256, /* columns at a time of three planes, three times that of one */
     MARGIN = 2 << (RF_PREFILTER_STEPS - 1),
 };
 static_assert(MARGIN >= 2 * (1 << (RF_PREFILTER_STEPS - 1)), "neighbours of chroma, two a sample");
+
+/* How many tiles or bands away the neighbours of a step are at most: those of chroma are as many
+ * samples away, of two pixels. */
+static int tiles_away(int number, bool chroma)
+{
+    return ((chroma ? 2 << number : 1 << number) + RF_TILE - 1) / RF_TILE;
+}
 static_assert(65535 * RF_SMOOTH_THIRD <= INT32_MAX && 65535 * RF_SMOOTH_THIRD >> 16 == 10922,
               "the whole share, Q15");
 
-void rf_prefilter_bounds(int above[RF_PREFILTER_STEPS], int rays, int largest)
+void rf_prefilter_bounds(int above[RF_PREFILTER_STEPS], int rays, int largest, int unit)
 {
     for (int i = 0; i < RF_PREFILTER_STEPS; i++) {
         const double gap = 1.5 * (1 << i);
-        const double s = 256 * gap * sqrt(rays / 3.14159265358979);
+        const double s = 256 * gap * sqrt(rays / 3.14159265358979) / (1 << unit);
+        const bool there = rays != REFOCUS_RAYS_FULL && (unit > 0 || i < RF_PLAIN_STEPS);
 
-        above[i] = rays != REFOCUS_RAYS_FULL && s < largest ? (int)s : INT16_MAX;
+        above[i] = there && s < largest ? (int)s : INT16_MAX;
     }
 }
 
@@ -48,7 +57,8 @@ struct step {
     const int *above;
     int number, least, over;
     int planes; /* 3 or 1 */
-    int width;  /* elements of a row */
+    bool chroma;
+    int width; /* elements of a row */
     uint16_t *const *out, *const *in;
     uint16_t *const *subtracted; /* in place of `in` for tiles that are marked so, or NULL */
     const int16_t *blur;
@@ -64,10 +74,10 @@ static bool is_wide(const struct step *step, int tx, int ty, int least)
     return bins->most > least || -bins->least > least;
 }
 
-static bool is_wide_near(const struct step *step, int tx, int ty, int least)
+static bool is_wide_near(const struct step *step, int tx, int ty, int away, int least)
 {
-    for (int y = ty - 1; y <= ty + 1; y++)
-        for (int x = tx - 1; x <= tx + 1; x++)
+    for (int y = ty - away; y <= ty + away; y++)
+        for (int x = tx - away; x <= tx + away; x++)
             if (x >= 0 && x < step->view->tiles_x && y >= 0 && y < step->view->tiles_y &&
                 is_wide(step, x, y, least))
                 return true;
@@ -77,16 +87,19 @@ static bool is_wide_near(const struct step *step, int tx, int ty, int least)
 /* The task of a step in a tile. */
 enum task { SKIP, COPY, FILTER };
 
-/* Steps 1 and 2 are there and back between two planes, so that tiles that step 1 leaves alone need
- * not be moved at all, but where step 2 looks at them. */
+/* Steps 1 and 2 are there and back between two planes, and so are 3 and 4, and 5 and 6, so that
+ * tiles that the first of them leaves alone need not be moved at all, but where the second looks at
+ * them. */
 static enum task task_of(const struct step *step, int tx, int ty)
 {
     const int number = step->number, *above = step->above;
 
     if (is_wide(step, tx, ty, above[number]))
         return FILTER;
-    if (number == 0 || (number == 1 && is_wide_near(step, tx, ty, above[1])) ||
-        (number == 2 && is_wide(step, tx, ty, above[1])))
+    if (number == 0 ||
+        (number % 2
+             ? is_wide_near(step, tx, ty, tiles_away(number + 1, step->chroma), above[number])
+             : is_wide(step, tx, ty, above[number - 1])))
         return COPY;
     return SKIP;
 }
@@ -168,9 +181,10 @@ static void filter_rows(const struct step *step, int ty, int y0, int y1)
 static void filter_light(const struct rf_executor *exec, const struct rf_viewport *view,
                          const struct rf_prefilter *pass, int number, int ty)
 {
-    const struct rf_light_q12 *const way[] = {&pass->light, &pass->smooth, &pass->spare,
-                                              &pass->smooth};
-    const struct rf_light_q12 *in = way[number], *out = way[number + 1];
+    const struct rf_light_q12 *in = number % 2   ? &pass->smooth
+                                    : number > 0 ? &pass->spare
+                                                 : &pass->light;
+    const struct rf_light_q12 *out = number % 2 ? &pass->spare : &pass->smooth;
     const int y0 = rf_band_start(ty), y1 = rf_band_end(view, ty);
     const struct step step = {
         .exec = exec,
@@ -200,8 +214,10 @@ static void filter_chroma(const struct rf_executor *exec, const struct rf_viewpo
                           const struct rf_prefilter *pass, int number, int ty)
 {
     const struct rf_prefilter_chroma *chroma = pass->chroma;
-    uint16_t *const way[] = {chroma->light.at, chroma->smooth.at, chroma->spare.at,
-                             chroma->smooth.at};
+    uint16_t *const in = number % 2   ? chroma->smooth.at
+                         : number > 0 ? chroma->spare.at
+                                      : chroma->light.at;
+    uint16_t *const out = number % 2 ? chroma->spare.at : chroma->smooth.at;
     const int down = chroma->size.down;
     const int c0 = rf_band_start(ty) >> down, c1 = rf_chroma_end(down, rf_band_end(view, ty));
     const struct step step = {
@@ -213,9 +229,10 @@ static void filter_chroma(const struct rf_executor *exec, const struct rf_viewpo
         .least = chroma->above[number],
         .over = rf_prefilter_over(chroma->above[number], pass->fades),
         .planes = 1,
+        .chroma = true,
         .width = 2 * chroma->size.width,
-        .out = &way[number + 1],
-        .in = &way[number],
+        .out = &out,
+        .in = &in,
         .blur = chroma->blur.at,
         .stride = chroma->blur.stride,
         .down = chroma->blur.stride << number,
@@ -226,27 +243,28 @@ static void filter_chroma(const struct rf_executor *exec, const struct rf_viewpo
     rf_extend_chroma(view, &chroma->size, *step.out, chroma->smooth.stride, c0, c1);
 }
 
-/* One step after the other. That of a band needs the step before of those beside it, too, and is
- * made by whoever makes the last of these, while they are in the cache. */
+/* One step after the other. That of a band needs the step before of those that it looks at, too,
+ * and is made by whoever makes the last of these, while they are in the cache. */
 struct job {
     const struct rf_executor *exec;
     const struct rf_viewport *view;
     const struct rf_prefilter *pass;
-    atomic_uchar ready[RF_PREFILTER_STEPS][RF_MAX_BANDS]; /* bands that it waits for */
+    atomic_uchar (*ready)[RF_MAX_BANDS]; /* [RF_PREFILTER_STEPS]: bands that it waits for */
 };
 
 static void filter_from(struct job *job, int number, int band)
 {
     const struct rf_prefilter *pass = job->pass;
-    const int last = rf_bands(job->view) - 1;
+    const int last = rf_bands(job->view) - 1, away = tiles_away(number + 1, pass->chroma);
 
     filter_light(job->exec, job->view, pass, number, band);
     if (pass->chroma && number < pass->chroma->steps)
         filter_chroma(job->exec, job->view, pass, number, band);
     if (number + 1 == pass->steps)
         return;
-    for (int b = band > 0 ? band - 1 : 0; b <= band + 1 && b <= last; b++)
-        if (atomic_fetch_add(&job->ready[number][b], 1) == (b > 0) + (b < last))
+    for (int b = rf_larger(band - away, 0); b <= rf_smaller(band + away, last); b++)
+        if (atomic_fetch_add(&job->ready[number][b], 1) ==
+            rf_smaller(b + away, last) - rf_larger(b - away, 0))
             filter_from(job, number + 1, b);
 }
 
@@ -256,10 +274,18 @@ static void filter_band(void *context, int band, int worker)
     filter_from(context, 0, band);
 }
 
+uint64_t rf_prefilter_share(void)
+{
+    return sizeof(atomic_uchar[RF_PREFILTER_STEPS][RF_MAX_BANDS]);
+}
+
 void rf_prefilter(const struct rf_executor *exec, const struct rf_viewport *view,
                   const struct rf_prefilter *pass)
 {
-    struct job job = {.exec = exec, .view = view, .pass = pass};
+    /* Bands need no share of their worker. */
+    struct job job = {
+        .exec = exec, .view = view, .pass = pass, .ready = rf_share(&exec->shares, 0)};
 
+    memset(job.ready, 0, rf_prefilter_share());
     rf_pool_run(exec->pool, filter_band, &job, rf_bands(view));
 }

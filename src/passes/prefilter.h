@@ -1,10 +1,11 @@
 /* prefilter.h: smooths light where rays lie so far apart that they would miss pixels.
  *
  * Rays of a set of N hit the picture |s| sqrt(pi / N) pixels apart. Step 0 closes gaps from 1.5
- * pixels on; steps 1 and 2 close those twice and four times as wide. Each step goes, where |s| is
+ * pixels on; steps 1 and 2 close those twice and four times as wide, steps 3 to 6, where blurs may
+ * exceed 127 pixels, those 8 to 64 times as wide. Each step goes, where |s| is
  * above above[step], over three rows and then three columns, 2^step pixels apart: a third of the
- * way to those pixels whose blur is within an eighth of its own (one pixel to two) of that of the
- * middle one. Light is left as it is elsewhere.
+ * way to those pixels whose blur is within an eighth of its own (one pixel to two, of blurs in
+ * units one unit to two) of that of the middle one. Light is left as it is elsewhere.
  */
 #ifndef RF_PREFILTER_H
 #define RF_PREFILTER_H
@@ -16,7 +17,7 @@
 #include "support/executor.h"
 #include "tiles/bins.h"
 
-enum { RF_PREFILTER_STEPS = 3 };
+enum { RF_PREFILTER_STEPS = 7, RF_PLAIN_STEPS = 3 /* steps for blurs of unit 0 */ };
 
 /* Chroma of a photo of Y, U and V: distances are in its samples, so it has bounds of its own. */
 struct rf_prefilter_chroma {
@@ -30,10 +31,10 @@ struct rf_prefilter_chroma {
 };
 
 struct rf_prefilter {
-    int above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, Q7.8 */
+    int above[RF_PREFILTER_STEPS]; /* |s| that each step begins at, as it is stored */
     bool fades;                    /* steps come in over rf_prefilter_over() more of |s|, so that
                                       nothing jumps while the focus moves */
-    int steps;                     /* RF_PREFILTER_STEPS, or 1 if no |s| exceeds above[1] */
+    int steps;                     /* rf_prefilter_steps() */
     const struct rf_bins *bins;    /* read: of each tile */
     struct rf_blur_q8 blur;        /* read */
     struct rf_light_q12 light;     /* read */
@@ -44,10 +45,22 @@ struct rf_prefilter {
                                                  luminance, in channel[0] alone */
 };
 
-/* Sets the |s| from which on the rays of a preset lie 1.5, 3 and 6 pixels apart: for 64 rays 6.8,
- * 13.5 and 27.1 pixels. Those that are not below `largest`, Q7.8, and those of the rays of every
- * pixel become INT16_MAX. */
-void rf_prefilter_bounds(int above[RF_PREFILTER_STEPS], int rays, int largest);
+/* Sets the |s|, as it is stored, from which on the rays of a preset lie 1.5, 3, 6 and so on
+ * pixels apart: for 64 rays 6.8, 13.5, 27.1 to 433 pixels. Those that are not below `largest`,
+ * stored alike, those of steps 3 to 6 where unit is 0, and those of the rays of every pixel
+ * become INT16_MAX. */
+void rf_prefilter_bounds(int above[RF_PREFILTER_STEPS], int rays, int largest, int unit);
+
+/* The number of steps for blurs of up to `largest`: an odd one, as light is there and back between
+ * two planes. */
+static inline int rf_prefilter_steps(const int above[RF_PREFILTER_STEPS], float largest)
+{
+    int steps = 1;
+
+    while (steps < RF_PREFILTER_STEPS && largest > (float)above[steps])
+        steps += 2;
+    return steps;
+}
 
 /* Sets the |s| at which gaps between the rays of chroma, in its samples, are as wide as those of
  * luma are at luma_above. */
@@ -60,8 +73,9 @@ static inline int rf_prefilter_over(int above, bool fades)
     return fades && above >= 8 ? above / 4 : 1;
 }
 
-/* Writes the smooth light of the whole window. */
+/* Writes the smooth light of the whole window, working in a share of rf_prefilter_share() bytes. */
 void rf_prefilter(const struct rf_executor *exec, const struct rf_viewport *view,
                   const struct rf_prefilter *pass);
+uint64_t rf_prefilter_share(void);
 
 #endif

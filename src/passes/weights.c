@@ -34,10 +34,10 @@ static void weigh_row(const struct rf_weights *pass, int y, int x0, int x1)
     uint16_t *near = pass->weight.at + y * pass->weight.stride;
     uint16_t *far = pass->background_weight.at + y * pass->background_weight.stride;
 
-    for (int x = x0; x < x1; x++) {
+    for (int x = x0; x < x1; x++)
         near[x] = of_light[brightest(smooth.channel, row + x)];
+    for (int x = x0; pass->has_background && x < x1; x++)
         far[x] = of_light[brightest(background.channel, row + x)];
-    }
 }
 
 /* Weighs luminance. Most pixels of the background layer are those of the picture, and so have their

@@ -21,6 +21,7 @@ struct rf_weights {
     struct rf_light_q12 smooth,
         background;              /* read; times the weight afterwards, if premultiplied */
     struct rf_weight_q15 weight; /* written, borders too: of `smooth`, */
+    bool has_background;         /* else only those */
     struct rf_weight_q15 background_weight; /* weights of `background` */
     struct rf_bins *bins; /* written, if premultiplied: the brightest of each tile */
     const struct rf_weights_chroma *chroma; /* NULL: a photo of R, G and B; else light is luminance,

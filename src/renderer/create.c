@@ -38,7 +38,9 @@ static const struct rf_rule rules[] = {
     RULE(RF_UNSIGNED, depth_edges, 0, REFOCUS_DEPTH_EDGES_STEADY),
     RULE(RF_UNSIGNED, behind, 0, 1),
     RULE(RF_UNSIGNED, textured, 0, 1),
-    RULE(RF_UNSIGNED, estimate, 0, 1),
+    RULE(RF_UNSIGNED, highlights, 0, 1),
+    RULE(RF_UNSIGNED, deep, 0, 1),
+    RULE(RF_UNSIGNED, reserved2, 0, 0),
 };
 
 /* The log that a caller's parameters name, as far as they reach: for words on what is wrong with
@@ -150,8 +152,9 @@ int refocus_renderer_create(struct refocus_renderer **renderer,
     r->exec.pool = &r->pool;
     r->exec.run = &r->run;
     r->exec.kernels = &r->kernels;
-    r->exec.scratch_size = rf_scratch_size(own.max_width);
+    r->exec.scratch_size = rf_scratch_size(own.max_width, own.max_blur_radius);
     atomic_init(&r->run.state, RF_RUN_IDLE);
+    atomic_flag_clear(&r->entered);
     status = rf_pool_start(&r->pool, rf_thread_count(own.threads), &own.parallel, &r->run);
     if (status) {
         own.allocator.release(own.allocator.user, block);

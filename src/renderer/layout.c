@@ -7,6 +7,7 @@
 #include "depth/upsample.h"
 #include "edges/place.h"
 #include "highlights/estimate.h"
+#include "highlights/known.h"
 #include "renderer/methods.h"
 #include "support/arena.h"
 #include "tiles/ranges.h"
@@ -44,10 +45,11 @@ static uint64_t group_size(const struct rf_photo *photo, int height)
 }
 
 /* Lays out the lists of a photo of at most this size: silhouettes, highlights, blends of bands. */
-static void lay_out_lists(struct rf_arena *arena, struct rf_photo *photo, int width, int height)
+static void lay_out_lists(struct rf_arena *arena, struct rf_photo *photo, int width, int height,
+                          bool known)
 {
     rf_lay_out_silhouettes(&photo->silhouettes, arena, width, height);
-    rf_lay_out_highlights(&photo->highlights, arena, width, height);
+    rf_lay_out_highlights(&photo->highlights, arena, width, height, known);
     photo->band_blend = rf_arena_take(arena, (uint64_t)(height + RF_TILE - 1) / RF_TILE, 1);
 }
 
@@ -95,17 +97,19 @@ static uint64_t prepare_bytes(const struct refocus_renderer_params *params)
     const struct refocus_image photo = {.width = w, .height = h};
     static const uint8_t sure = 255;
     struct rf_upsampler up = {.photo = &photo, .confidence = &sure, .columns = w, .rows = h};
-    struct rf_arena arena = {NULL, 0};
+    const uint64_t pixels = (uint64_t)w * (uint64_t)h;
+    struct rf_arena arena = {NULL, 0}, guide = {NULL, 0};
     uint64_t edges;
 
+    rf_arena_take(&guide, pixels, 3); /* the guide of deep photos and of those of Y, U and V */
     rf_upsampler_lay_out(&up, &arena);
     if (!params->depth_edges)
-        return arena.used;
+        return arena.used + guide.used;
     edges = rf_place_edges_bytes(w, h, w + 1, h + 1);
     if (arena.used < edges)
         arena.used = edges;
-    rf_arena_take(&arena, (uint64_t)w * (uint64_t)h, 2); /* a map before its edges are placed */
-    return arena.used;
+    rf_arena_take(&arena, pixels, 2); /* a map before its edges are placed */
+    return arena.used + guide.used;
 }
 
 /* Lays out the frame that the edges of the next one are compared with. */
@@ -144,16 +148,22 @@ static uint64_t lay_out_whole(struct refocus_renderer *r,
             photo->light[c] = first + c * photo->pitch;
         photo->disparity = first + 3 * photo->pitch;
     }
-    lay_out_lists(arena, photo, w, h);
+    lay_out_lists(arena, photo, w, h, params->deep);
     lay_out_last_edges(arena, &r->last_edges, params);
+    r->last_light.light = rf_arena_take(arena, rf_steady_cells(w, h), sizeof(float));
     prepare = *arena;
     r->prepare_memory = rf_arena_take(&prepare, prepare_bytes(params), 1);
     estimate = *arena;
-    r->estimate_memory = rf_arena_take(&estimate, rf_estimate_bytes(w, h), 1);
+    r->highlights_memory = rf_arena_take(&estimate, rf_estimate_bytes(w, h), 1);
     if (prepare.used < estimate.used)
         prepare.used = estimate.used;
     r->smooth_group = rf_arena_take(arena, size, 2);
     r->background_group = rf_arena_take(arena, size, 2);
+    if (params->deep) {
+        r->deep.curve = rf_arena_take(arena, 1, sizeof *r->deep.curve);
+        r->deep_out.curve = rf_arena_take(arena, 1, sizeof *r->deep_out.curve);
+        rf_lay_out_known(&photo->highlights, arena, w, h);
+    }
     return prepare.used;
 }
 
@@ -165,15 +175,17 @@ static int up_to_tiles(int v)
 /*
  * Chooses the sides and margins of blocks. The mark of a pixel depends on pixels 2 K + 1 away. An
  * inpainted pixel depends, by way of levels below RF_KEPT, on known pixels 12 away, whose light
- * depends on 7 more; blur, where there are highlights, depends on 5 more.
+ * depends on 7 more; blur, where there are highlights, depends on 5 more. Where blurs have a unit,
+ * light depends on 127, and the slabs of a tile on blocks of tiles that begin K + 1 away.
  */
-static void shape_blocks(struct rf_in_place *in_place, int pad)
+static void shape_blocks(struct rf_in_place *in_place, float max_blur_radius)
 {
-    enum { MARK_BLOCK = 128 };
+    enum { MARK_BLOCK = 128, FAR = (1 << RF_PREFILTER_STEPS) - (1 << RF_PLAIN_STEPS) };
+    const int pad = rf_padding_for(max_blur_radius), unit = rf_unit_of(max_blur_radius);
 
     in_place->mark_block = MARK_BLOCK;
     in_place->mark_margin = up_to_tiles(2 * pad + 9);
-    in_place->margin = up_to_tiles(pad + 28);
+    in_place->margin = up_to_tiles(pad + (unit ? 28 + FAR : 28));
     if (in_place->mark_margin < in_place->margin)
         in_place->mark_margin = in_place->margin;
     in_place->block = MARK_BLOCK + 2 * (in_place->mark_margin - in_place->margin);
@@ -209,9 +221,12 @@ static uint64_t lay_out_blocks(struct refocus_renderer *r,
     uint64_t size;
     int side;
 
-    if (params->estimate)
-        r->estimate_memory = rf_arena_take(&estimate, rf_estimate_bytes(w, h), 1);
-    shape_blocks(in_place, rf_padding_for(params->max_blur_radius));
+    if (params->highlights) {
+        r->last_light.light = rf_arena_take(arena, rf_steady_cells(w, h), sizeof(float));
+        estimate = *arena;
+        r->highlights_memory = rf_arena_take(&estimate, rf_estimate_bytes(w, h), 1);
+    }
+    shape_blocks(in_place, params->max_blur_radius);
     photo->pad = rf_padding_for(params->max_blur_radius);
     side = rf_block_side(in_place);
     photo->pitch = rf_pitch_for(side + RF_TILE, 0);
@@ -222,7 +237,7 @@ static uint64_t lay_out_blocks(struct refocus_renderer *r,
     r->background_group = rf_arena_take(arena, size, 2);
     photo->alpha = rf_arena_take(arena, (uint64_t)side * (uint64_t)side, 1);
     arena->used = arena->used > estimate.used ? arena->used : estimate.used;
-    lay_out_lists(arena, photo, w, h);
+    lay_out_lists(arena, photo, w, h, false);
     in_place->known.stride = (w + 7) / 8;
     in_place->known.bits = rf_arena_take(arena, (uint64_t)in_place->known.stride * (uint64_t)h, 1);
     rf_pyramid_shape(&in_place->kept, w, h);
@@ -234,9 +249,9 @@ static uint64_t lay_out_blocks(struct refocus_renderer *r,
 /* The most bytes that any of the methods of whole frames needs. */
 static uint64_t work_bytes(const struct refocus_renderer_params *params)
 {
-    const struct rf_limits limits = {params->max_width, params->max_height,
-                                     rf_padding_for(params->max_blur_radius),
-                                     rf_thread_count(params->threads), params->max_blur_radius};
+    const struct rf_limits limits = {
+        params->max_width, params->max_height, rf_padding_for(params->max_blur_radius),
+        rf_thread_count(params->threads), fminf(params->max_blur_radius, RF_PLAIN_RADIUS)};
     uint64_t most = 0;
 
     for (uint32_t i = 0; i < REFOCUS_METHOD_COUNT; i++) {
@@ -255,17 +270,49 @@ static int block_side(const struct refocus_renderer_params *params)
 {
     struct rf_in_place in_place;
 
-    shape_blocks(&in_place, rf_padding_for(params->max_blur_radius));
+    shape_blocks(&in_place, params->max_blur_radius);
     return rf_block_side(&in_place);
 }
 
 /* The number of rays of the largest full mask, or of all sets of N rays, whichever is more. */
 static uint64_t few_rays(const struct refocus_renderer_params *params)
 {
-    const uint64_t side = 2 * (uint64_t)ceilf(params->max_blur_radius) + 1;
+    const float largest = fminf(params->max_blur_radius, RF_PLAIN_RADIUS);
+    const uint64_t side = 2 * (uint64_t)ceilf(largest) + 1;
     const uint64_t sets = 7680; /* for both sides of the focus, and with coordinates apart */
 
     return side * side > sets ? side * side : sets;
+}
+
+/* The share of each worker: what the pass needs that needs the most. */
+static uint64_t share_bytes(void)
+{
+    const uint64_t bytes[] = {rf_sweep_share(), rf_sweep_yuv_share(), rf_search_share(),
+                              rf_splat_share(), rf_upsample_share(),  rf_prefilter_share(),
+                              RF_THIN_SHARE};
+    uint64_t most = 0;
+
+    for (size_t i = 0; i < sizeof bytes / sizeof *bytes; i++)
+        most = bytes[i] > most ? bytes[i] : most;
+    return (most + RF_ARENA_ALIGN - 1) & ~(uint64_t)(RF_ARENA_ALIGN - 1);
+}
+
+/* Lays out tables that are too large for the stack, where a renderer lies while it is counted. */
+static void lay_out_tables(struct rf_arena *arena, struct refocus_renderer *r)
+{
+    r->yuv = rf_arena_take(arena, 1, sizeof *r->yuv);
+    r->transfer = rf_arena_take(arena, RF_BLEND_COUNT, sizeof *r->transfer);
+    r->cat_eye = rf_arena_take(arena, 1, sizeof *r->cat_eye);
+    r->cat_shape = rf_arena_take(arena, 1, sizeof *r->cat_shape);
+    r->frame = rf_arena_take(arena, 1, sizeof *r->frame);
+    r->exact = rf_arena_take(arena, 1, sizeof *r->exact);
+}
+
+/* The blocks of tiles of the largest window. */
+static uint64_t blocks_of(int across, int down)
+{
+    return (uint64_t)rf_blocks_across((across + RF_TILE - 1) / RF_TILE) *
+           (uint64_t)rf_blocks_across((down + RF_TILE - 1) / RF_TILE);
 }
 
 /* Sets the pointers of r; with arena->base == NULL it only counts the bytes. */
@@ -326,10 +373,16 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     r->stars.star = rf_arena_take(arena, RF_MOST_STARS, sizeof *r->stars.star);
     r->grain = rf_arena_take(arena, 1, sizeof *r->grain);
     r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
+    if (rf_unit_of(params->max_blur_radius))
+        r->blocks = rf_arena_take(arena, blocks_of(across, down), sizeof *r->blocks);
     r->ray_sets.memory = rf_arena_take(arena, params->in_place ? few_rays(params) : RF_FULL_RAYS,
                                        sizeof *r->ray_sets.memory);
-    r->exec.scratch = rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w), 2);
+    r->exec.scratch =
+        rf_arena_take(arena, (uint64_t)threads * rf_scratch_size(w, params->max_blur_radius), 2);
+    r->exec.shares.size = share_bytes();
+    r->exec.shares.at = rf_arena_take(arena, (uint64_t)threads, r->exec.shares.size);
     r->light_weight = rf_arena_take(arena, RF_LIGHT_MAX + 1, 2);
+    lay_out_tables(arena, r);
     if (params->in_place)
         return;
     r->work.at = rf_arena_take(arena, work_bytes(params), 1);
@@ -353,5 +406,8 @@ struct refocus_renderer *rf_layout_place(const struct refocus_renderer_params *p
 
     memset(r, 0, sizeof *r);
     lay_out(r, params, &arena);
+    memset(r->yuv, 0, sizeof *r->yuv);
+    memset(r->cat_eye, 0, sizeof *r->cat_eye);
+    memset(r->cat_shape, 0, sizeof *r->cat_shape);
     return r;
 }

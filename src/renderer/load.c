@@ -8,7 +8,7 @@
 static struct rf_linearise_yuv linearise_yuv(const struct refocus_renderer *r)
 {
     return (struct rf_linearise_yuv){
-        .curve = &r->yuv.curve,
+        .curve = &r->yuv->curve,
         .size = r->chroma.size,
         .codes = r->chroma.codes,
         .light = r->light,
@@ -19,12 +19,18 @@ static struct rf_linearise_yuv linearise_yuv(const struct refocus_renderer *r)
 void rf_load_light(struct refocus_renderer *r, const struct refocus_image *photo,
                    const struct refocus_image *guide)
 {
-    if (r->yuv.on) {
+    if (r->yuv->on) {
         struct rf_linearise_yuv pass = linearise_yuv(r);
 
         pass.photo = photo;
         pass.guide = guide;
         rf_linearise_yuv(&r->exec, &r->view, &pass);
+        return;
+    }
+    if (r->deep.on) {
+        rf_linearise_deep(&r->exec, &r->view,
+                          &(struct rf_linearise_deep){&r->deep, &r->transfer[r->blend], r->light,
+                                                      r->alpha, guide});
         return;
     }
     rf_linearise(&r->exec, &r->view,

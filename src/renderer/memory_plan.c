@@ -15,6 +15,7 @@ static const uint8_t slot_of[RF_PLANES] = {
     [RF_PLANE_PYRAMID] = RF_SLOT_PYRAMID,
     [RF_PLANE_FOREGROUND] = RF_SLOT_PYRAMID,
     [RF_PLANE_WEIGHT] = RF_SLOT_PYRAMID,
+    [RF_PLANE_OWN_WEIGHT] = RF_SLOT_PYRAMID,
 };
 
 void rf_plane_begin(struct rf_lifetimes *lifetimes, enum rf_plane plane)

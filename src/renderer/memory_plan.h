@@ -10,7 +10,8 @@
  *     smooth           dequantising (spare) | pre-filtered light
  *     background blur  cells | blur of the hidden background | its weights
  *     background light spare of the pre-filter | cone | light of the hidden background
- *     pyramid          coverage sources | pyramid | foreground cells | weights
+ *     pyramid          coverage sources | pyramid | foreground cells | weights, of what the sweep
+ *                      sees or of the photo's own light
  *
  * All of it is also what a scene is prepared in: upsampling, edges and the matte work there before
  * any plane lives (struct refocus_renderer, prepare_memory).
@@ -40,6 +41,7 @@ enum rf_plane {
     RF_PLANE_PYRAMID,
     RF_PLANE_FOREGROUND,
     RF_PLANE_WEIGHT,
+    RF_PLANE_OWN_WEIGHT,
     RF_PLANES
 };
 

@@ -5,9 +5,12 @@
 
 enum {
     ANY_FOCUS = REFOCUS_METHOD_ANY_FOCUS,
+    ANY_RADIUS = REFOCUS_METHOD_ANY_RADIUS,
     DISC_ONLY = REFOCUS_METHOD_DISC_ONLY,
+    HIGHLIGHTS = REFOCUS_METHOD_HIGHLIGHTS,
     RAYS = REFOCUS_METHOD_TAKES_RAYS,
-    WHOLE = REFOCUS_METHOD_WHOLE_PHOTO
+    WHOLE = REFOCUS_METHOD_WHOLE_PHOTO,
+    YUV = REFOCUS_METHOD_TAKES_YUV
 };
 
 static const struct {
@@ -15,9 +18,9 @@ static const struct {
     uint32_t traits;
 } info[REFOCUS_METHOD_COUNT] = {
     [REFOCUS_METHOD_SWEEP] = {"sweep", "two layers, front-most hit, swept over disparities",
-                              ANY_FOCUS | RAYS},
+                              ANY_FOCUS | ANY_RADIUS | HIGHLIGHTS | RAYS | YUV},
     [REFOCUS_METHOD_SEARCH] = {"search", "randomized intersection search, Yang et al. 2016",
-                               ANY_FOCUS | RAYS},
+                               ANY_FOCUS | HIGHLIGHTS | RAYS | YUV},
     [REFOCUS_METHOD_RAYTRACE] = {"raytrace", "full image-space ray tracing, Yang et al. 2016; slow",
                                  RAYS},
     [REFOCUS_METHOD_JITTERED] = {"jittered",
@@ -38,8 +41,8 @@ static const struct {
 };
 
 static const struct rf_method own[REFOCUS_METHOD_COUNT] = {
-    [REFOCUS_METHOD_SWEEP] = {.tile = rf_sweep_tile, .layers = true},
-    [REFOCUS_METHOD_SEARCH] = {.tile = rf_search_tile},
+    [REFOCUS_METHOD_SWEEP] = {.tile = rf_sweep_tile, .yuv_tile = rf_sweep_yuv_tile, .layers = true},
+    [REFOCUS_METHOD_SEARCH] = {.tile = rf_search_tile, .yuv_tile = rf_search_yuv_tile},
 };
 
 const char *refocus_method_name(uint32_t method)

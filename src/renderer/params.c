@@ -33,6 +33,8 @@ static const char *refused(const struct refocus_renderer *r, const struct rf_set
         return "an aperture that differs before and behind the focus, which belongs to the sweep";
     if ((traits & REFOCUS_METHOD_DISC_ONLY) && s->aperture && !rf_aperture_is_disc(s->aperture))
         return "an aperture other than a disc";
+    if (!(traits & REFOCUS_METHOD_ANY_RADIUS) && s->max_blur_radius > RF_PLAIN_RADIUS)
+        return "a max_blur_radius of more than 127";
     if (!(traits & REFOCUS_METHOD_ANY_FOCUS) && !is_plain_focus(r, s))
         return "focus or field other than that of a plain lens";
     return NULL;
@@ -72,26 +74,58 @@ static bool has_look(const struct rf_frame *f)
            (p->star_spikes > 0 && p->star_strength > 0) || has_sides(p);
 }
 
+/* Whether a region begins, and within the photo ends, between samples of chroma. */
+static bool keeps_pairs(struct rf_rect region, int width, int height, int odd_rows)
+{
+    return !(region.x0 % 2 || (region.x1 % 2 && region.x1 < width) || (region.y0 & odd_rows) ||
+             ((region.y1 & odd_rows) && region.y1 < height));
+}
+
+static int refuse_split(const struct rf_log *log, struct rf_rect region)
+{
+    return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
+                     "region is from (%d, %d) to (%d, %d), may not split samples of U and V",
+                     region.x0, region.y0, region.x1, region.y1);
+}
+
+int rf_check_deep(const struct rf_log *log, const struct rf_frame *f, struct rf_rect region)
+{
+    const struct refocus_renderer *r = rf_renderer_of(f);
+    const struct rf_settings *p = f->params;
+
+    if (!r->deep.on && !rf_is_deep(f->out->format))
+        return REFOCUS_OK;
+    if (!r->deep.curve || r->yuv->on || p->method != REFOCUS_METHOD_SWEEP ||
+        p->blend != REFOCUS_BLEND_LINEAR || p->sigma < 1e6f || p->grain > 0 ||
+        (p->star_spikes > 0 && p->star_strength > 0))
+        return rf_refuse(
+            log, REFOCUS_ERR_UNSUPPORTED,
+            "a deep photo or out may be rendered with deep = 1 of the renderer's "
+            "parameters, by the sweep, R, G, B or P010, P016, in linear light, without "
+            "sigma, grain, stars and in_place");
+    if (refocus_format_is_yuv(f->out->format) &&
+        !keeps_pairs(region, r->photo.width, r->photo.height, 1))
+        return refuse_split(log, region);
+    return REFOCUS_OK;
+}
+
 int rf_check_yuv(const struct rf_log *log, const struct rf_frame *f, struct rf_rect region)
 {
     const struct refocus_renderer *r = rf_renderer_of(f);
-    const int odd_rows = r->yuv.down ? 1 : 0;
+    const int odd_rows = r->yuv->down ? 1 : 0;
 
-    if (refocus_format_is_yuv(f->out->format) != r->yuv.on)
+    if (rf_is_yuv8(f->out->format) != r->yuv->on)
         return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED, "out->format is %u, may be one of %s",
-                         (unsigned)f->out->format, r->yuv.on ? "Y, U and V" : "R, G and B");
-    if (!r->yuv.on)
+                         (unsigned)f->out->format, r->yuv->on ? "Y, U and V" : "R, G and B");
+    if (!r->yuv->on)
         return REFOCUS_OK;
-    if (rf_chroma_down(f->out->format) != r->yuv.down ||
-        f->params->method != REFOCUS_METHOD_SWEEP || has_look(f))
+    if (rf_chroma_down(f->out->format) != r->yuv->down ||
+        !rf_method_of(r->papers, f->params->method)->yuv_tile || has_look(f))
         return rf_refuse(
             log, REFOCUS_ERR_UNSUPPORTED,
-            "a photo of Y, U and V may be rendered by the sweep alone, without cat's eye, "
-            "fringe, grain, stars and two-sided apertures, into its own sampling");
-    if (region.x0 % 2 || (region.x1 % 2 && region.x1 < r->photo.width) || (region.y0 & odd_rows) ||
-        ((region.y1 & odd_rows) && region.y1 < r->photo.height))
-        return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
-                         "region is from (%d, %d) to (%d, %d), may not split samples of U and V",
-                         region.x0, region.y0, region.x1, region.y1);
-    return REFOCUS_OK;
+            "a photo of Y, U and V may be rendered by sweep or search, without cat's eye, fringe, "
+            "grain, stars and two-sided apertures, into its own sampling");
+    return keeps_pairs(region, r->photo.width, r->photo.height, odd_rows)
+               ? REFOCUS_OK
+               : refuse_split(log, region);
 }

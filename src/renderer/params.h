@@ -14,4 +14,7 @@ int rf_check_settings(const struct rf_log *log, const struct refocus_renderer *r
  * REFOCUS_ERR_UNSUPPORTED, or REFOCUS_ERR_ARGUMENT for a region that splits samples. */
 int rf_check_yuv(const struct rf_log *log, const struct rf_frame *f, struct rf_rect region);
 
+/* REFOCUS_OK, or REFOCUS_ERR_UNSUPPORTED for what a deep photo, or a deep f->out, cannot have. */
+int rf_check_deep(const struct rf_log *log, const struct rf_frame *f, struct rf_rect region);
+
 #endif

@@ -19,7 +19,7 @@ static void reblend_band(void *context, int band, int worker)
 
     if (*blend == f->params->blend)
         return;
-    if (r->yuv.on)
+    if (r->yuv->on)
         rf_reload_yuv_rows(r, rf_band_start(band), rf_band_end(&r->view, band), worker);
     else
         rf_reblend_rows(&r->view, &r->transfer[*blend], &r->transfer[f->params->blend], r->light,
@@ -44,7 +44,8 @@ bool rf_same_light(const struct rf_frame *f)
     const struct rf_pass_cache *m = &rf_renderer_of(f)->cache;
 
     return m->smooth && m->blend == f->params->blend && m->gain == rf_gathered_gain(f) &&
-           m->splatted == f->splats && (!m->gathered || m->rays == f->params->rays) &&
+           m->splatted == f->splats &&
+           ((!m->gathered && !m->splatted) || m->rays == f->params->rays) &&
            !memcmp(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
 }
 
@@ -55,7 +56,7 @@ void rf_note_light(struct rf_frame *f)
     m->blend = f->params->blend;
     m->gain = rf_gathered_gain(f);
     m->splatted = f->splats;
-    m->gathered = m->gain > 1;
+    m->gathered = m->gain > 1 || f->bright != RF_WHITE;
     m->bright = f->bright;
     m->rays = f->params->rays;
     memcpy(m->prefilter_above, f->prefilter_above, sizeof m->prefilter_above);
@@ -167,14 +168,20 @@ static int thin_margin(const struct rf_frame *f)
     return rf_thin_is_separated(&f->thin) ? rf_renderer_of(f)->view.pad + 2 * RF_TILE : 0;
 }
 
+/* How far the steps of the pre-filter look together, and some. */
+static int filter_margin(const struct rf_frame *f)
+{
+    return f->focus.unit ? 1 << RF_PREFILTER_STEPS : 1 << RF_PLAIN_STEPS;
+}
+
 /* The part of the window where the mark and the smooth light are the same as for the whole photo.
- * It is the reach of a cone and of the three steps of the pre-filter away from the window's sides;
+ * It is the reach of a cone and of the steps of the pre-filter away from the window's sides;
  * at the photo's own sides nothing is lost. */
 static struct rf_rect sure_part(const struct rf_frame *f)
 {
     const struct refocus_renderer *r = rf_renderer_of(f);
     const struct rf_photo *photo = &r->photo;
-    const int margin = 2 * r->view.pad + 8 + thin_margin(f);
+    const int margin = 2 * r->view.pad + filter_margin(f) + thin_margin(f);
 
     return (struct rf_rect){
         r->view.x0 ? margin : 0,
@@ -255,7 +262,8 @@ static void make_in_window(struct rf_frame *f, const struct parts *parts, bool l
         if (layers && !contains(window, all)) {
             while (step < around / 2)
                 step *= 2;
-            window = grown(r, parts->visible, 2 * r->view.pad + 8 + thin_margin(f) + around, step);
+            window = grown(r, parts->visible,
+                           2 * r->view.pad + filter_margin(f) + thin_margin(f) + around, step);
             window = around_both(window, grown(r, parts->bins, 0, step));
         }
         if (is_large(r, window))
@@ -289,6 +297,23 @@ static void make_weights(struct rf_frame *f)
         m->sigma = f->params->sigma;
 }
 
+/* Computes the weights of the photo's own light, in place of those of the sweep. */
+static void make_own_weights(struct rf_frame *f)
+{
+    struct refocus_renderer *r = rf_renderer_of(f);
+    struct rf_pass_cache *m = &r->cache;
+
+    if (rf_cancelled(&r->exec) ||
+        (rf_plane_lives(&r->lifetimes, RF_PLANE_OWN_WEIGHT) && m->own_sigma == f->params->sigma &&
+         m->own_blend == f->params->blend && !rf_searches_subtracted(f)))
+        return;
+    m->sigma = m->own_sigma = -1;
+    rf_pass_weights(f);
+    m->own_blend = f->params->blend;
+    if (!rf_cancelled(&r->exec) && !rf_searches_subtracted(f))
+        m->own_sigma = f->params->sigma;
+}
+
 /* Finds thin structures, in a window that is all of the photo. */
 static void find_thin(struct rf_frame *f)
 {
@@ -309,8 +334,8 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
     rf_use(r, rf_whole(r));
     rf_set_planes(f);
     f->region = region;
-    if (r->yuv.on)
-        rf_yuv_set_blend(&r->yuv, f->params->blend);
+    if (r->yuv->on)
+        rf_yuv_set_blend(r->yuv, f->params->blend);
     rf_pool_run(&r->pool, reblend_band, f, rf_bands(&r->view));
     if (rf_cancelled(&r->exec))
         return;
@@ -324,7 +349,10 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
         return;
     if (!whole) {
         parts.visible = grown(r, grown(r, region, 0, RF_TILE), r->view.pad + RF_CELL, 1);
-        parts.bins = grown(r, region, r->view.pad + 2 * RF_TILE + thin_margin(f), RF_TILE);
+        parts.bins = grown(r, region,
+                           r->view.pad + 2 * RF_TILE + thin_margin(f) +
+                               (f->focus.unit ? RF_BLOCK * RF_TILE : 0),
+                           RF_TILE);
     }
     if (r->cache.textured != f->textured) /* smooth light has texture, too, behind thin things */
         r->cache = (struct rf_pass_cache){0};
@@ -344,5 +372,9 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
     }
     if (layers && f->weighted && rf_is_sweep(f))
         make_weights(f);
+    if (r->yuv->on && rf_is_search(f) && !rf_cancelled(&r->exec))
+        rf_pass_expand_chroma(f);
+    if (f->weighted && rf_is_search(f))
+        make_own_weights(f);
     f->region = in_window(r, region);
 }

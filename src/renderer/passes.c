@@ -10,7 +10,9 @@
 #include "background/mark.h"
 #include "highlights/estimate.h"
 #include "highlights/highlights.h"
+#include "highlights/known.h"
 #include "passes/coc.h"
+#include "passes/expand_chroma.h"
 #include "passes/prefilter.h"
 #include "passes/weights.h"
 #include "image/border.h"
@@ -28,7 +30,7 @@ static bool may_premultiply(const struct rf_frame *f)
 
     static_assert((int64_t)(2 * RF_PLAIN_GAIN) * (2 * RF_LIGHT_MAX) * (2 * 8192) <= INT32_MAX,
                   "the sum of all rays fits 31 bits");
-    if (rf_renderer_of(f)->yuv.on && rf_renderer_of(f)->light_weight[0] >> 3 < RF_YUV_LEAST_WEIGHT)
+    if (rf_renderer_of(f)->yuv->on && rf_renderer_of(f)->light_weight[0] >> 3 < RF_YUV_LEAST_WEIGHT)
         return false;
     return rf_is_sweep(f) && p->highlight_gain <= 2 * RF_PLAIN_GAIN &&
            p->rays != REFOCUS_RAYS_FULL && p->rays <= 8192;
@@ -53,34 +55,41 @@ void rf_set_weights(struct rf_frame *f)
 }
 
 /* Works in the planes of a lens setting, whose contents end. */
-static void estimate_highlights(struct refocus_renderer *r, const struct rf_photo_source *source,
-                                float scale)
+static void find_highlights(struct refocus_renderer *r, const struct rf_settings *params)
 {
-    struct rf_arena arena = {r->estimate_memory, 0};
-    struct rf_light_grid grid = {.exec = &r->exec, .photo = source, .channels = r->yuv.on ? 1 : 3};
+    const struct rf_frame_of_light frame = {r->photo.width, r->photo.height, (int32_t)r->blend,
+                                            params->highlight_estimate};
+    const struct rf_photo_source source = rf_photo_source(r);
+    struct rf_arena arena = {r->highlights_memory, 0};
+    struct rf_light_grid grid = {
+        .exec = &r->exec, .photo = &source, .channels = r->yuv->on ? 1 : 3};
 
     rf_planes_end(&r->lifetimes);
     r->cache = (struct rf_pass_cache){0};
-    rf_estimate_highlights(&grid, &arena, &r->transfer[REFOCUS_BLEND_LINEAR], scale,
-                           &r->photo.highlights);
+    rf_estimate_highlights(&grid, &arena, &r->transfer[REFOCUS_BLEND_LINEAR],
+                           params->highlight_estimate, &r->photo.highlights);
+    if (params->highlight_steady > 0 && !rf_cancelled(&r->exec))
+        rf_steady_highlights(&r->photo.highlights, &r->last_light, &frame, params->highlight_steady,
+                             r->highlights_memory);
+    else
+        r->last_light.of.width = 0;
 }
 
 void rf_pass_highlights(struct rf_frame *f)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
     struct rf_photo *photo = &r->photo;
-    const struct rf_photo_source source = rf_photo_source(r);
-    const float estimate = r->estimate_memory ? f->params->highlight_estimate : 0;
+    const float estimate = f->params->highlight_estimate;
 
-    if ((f->params->highlight_gain <= 1 && !f->look.has_stars) ||
+    if (!r->highlights_memory || (f->params->highlight_gain <= 1 && !f->look.has_stars) ||
         (photo->highlights_blend == r->blend && photo->highlights_estimate == estimate))
         return;
     photo->highlights_blend = RF_NO_BLEND;
     photo->highlights_estimate = estimate;
-    if (estimate > 0)
-        estimate_highlights(r, &source, estimate);
+    if (f->splat.window.known)
+        rf_list_known(&r->exec, &r->deep, &photo->highlights);
     else
-        rf_detect_highlights(&r->exec, &source, &photo->highlights);
+        find_highlights(r, f->params);
     photo->highlights_blend = rf_cancelled(&r->exec) ? RF_NO_BLEND : r->blend;
 }
 
@@ -122,7 +131,7 @@ static void chroma_blur_band(void *context, int band, int worker)
 
 static struct rf_range_pass range_pass(const struct refocus_renderer *r)
 {
-    return (struct rf_range_pass){r->cells, r->foreground, r->yuv.on, r->range};
+    return (struct rf_range_pass){r->cells, r->foreground, r->yuv->on, r->range};
 }
 
 static void range_band(void *context, int band, int worker)
@@ -143,11 +152,12 @@ static struct rf_prefilter_chroma prefilter_chroma(const struct rf_frame *f)
         .spare = r->chroma.background,
         .smooth = r->chroma.smooth,
     };
-    const float largest = 256 * rf_focus_largest(&f->plan, f->params->max_blur_radius);
+    const float largest =
+        256 * rf_focus_largest(&f->plan, f->params->max_blur_radius) / (float)(1 << f->focus.unit);
 
     rf_prefilter_chroma_bounds(pass.above, f->prefilter_above,
                                &r->ray_sets.set[r->ray_sets.preset]);
-    pass.steps = largest > (float)pass.above[1] ? RF_PREFILTER_STEPS : 1;
+    pass.steps = rf_prefilter_steps(pass.above, largest);
     return pass;
 }
 
@@ -159,7 +169,7 @@ static void prefilter(struct rf_frame *f)
     struct rf_prefilter_chroma chroma;
     struct rf_prefilter pass = {
         .fades = f->prefilter_fades,
-        .steps = f->focus.radius > f->prefilter_above[1] ? RF_PREFILTER_STEPS : 1,
+        .steps = rf_prefilter_steps(f->prefilter_above, f->focus.radius),
         .bins = r->bins,
         .blur = r->blur,
         .light = r->light,
@@ -168,7 +178,7 @@ static void prefilter(struct rf_frame *f)
     };
 
     memcpy(pass.above, f->prefilter_above, sizeof pass.above);
-    if (r->yuv.on) {
+    if (r->yuv->on) {
         chroma = prefilter_chroma(f);
         pass.chroma = &chroma;
     }
@@ -179,7 +189,7 @@ float rf_gathered_gain(const struct rf_frame *f)
 {
     const float gain = f->splats ? 1 : f->params->highlight_gain;
 
-    return rf_renderer_of(f)->yuv.on && f->weighted ? fminf(gain, RF_PLAIN_GAIN) : gain;
+    return rf_renderer_of(f)->yuv->on && f->weighted ? fminf(gain, RF_PLAIN_GAIN) : gain;
 }
 
 static void mark_highlights(struct rf_frame *f)
@@ -187,26 +197,31 @@ static void mark_highlights(struct rf_frame *f)
     const struct rf_highlight_window *window = &f->splat.window;
     const struct rf_blur_patch patch = patch_of(f);
 
-    f->bright = RF_WHITE;
+    f->bright = rf_leaves_known(window) ? RF_BRIGHTEST : RF_WHITE;
     if (f->params->highlight_gain <= 1 || !rf_has_highlights(window->highlights, window->view))
         return;
     rf_mark_highlights(f->exec, window, f->splats);
     if (f->splats)
         return;
     rf_widen_highlights(f->exec, window, &patch, rf_ray_gap(f->params->rays));
-    f->bright = rf_bright_of(rf_gathered_gain(f));
+    f->bright = (enum rf_bright)rf_larger(f->bright, rf_bright_of(rf_gathered_gain(f)));
 }
 
 void rf_pass_boost(struct rf_frame *f)
 {
-    if (f->bright != RF_WHITE)
-        rf_boost_highlights(f->exec, &f->splat.window, f->smooth, rf_gathered_gain(f),
-                            rf_ray_gap(f->params->rays), rf_most_light(f->bright));
+    const double gap = rf_ray_gap(f->params->rays);
+    const int most = rf_most_light(f->bright);
+
+    if (f->bright != RF_WHITE && !f->splats)
+        rf_boost_highlights(f->exec, &f->splat.window, f->smooth, rf_gathered_gain(f), gap, most);
+    if (f->bright != RF_WHITE && rf_leaves_known(&f->splat.window))
+        rf_boost_known(f->exec, &f->splat.window, f->smooth, gap, most);
 }
 
 /* Afterwards the light is the photo's again, whatever happens, as the next frame needs it too. */
 void rf_pass_prefilter(struct rf_frame *f)
 {
+    const struct rf_photo_source source = rf_photo_source(rf_renderer_of(f));
     struct rf_lifetimes *lifetimes = &rf_renderer_of(f)->lifetimes;
 
     rf_plane_read(lifetimes, RF_PLANE_BLUR);
@@ -215,7 +230,8 @@ void rf_pass_prefilter(struct rf_frame *f)
     if (rf_thin_is_separated(&f->thin))
         rf_thin_swap_light(&f->thin);
     if (f->splats)
-        rf_subtract_highlights(f->exec, &f->splat.window, f->background.light);
+        rf_subtract_highlights(f->exec, &f->splat.window, &source, rf_ray_gap(f->params->rays),
+                               f->background.light);
     prefilter(f);
     if (rf_thin_is_separated(&f->thin))
         rf_thin_swap_light_back(&f->thin);
@@ -249,7 +265,7 @@ static void mark_band(void *context, int band, int worker)
     if (mark->behind)
         rf_behind_rows(&r->exec, &r->view, mark->behind, rf_band_start(band),
                        rf_band_end(&r->view, band), worker);
-    if (!r->yuv.on)
+    if (!r->yuv->on)
         rf_background_push_band(&r->exec, &r->pyramid, band, mark->levels);
 }
 
@@ -298,7 +314,7 @@ void rf_pass_smooth(struct rf_frame *f)
     rf_plane_read(&r->lifetimes, RF_PLANE_CELLS);
     mark_highlights(f);
     rf_pool_run(&r->pool, range_band, f, rf_bands(&r->view));
-    if (r->yuv.on)
+    if (r->yuv->on)
         rf_pool_run(&r->pool, chroma_blur_band, f, rf_bands(&r->view));
     rf_pass_prefilter(f);
 }
@@ -320,6 +336,16 @@ static void bare_band(void *context, int band, int worker)
     rf_mark_ranges_in_background(&r->exec, &r->view, &pass, band, worker);
 }
 
+/* The light whose brightest channel weighs what the search sees. */
+static struct rf_light_q12 weighed_by_search(const struct rf_frame *f)
+{
+    struct rf_light_q12 light = rf_searched_light(f);
+
+    if (f->yuv->on)
+        light.channel[1] = light.channel[2] = light.channel[0];
+    return light;
+}
+
 static void weigh_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
@@ -328,12 +354,13 @@ static void weigh_band(void *context, int band, int worker)
                                              r->chroma.background};
     const struct rf_weights pass = {
         .light_weight = r->light_weight,
-        .smooth = r->smooth,
+        .smooth = rf_is_sweep(f) ? r->smooth : weighed_by_search(f),
+        .has_background = rf_is_sweep(f),
         .background = r->background.light,
-        .weight = r->weight,
+        .weight = f->weight,
         .background_weight = r->background_weight,
         .bins = r->bins,
-        .chroma = r->yuv.on ? &chroma : NULL,
+        .chroma = r->yuv->on && rf_is_sweep(f) ? &chroma : NULL,
     };
 
     if (f->premultiplied)
@@ -342,10 +369,12 @@ static void weigh_band(void *context, int band, int worker)
         rf_weigh_rows(&r->view, &pass, band);
 }
 
-/* Blurs of one surface differ by 1/24 of the largest one, or a pixel. */
+/* Blurs of one surface differ by 1/24 of the largest one, or a pixel; as they are stored. */
 static int same_surface(const struct rf_frame *f)
 {
-    return rf_larger((int)(f->params->max_blur_radius * (256.0f / 24)), 256);
+    const int unit = f->focus.unit;
+
+    return rf_larger((int)(f->params->max_blur_radius * (256.0f / 24)), 256) >> unit;
 }
 
 static void take_filled_band(void *context, int band, int worker)
@@ -364,9 +393,48 @@ static void pull_textured(struct rf_frame *f)
     rf_background_pull_textured(&r->exec, &r->view, &r->pyramid,
                                 &(struct rf_texture){.scratch = r->texture,
                                                      .transfer = &r->transfer[r->blend],
-                                                     .same = same_surface(f)});
+                                                     .same = same_surface(f),
+                                                     .unit = f->focus.unit});
     if (f->thin.disc_scale)
         rf_pool_run(&r->pool, take_filled_band, f, rf_bands(&r->view));
+}
+
+static void expand_band(void *context, int band, int worker)
+{
+    const struct rf_frame *f = context;
+    const struct refocus_renderer *r = rf_renderer_of(f);
+    const int y0 = rf_band_start(band), y1 = rf_band_end(&r->view, band);
+    const size_t row = (size_t)r->view.width * sizeof(uint16_t);
+
+    (void)worker;
+    if (!rf_searches_subtracted(f)) {
+        for (int y = y0; y < y1; y++)
+            memcpy(r->smooth.channel[0] + y * r->smooth.stride,
+                   r->light.channel[0] + y * r->light.stride, row);
+        rf_extend_rows(&r->view, r->smooth.channel[0], r->smooth.stride, y0, y1);
+    }
+    rf_expand_chroma_rows(&r->view, &r->chroma.size, r->chroma.light, r->smooth, y0, y1);
+}
+
+static void expand_background(void *context, int item, int worker)
+{
+    const struct refocus_renderer *r = context;
+
+    (void)item;
+    (void)worker;
+    rf_expand_chroma_rows(&r->view, &r->chroma.size, r->chroma.background, r->background.light, 0,
+                          r->view.height);
+}
+
+void rf_pass_expand_chroma(struct rf_frame *f)
+{
+    struct refocus_renderer *r = rf_renderer_of(f);
+
+    r->cache = (struct rf_pass_cache){0};
+    rf_plane_begin(&r->lifetimes, RF_PLANE_SMOOTH);
+    rf_pool_run(&r->pool, expand_band, f, rf_bands(&r->view));
+    if (f->params->background)
+        rf_pool_run(&r->pool, expand_background, r, 1);
 }
 
 void rf_pass_inpaint(struct rf_frame *f, int levels)
@@ -375,7 +443,7 @@ void rf_pass_inpaint(struct rf_frame *f, int levels)
 
     rf_plane_read(&r->lifetimes, RF_PLANE_PYRAMID);
     rf_plane_read(&r->lifetimes, RF_PLANE_BACKGROUND_BLUR);
-    if (r->yuv.on)
+    if (r->yuv->on)
         rf_background_inpaint_yuv(&r->exec, &r->view, &r->pyramid,
                                   &(struct rf_inpaint_chroma){r->chroma.size, r->blur,
                                                               r->chroma.smooth,
@@ -386,8 +454,10 @@ void rf_pass_inpaint(struct rf_frame *f, int levels)
         rf_background_pull(&r->exec, &r->view, &r->pyramid, 0, levels);
     rf_plane_begin(&r->lifetimes, RF_PLANE_FOREGROUND);
     rf_pool_run(&r->pool, note_band, r, rf_bands(&r->view));
-    if (f->bright != RF_WHITE)
+    if (f->bright != RF_WHITE && !f->splats)
         rf_raise_highlights(f->exec, &f->splat.window, &r->foreground, rf_ray_gap(f->params->rays));
+    if (f->bright != RF_WHITE && rf_leaves_known(&f->splat.window))
+        rf_raise_known(f->exec, &f->splat.window, &r->foreground);
     rf_pool_run(&r->pool, bare_band, r, rf_bands(&r->view));
 }
 
@@ -395,10 +465,14 @@ void rf_pass_weights(struct rf_frame *f)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
 
-    rf_plane_read(&r->lifetimes, RF_PLANE_SMOOTH);
-    rf_plane_read(&r->lifetimes, RF_PLANE_BACKGROUND_LIGHT);
-    rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_WEIGHT);
-    rf_plane_begin(&r->lifetimes, RF_PLANE_WEIGHT);
+    if (rf_is_sweep(f)) {
+        rf_plane_read(&r->lifetimes, RF_PLANE_SMOOTH);
+        rf_plane_read(&r->lifetimes, RF_PLANE_BACKGROUND_LIGHT);
+        rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_WEIGHT);
+        rf_plane_begin(&r->lifetimes, RF_PLANE_WEIGHT);
+    } else {
+        rf_plane_begin(&r->lifetimes, RF_PLANE_OWN_WEIGHT);
+    }
     rf_pool_run(&r->pool, weigh_band, f, rf_bands(&r->view));
 }
 
@@ -411,7 +485,7 @@ static void mark_and_push(struct refocus_renderer *r, struct mark *mark)
     /* Each row of the cone is read before the background's light is written over it. */
     rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_LIGHT);
     rf_pool_run(r->exec.pool, mark_band, mark, rf_bands(&r->view));
-    if (!r->yuv.on)
+    if (!r->yuv->on)
         rf_background_push(&r->exec, &r->pyramid, RF_BAND_LEVELS, mark->levels);
 }
 
@@ -428,8 +502,8 @@ void rf_pass_mark_background(struct rf_frame *f, int levels)
     struct mark mark = {.r = r,
                         .behind = r->photo.behind.width ? &behind : NULL,
                         .thin = f->textured && f->thin.disc_scale ? &f->thin : NULL,
-                        .pass = {.planes = r->yuv.on ? 1 : 3,
-                                 .reach = rf_mark_reach(f->plan.plain, r->view.pad),
+                        .pass = {.planes = r->yuv->on ? 1 : 3,
+                                 .reach = rf_mark_reach(f->plan.plain, r->view.pad, f->focus.unit),
                                  .blur = r->blur,
                                  .smooth = r->smooth,
                                  .cone = r->cone,

@@ -40,6 +40,10 @@ void rf_pass_prefilter(struct rf_frame *f);         /* the smooth light alone */
 void rf_pass_boost(struct rf_frame *f);             /* gathered highlights, after the background */
 void rf_pass_weights(struct rf_frame *f);
 
+/* Gives each pixel its chroma, for a search of a photo of Y, U and V, in the planes of smooth light
+ * and of the hidden background: nothing in the cache is valid afterwards. */
+void rf_pass_expand_chroma(struct rf_frame *f);
+
 /* Mark the hidden background and push it up `levels` of the pyramid (a photo of Y, U and V is not
  * pushed here), and inpaint it on the way down from there. */
 void rf_pass_mark_background(struct rf_frame *f, int levels);

@@ -44,6 +44,7 @@ static void upsample(struct refocus_renderer *r, const struct scene *scene,
         .confidence_stride = scene->confidence_stride,
         .columns = rf_upsample_samples(scene->disparity.width, r->view.width),
         .rows = rf_upsample_samples(scene->disparity.height, r->view.height),
+        .shares = r->exec.shares,
         .out = out,
     };
 
@@ -96,6 +97,7 @@ static bool place(struct refocus_renderer *r, const struct scene *scene,
         .map = map,
         .last = scene->depth_edges == REFOCUS_DEPTH_EDGES_STEADY ? &r->last_edges : NULL,
         .memory = memory,
+        .shares = r->exec.shares,
         .out = out,
     };
 
@@ -111,9 +113,8 @@ static void forget_edges(struct refocus_renderer *r, const struct scene *scene)
 
 /* Writes the disparities. */
 static void take_in_map(struct refocus_renderer *r, const struct scene *scene,
-                        const struct refocus_image *photo)
+                        const struct refocus_image *photo, struct rf_arena arena)
 {
-    struct rf_arena arena = {r->prepare_memory, 0};
     const struct refocus_disparity map = settle(r, scene, photo, &arena);
 
     if (rf_cancelled(&r->exec))
@@ -124,18 +125,21 @@ static void take_in_map(struct refocus_renderer *r, const struct scene *scene,
         return;
     if (map.width == r->view.width && map.height == r->view.height)
         /* A map that was made here has no steps, and lies where they would be smoothed. */
-        rf_load_disparity(r, &map, arena.used ? 0 : rf_code_step(&map), 0, 0);
+        rf_load_disparity(r, &map, map.samples != scene->disparity.samples ? 0 : rf_code_step(&map),
+                          0, 0);
     else
         upsample(r, scene, photo, arena, r->disparity);
 }
 
-/* A picture in RGB8, in the memory of disparities and in the bytes beside the codes of U and V. */
-static struct refocus_image yuv_guide(const struct refocus_renderer *r)
+/* Memory for the photo in RGB8, for passes that look at its colours: apart from the planes of the
+ * photo, into which disparities are written while it is read. */
+static struct refocus_image take_guide(const struct refocus_renderer *r, struct rf_arena *arena)
 {
-    const struct rf_yuv_codes *codes = &r->chroma.codes;
+    const int width = r->view.width, height = r->view.height;
 
-    return refocus_image_packed(REFOCUS_FORMAT_RGB8, codes->uv + 2 * r->chroma.size.width,
-                                r->view.width, r->view.height, codes->uv_stride);
+    return refocus_image_packed(REFOCUS_FORMAT_RGB8,
+                                rf_arena_take(arena, (uint64_t)width * (uint64_t)height, 3), width,
+                                height, 3 * (ptrdiff_t)width);
 }
 
 /* Takes in the matte. All planes of a lens setting serve as scratch. */
@@ -166,11 +170,13 @@ static void take_in(struct refocus_renderer *r, const struct scene *scene)
     const struct refocus_disparity *map = &scene->disparity;
     const bool same_size = map->width == r->view.width && map->height == r->view.height;
     const bool guided = !same_size || places_edges(scene);
-    const struct refocus_image guide = r->yuv.on ? yuv_guide(r) : *photo;
+    struct rf_arena arena = {r->prepare_memory, 0};
+    const struct refocus_image guide =
+        (r->yuv->on || r->deep.on) && guided ? take_guide(r, &arena) : *photo;
 
     rf_planes_end(&r->lifetimes);
     rf_load_light(r, photo, guided ? &guide : NULL);
-    take_in_map(r, scene, &guide);
+    take_in_map(r, scene, &guide, arena);
     forget_edges(r, scene);
     if (scene->has_matte && !rf_cancelled(&r->exec))
         take_in_matte(r, &scene->matte);
@@ -211,8 +217,7 @@ static int read_behind(const struct refocus_renderer *r, const struct rf_log *lo
         (status = rf_read_map(log, "behind_disparity", &scene->behind_disparity,
                               given->behind_disparity)))
         return status;
-    if (!r->has_behind || refocus_format_is_yuv(photo->format) ||
-        refocus_format_is_yuv(behind->format))
+    if (!r->has_behind || rf_is_yuv8(photo->format) || rf_is_yuv8(behind->format))
         return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
                          "behind may be there with behind = 1 of the renderer's parameters, not "
                          "in_place, and photo and behind of R, G, B");
@@ -232,7 +237,7 @@ static int read_matte(const struct refocus_renderer *r, const struct rf_log *log
     scene->has_matte = given->matte != NULL;
     if (!scene->has_matte)
         return REFOCUS_OK;
-    if (!r->has_thin || refocus_format_is_yuv(scene->photo.format))
+    if (!r->has_thin || rf_is_yuv8(scene->photo.format))
         return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
                          "a matte may be given of a photo of R, G, B to a renderer with thin");
     return rf_read_map(log, "matte", &scene->matte, given->matte);
@@ -251,18 +256,23 @@ static int read_scene(const struct refocus_renderer *r, const struct rf_log *log
         return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
                          "depth_edges is %u, which the renderer was not made for",
                          (unsigned)given->depth_edges);
-    if ((status = rf_read_image(log, "photo", &scene->photo, given->photo)) ||
+    if ((status = rf_read_any_image(log, "photo", &scene->photo, given->photo)) ||
         (status = rf_read_map(log, "disparity", &scene->disparity, given->disparity)))
         return status;
     if (scene->photo.width > r->max_width || scene->photo.height > r->max_height)
         return rf_refuse(log, REFOCUS_ERR_SIZE, "photo is %d x %d, may be up to %d x %d",
                          (int)scene->photo.width, (int)scene->photo.height, r->max_width,
                          r->max_height);
-    if (r->in_place.on && (scene->disparity.width != scene->photo.width ||
-                           scene->disparity.height != scene->photo.height ||
-                           refocus_format_is_yuv(scene->photo.format)))
+    if (r->in_place.on &&
+        (scene->disparity.width != scene->photo.width ||
+         scene->disparity.height != scene->photo.height || rf_is_yuv8(scene->photo.format)))
         return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
                          "with in_place the photo may be R, G, B, and disparity of its size");
+    if (rf_is_deep(scene->photo.format) && !r->deep.curve)
+        return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
+                         "photo->format is %u, which needs deep = 1 of the renderer's parameters, "
+                         "and not in_place",
+                         (unsigned)scene->photo.format);
     scene->confidence = given->confidence;
     scene->confidence_stride = given->confidence_stride;
     if (given->confidence && r->in_place.on)
@@ -299,7 +309,8 @@ static int prepare(struct refocus_renderer *r, const struct rf_log *log,
     own->thin.has_matte = false;
     own->behind.width = own->behind.height = 0;
     r->blend = REFOCUS_BLEND_LINEAR; /* silhouettes are always found in linear light */
-    rf_yuv_begin(&r->yuv, &scene.photo, r->blend);
+    rf_yuv_begin(r->yuv, &scene.photo, r->blend);
+    rf_deep_begin(&r->deep, &scene.photo, true);
     rf_run_begin(r);
     if (r->in_place.on) {
         take_in_place(r, &scene);
@@ -322,10 +333,14 @@ int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *phot
                     const struct refocus_disparity *disparity)
 {
     const struct refocus_scene scene = refocus_scene_default(photo, disparity);
+    struct rf_log log = {.function = "refocus_prepare"};
+    int status;
 
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
-    return prepare(r, &(struct rf_log){.function = "refocus_prepare", .to = r->log}, &scene);
+    log.to = r->log;
+    status = rf_enter(r, &log);
+    return status ? status : rf_leave(r, prepare(r, &log, &scene));
 }
 
 int refocus_prepare_scene(struct refocus_renderer *r, const struct refocus_scene *given)
@@ -337,21 +352,28 @@ int refocus_prepare_scene(struct refocus_renderer *r, const struct refocus_scene
     if (!r)
         return REFOCUS_ERR_ARGUMENT;
     log.to = r->log;
+    if ((status = rf_enter(r, &log)))
+        return status;
     r->prepared = false;
     status = rf_read_struct(&log, "scene", &scene, sizeof scene,
                             REFOCUS_SIZE_TO(struct refocus_scene, disparity), given);
-    if (status)
-        return status;
-    return prepare(r, &log, &scene);
+    return rf_leave(r, status ? status : prepare(r, &log, &scene));
 }
 
 int refocus_get_depth_edges(const struct refocus_renderer *r,
                             struct refocus_depth_edges_report *report)
 {
+    struct refocus_renderer *const own = (struct refocus_renderer *)(uintptr_t)r; /* to enter it */
+    const struct rf_log silent = {.function = "refocus_get_depth_edges"};
+    int status;
+
     if (!r || !report)
         return REFOCUS_ERR_ARGUMENT;
+    if ((status = rf_enter(own, &silent)))
+        return status;
     if (!r->prepared)
-        return REFOCUS_ERR_STATE;
-    return refocus_struct_write(report, REFOCUS_SIZE_TO(struct refocus_depth_edges_report, changed),
-                                &r->edges, sizeof r->edges);
+        return rf_leave(own, REFOCUS_ERR_STATE);
+    return rf_leave(own, refocus_struct_write(
+                             report, REFOCUS_SIZE_TO(struct refocus_depth_edges_report, changed),
+                             &r->edges, sizeof r->edges));
 }

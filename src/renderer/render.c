@@ -1,7 +1,11 @@
 /* render.c: renders one frame: checks it, runs its passes and then its tiles. */
 #include <refocus/render.h>
 
+#include <math.h>
+#include <string.h>
+
 #include "highlights/highlights.h"
+#include "highlights/known.h"
 #include "gather/tile_rows.h"
 #include "image/read.h"
 #include "image/viewport.h"
@@ -51,16 +55,24 @@ static void tile_item(void *context, int item, int worker)
         rf_smaller((ty + 1) * RF_TILE, f->region.y1),
     };
 
-    if (f->params->max_blur_radius > 0 && rf_renderer_of(f)->yuv.on)
-        rf_sweep_yuv_tile(f, tx, ty, rect, worker);
+    if (f->params->max_blur_radius > 0 && rf_renderer_of(f)->yuv->on)
+        f->method->yuv_tile(f, tx, ty, rect, worker);
     else if (f->params->max_blur_radius > 0)
         f->method->tile(f, tx, ty, rect, worker);
-    else if (rf_renderer_of(f)->yuv.on)
+    else if (rf_renderer_of(f)->yuv->on)
         rf_copy_yuv_tile(f, rect);
     else
         rf_copy_tile(f, rect); /* a pinhole */
     if (!rf_cancelled(&rf_renderer_of(f)->exec))
         lay_look(f, rect);
+}
+
+static void block_item(void *context, int item, int worker)
+{
+    const struct rf_frame *f = context;
+
+    (void)worker;
+    rf_join_blocks(f->view, f->bins, rf_renderer_of(f)->blocks, item);
 }
 
 static void look_item(void *context, int item, int worker)
@@ -83,7 +95,7 @@ static void set_up_thin(struct rf_frame *f)
     rf_thin_set_up(&f->thin,
                    &(struct rf_thin_settings){
                        .on = rf_renderer_of(f)->has_thin && p->method == REFOCUS_METHOD_SWEEP &&
-                             !rf_renderer_of(f)->yuv.on && p->max_blur_radius > 0,
+                             !rf_renderer_of(f)->yuv->on && p->max_blur_radius > 0,
                        .finds = p->thin,
                        .splats = p->cat_eye <= 0 && p->fringe == 0 && !f->fine,
                        .rays = p->rays,
@@ -116,6 +128,10 @@ static void run_tiles(struct rf_frame *f)
     rf_set_gather_planes(f);
     set_tiles(f);
     begin_look(f);
+    if (f->focus.unit) {
+        f->reach.blocks = rf_renderer_of(f)->blocks;
+        rf_pool_run(&rf_renderer_of(f)->pool, block_item, f, rf_block_rows(f->view));
+    }
     rf_pool_run(&rf_renderer_of(f)->pool, tile_item, f, f->count_tx * f->count_ty);
 }
 
@@ -124,10 +140,10 @@ static void run(struct rf_frame *f, struct rf_rect region)
     struct refocus_renderer *r = rf_renderer_of(f);
     const struct rf_method *method = f->method;
     const bool pinhole = f->params->max_blur_radius <= 0;
-    const bool layers = method->layers || f->params->background;
+    const bool layers = method->layers || f->params->background || rf_searches_subtracted(f);
     const enum rf_need need = pinhole ? RF_NEED_LIGHT : layers ? RF_NEED_LAYERS : RF_NEED_BLUR;
 
-    f->textured = layers && !pinhole && r->texture && !r->yuv.on &&
+    f->textured = layers && !pinhole && r->texture && !r->yuv->on &&
                   f->params->inpaint == REFOCUS_INPAINT_TEXTURED;
     rf_set_planes(f);
     r->last_silhouettes = layers;
@@ -137,13 +153,13 @@ static void run(struct rf_frame *f, struct rf_rect region)
                              .aperture = f->aperture,
                              .rays = f->params->rays,
                              .denser = f->params->highlight_gain > 1 && !f->splats,
-                             .chroma = r->yuv.on,
-                             .max_blur_radius = f->params->max_blur_radius,
+                             .chroma = r->yuv->on,
+                             .max_blur_radius = fminf(f->params->max_blur_radius, RF_PLAIN_RADIUS),
                          },
                          &r->run);
     if (f->params->cat_eye > 0) {
-        rf_cat_eye_make(&r->cat_eye);
-        rf_cat_shape_make(&r->cat_shape, f->aperture);
+        rf_cat_eye_make(r->cat_eye);
+        rf_cat_shape_make(r->cat_shape, f->aperture);
     }
     if (rf_cancelled(&r->exec))
         return;
@@ -154,7 +170,7 @@ static void run(struct rf_frame *f, struct rf_rect region)
         return;
     }
     rf_run_passes(f, region, need,
-                  method->frame != NULL || r->yuv.on || f->textured || (layers && !f->plan.plain));
+                  method->frame != NULL || r->yuv->on || f->textured || (layers && !f->plan.plain));
     if (rf_cancelled(&r->exec))
         return;
     if (!method->frame || pinhole) {
@@ -171,92 +187,118 @@ static void run(struct rf_frame *f, struct rf_rect region)
 }
 
 /* Read and check what refocus_render() is given; the settings stay with the renderer. */
-static int read_arguments(struct rf_frame *f, const struct refocus_render_params *params,
-                          struct refocus_image *own_out, const struct refocus_image *out)
+static int read_arguments(struct rf_frame *f, const struct rf_log *log,
+                          const struct refocus_render_params *params, struct refocus_image *own_out,
+                          const struct refocus_image *out)
 {
     struct refocus_renderer *const r = rf_renderer_of(f);
-    const struct rf_log log = {r->log, "refocus_render"};
     struct rf_settings settings;
     int status;
 
     if (!r->prepared)
-        return rf_refuse(&log, REFOCUS_ERR_STATE, "nothing is prepared yet");
-    if ((status = rf_read_settings(&log, &settings, params)) ||
-        (status = rf_check_settings(&log, r, &settings)) ||
-        (status = read_region(&log, r, &settings, &f->region)) ||
-        (status = rf_read_image(&log, "out", own_out, out)))
+        return rf_refuse(log, REFOCUS_ERR_STATE, "nothing is prepared yet");
+    if ((status = rf_read_settings(log, &settings, params)) ||
+        (status = rf_check_settings(log, r, &settings)) ||
+        (status = read_region(log, r, &settings, &f->region)) ||
+        (status = rf_read_any_image(log, "out", own_out, out)))
         return status;
-    if (settings.highlight_estimate > 0 && !r->estimate_memory)
+    if (r->deep.on && r->deep.exceeds) {
+        settings.highlight_estimate = 0;
+        settings.highlight_gain = RF_KNOWN_GAIN;
+    }
+    if (!r->highlights_memory) {
         settings.highlight_gain = 1;
+        settings.star_strength = 0;
+    }
     if (own_out->width != f->region.x1 - f->region.x0 ||
         own_out->height != f->region.y1 - f->region.y0)
-        return rf_refuse(&log, REFOCUS_ERR_ARGUMENT,
-                         "out is %d x %d, may be %d x %d, as the region", (int)own_out->width,
-                         (int)own_out->height, f->region.x1 - f->region.x0,
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "out is %d x %d, may be %d x %d, as the region",
+                         (int)own_out->width, (int)own_out->height, f->region.x1 - f->region.x0,
                          f->region.y1 - f->region.y0);
     f->out = own_out;
     f->params = &settings;
-    if ((status = rf_check_yuv(&log, f, f->region)))
+    if ((status = rf_check_yuv(log, f, f->region)) || (status = rf_check_deep(log, f, f->region)))
         return status;
+    rf_deep_begin(&r->deep_out, own_out, false);
+    f->dither = r->deep.on && !r->deep_out.on && settings.dither == REFOCUS_DITHER_ORDERED;
+    if (f->dither)
+        rf_deep_begin_codes(&r->deep_out);
     rf_keep_settings(&r->settings, &settings);
     f->params = &r->settings;
     return REFOCUS_OK;
 }
 
-int refocus_render(struct refocus_renderer *r, const struct refocus_render_params *given,
-                   const struct refocus_image *out)
+static int render(struct refocus_renderer *r, const struct rf_log *log,
+                  const struct refocus_render_params *given, const struct refocus_image *out)
 {
-    struct rf_frame f = {.owner = r};
+    struct rf_frame *const f = r->frame;
     const struct rf_settings *params;
     struct refocus_image own_out;
-    struct rf_exact exact;
     struct rf_rect region;
     float largest;
     int status;
 
-    if (!r)
-        return REFOCUS_ERR_ARGUMENT;
-    if ((status = read_arguments(&f, given, &own_out, out)))
+    memset(f, 0, sizeof *f);
+    f->owner = r;
+    if ((status = read_arguments(f, log, given, &own_out, out)))
         return status;
-    params = f.params;
-    region = f.region;
-    f.aperture = params->aperture ? params->aperture : &rf_disc;
-    f.fine = rf_aperture_is_fine(f.aperture);
-    f.splats = rf_is_sweep(&f) && !rf_weighs(params) && rf_can_splat(params, f.aperture);
-    f.focus = rf_focus_of(params->focus_disparity, params->max_blur_radius);
-    rf_focus_plan_make(&f.plan, params, f.focus, r->photo.width, r->photo.height);
-    if (f.plan.surface || f.plan.sharp || f.plan.picture)
-        f.plan.number = ++r->renders;
-    largest = rf_focus_largest(&f.plan, params->max_blur_radius);
-    f.scale = rf_bin_scale_of(largest);
-    f.look = (struct rf_look){
+    params = f->params;
+    region = f->region;
+    f->aperture = params->aperture ? params->aperture : &rf_disc;
+    f->fine = rf_aperture_is_fine(f->aperture);
+    f->splats = (rf_is_search(f) || (rf_is_sweep(f) && !rf_weighs(params))) &&
+                rf_can_splat(params, f->aperture);
+    f->focus = rf_focus_of(params->focus_disparity, params->max_blur_radius);
+    rf_focus_plan_make(&f->plan, params, f->focus, r->photo.width, r->photo.height);
+    if (f->plan.surface || f->plan.sharp || f->plan.picture)
+        f->plan.number = ++r->renders;
+    largest = rf_focus_largest(&f->plan, params->max_blur_radius);
+    f->scale = rf_bin_scale_of(largest, f->focus.unit);
+    r->unit = f->focus.unit;
+    f->look = (struct rf_look){
         .has_stars = params->star_spikes > 0 && params->star_strength > 0 &&
                      params->star_length > 0 && params->method == REFOCUS_METHOD_SWEEP &&
                      params->max_blur_radius > 0,
         .has_grain = params->grain > 0 && params->max_blur_radius > 0,
         .exec = &r->exec,
         .params = params,
-        .plan = &f.plan,
+        .plan = &f->plan,
         .highlights = &r->photo.highlights,
         .stars = &r->stars,
         .grain = r->grain,
     };
-    f.method = rf_method_of(r->papers, params->method);
-    if (f.method->exact) {
-        f.method->exact(&exact, params->blend, params->sigma);
-        f.exact = &exact;
+    f->method = rf_method_of(r->papers, params->method);
+    if (f->method->exact) {
+        f->method->exact(r->exact, params->blend, params->sigma);
+        f->exact = r->exact;
     }
-    rf_reach_init(&f.reach, f.scale, largest, r->photo.pad, rf_aperture_fills_square(f.aperture));
+    rf_reach_init(&f->reach, f->scale, largest, r->photo.pad,
+                  rf_aperture_fills_square(f->aperture));
     /* The steps of live frames set in gradually; those of stills, which do not move, at once, as
      * highlights keep more of their light then. */
-    f.prefilter_fades = params->rays <= RF_LIVE_RAYS;
-    rf_prefilter_bounds(f.prefilter_above, params->rays, params->prefilter ? f.focus.radius : 0);
+    f->prefilter_fades = params->rays <= RF_LIVE_RAYS;
+    rf_prefilter_bounds(f->prefilter_above, params->rays,
+                        params->prefilter && !rf_searches_subtracted(f) ? f->focus.radius : 0,
+                        f->focus.unit);
     r->blurred = false;
-    r->last_plan = f.plan;
+    r->last_plan = f->plan;
     rf_run_begin(r);
-    run(&f, region);
+    run(f, region);
     if (rf_run_end(r))
         return REFOCUS_ERR_CANCELLED;
     r->blurred = true;
     return REFOCUS_OK;
+}
+
+int refocus_render(struct refocus_renderer *r, const struct refocus_render_params *params,
+                   const struct refocus_image *out)
+{
+    struct rf_log log = {.function = "refocus_render"};
+    int status;
+
+    if (!r)
+        return REFOCUS_ERR_ARGUMENT;
+    log.to = r->log;
+    status = rf_enter(r, &log);
+    return status ? status : rf_leave(r, render(r, &log, params, out));
 }

@@ -22,6 +22,7 @@
 #include "gather/frame.h"
 #include "gather/work_memory.h"
 #include "highlights/highlights.h"
+#include "highlights/steady.h"
 #include "image/chroma.h"
 #include "image/planes.h"
 #include "look/look.h"
@@ -30,6 +31,7 @@
 #include "passes/prefilter.h"
 #include "renderer/memory_plan.h"
 #include "support/executor.h"
+#include "support/log.h"
 #include "support/settings.h"
 #include "thin/thin.h"
 #include "tiles/bins.h"
@@ -52,7 +54,7 @@ struct rf_photo {
     struct rf_silhouettes silhouettes;
     struct rf_highlights highlights;
     uint32_t highlights_blend; /* blend that they were found in, or RF_NO_BLEND */
-    float highlights_estimate; /* times the estimate that they were found by; 0: by their shape */
+    float highlights_estimate; /* times the estimate that they have lost; 0: for a fixed gain */
     struct rf_thin_list thin;
     struct rf_behind behind; /* width 0: the scene has none */
 };
@@ -72,6 +74,8 @@ struct rf_pass_cache {
     bool weighted;         /* weights of `sigma` lie in place of its blur */
     bool premultiplied;    /* the light of both layers is multiplied by them */
     float sigma;
+    float own_sigma; /* weights of the photo's own light are of it and of own_blend; -1: none are */
+    uint32_t own_blend;
     int rays;              /* number of rays that highlights were widened for */
     struct rf_rect window; /* part of the photo that all of it is limited to */
     struct rf_rect exact;  /* part where the background is that of the whole photo */
@@ -115,6 +119,7 @@ struct refocus_renderer {
     int max_width, max_height;
     float max_blur_radius;
 
+    atomic_flag entered; /* a call runs: rf_enter() */
     struct rf_pool pool;
     struct rf_run run;
     struct rf_executor exec; /* all three, as passes get them */
@@ -143,26 +148,32 @@ struct refocus_renderer {
     struct rf_disparity_q16 disparity;
     struct rf_alpha_u8 alpha;
     struct rf_background background;
-    struct rf_yuv yuv;              /* the photo's coding */
+    struct rf_yuv *yuv;             /* the photo's coding */
+    struct rf_deep deep;            /* the photo, if it is a deep one */
+    struct rf_deep deep_out;        /* the picture that is written, if it is one */
     struct rf_chroma_planes chroma; /* planes of the window, if yuv.on */
     struct rf_dilated_blur cone;    /* while the background is marked */
     struct rf_pyramid pyramid;
     struct rf_weight_q15 weight, background_weight; /* once the background is inpainted */
+    struct rf_weight_q15 own_weight;                /* weights of what the search looks at */
     struct rf_cells cells;                          /* until the background is marked */
     struct rf_foreground_cells foreground; /* from the inpainted background up to weights */
     struct rf_range_plane range;
-    struct rf_bins *bins; /* one for each tile */
+    struct rf_bins *bins;   /* one for each tile */
+    struct rf_bins *blocks; /* blocks of tiles; NULL: no blur has a unit */
+    int unit;               /* unit of the blurs of the last render */
 
-    void *prepare_memory;  /* for upsampling and for edges; ends with the first render */
-    void *estimate_memory; /* for estimating lost light, in planes of a lens setting, or NULL */
-    uint32_t most_edges;   /* enum refocus_depth_edges that there is enough of it for */
+    void *prepare_memory;    /* for upsampling and for edges; ends with the first render */
+    void *highlights_memory; /* for finding them, in planes of a lens setting, or NULL */
+    uint32_t most_edges;     /* enum refocus_depth_edges that there is enough of it for */
     struct refocus_depth_edges_report edges; /* about the prepared photo */
     struct rf_last_edges last_edges;         /* for the next frame, if they are placed steadily */
+    struct rf_last_light last_light;         /* for the next frame, with highlights_memory */
 
-    struct rf_transfer transfer[RF_BLEND_COUNT];
-    uint16_t *light_weight; /* eq. 5: weight of Q12 light max(R, G, B), Q15 */
-    bool keep_codes;        /* rf_weights_keep_codes(): light may be premultiplied */
-    float weight_sigma;     /* sigma of light_weight, in weight_blend */
+    struct rf_transfer *transfer; /* RF_BLEND_COUNT of them */
+    uint16_t *light_weight;       /* eq. 5: weight of Q12 light max(R, G, B), Q15 */
+    bool keep_codes;              /* rf_weights_keep_codes(): light may be premultiplied */
+    float weight_sigma;           /* sigma of light_weight, in weight_blend */
     uint32_t weight_blend;
 
     struct rf_texture_scratch *texture; /* NULL: there is no memory for texture */
@@ -178,8 +189,11 @@ struct refocus_renderer {
     uint32_t methods;                    /* REFOCUS_METHOD_BIT of each that `work` suffices for */
 
     struct rf_ray_sets ray_sets;
-    struct rf_cat_eye cat_eye;     /* made when it is first needed */
-    struct rf_cat_shape cat_shape; /* for the last aperture that needed one */
+    struct rf_cat_eye *cat_eye;     /* made when it is first needed */
+    struct rf_cat_shape *cat_shape; /* for the last aperture that needed one */
+
+    struct rf_frame *frame; /* the call that renders */
+    struct rf_exact *exact; /* tables of its method */
 };
 
 /* Make a part of the photo the window, and give a frame the views of its planes. */
@@ -198,9 +212,27 @@ static inline struct rf_rect rf_whole(const struct refocus_renderer *r)
 
 /* Elements of a worker's scratch: two rows of the largest picture with the margins of spread_row.
  */
-static inline uint64_t rf_scratch_size(int max_width)
+static inline uint64_t rf_scratch_size(int max_width, float max_blur_radius)
 {
-    return 2 * ((uint64_t)max_width + 2 * RF_SPREAD_MARGIN);
+    const int margin = rf_spread_margin(rf_unit_of(max_blur_radius));
+
+    return 2 * ((uint64_t)max_width + 2 * (uint64_t)margin);
+}
+
+/* Begins a call: REFOCUS_OK, or REFOCUS_ERR_BUSY where another one runs, in another thread or in a
+ * callback of which this one is made. */
+static inline int rf_enter(struct refocus_renderer *r, const struct rf_log *log)
+{
+    if (atomic_flag_test_and_set_explicit(&r->entered, memory_order_acquire))
+        return rf_refuse(log, REFOCUS_ERR_BUSY, "another call uses this renderer");
+    return REFOCUS_OK;
+}
+
+/* Ends it with a status. */
+static inline int rf_leave(struct refocus_renderer *r, int status)
+{
+    atomic_flag_clear_explicit(&r->entered, memory_order_release);
+    return status;
 }
 
 static inline void rf_run_begin(struct refocus_renderer *r)

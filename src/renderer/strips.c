@@ -266,7 +266,8 @@ void rf_run_strips(struct rf_frame *f, struct rf_rect region, enum rf_need need,
             make_background(f);
         if (need == RF_NEED_LAYERS && !rf_cancelled(&r->exec))
             rf_pass_boost(f);
-        if (need == RF_NEED_LAYERS && f->weighted && rf_is_sweep(f) && !rf_cancelled(&r->exec))
+        if (need != RF_NEED_LIGHT && f->weighted && (rf_is_sweep(f) || rf_is_search(f)) &&
+            !rf_cancelled(&r->exec))
             rf_pass_weights(f);
         image = image_part(out, (struct rf_rect){part.x0 - region.x0, part.y0 - region.y0,
                                                  part.x1 - region.x0, part.y1 - region.y0});

@@ -60,32 +60,41 @@ static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t p
             out[y * pitch + x] = (uint16_t)abs(blur[y * pitch + x]);
 }
 
-int refocus_get_view(struct refocus_renderer *r, uint32_t view, uint16_t *out, ptrdiff_t stride)
+static int get_view(const struct refocus_renderer *r, const struct rf_log *log, uint32_t view,
+                    uint16_t *out, ptrdiff_t stride)
 {
-    struct rf_log log = {.function = "refocus_get_view"};
     const struct rf_photo *photo;
 
-    if (!r)
-        return REFOCUS_ERR_ARGUMENT;
-    log.to = r->log;
     if (!out || ((uintptr_t)out & 1))
-        return rf_refuse(&log, REFOCUS_ERR_ARGUMENT, "out is %s, may be at an even address",
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "out is %s, may be at an even address",
                          out ? "odd" : "NULL");
     if (view > REFOCUS_VIEW_BLUR)
-        return rf_refuse(&log, REFOCUS_ERR_ARGUMENT, "view is %u, may be 0 to %d", (unsigned)view,
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "view is %u, may be 0 to %d", (unsigned)view,
                          REFOCUS_VIEW_BLUR);
     if (stride % 2)
-        return rf_refuse(&log, REFOCUS_ERR_ARGUMENT, "stride is %lld, may be even",
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "stride is %lld, may be even",
                          (long long)stride);
     if (!r->prepared || (view == REFOCUS_VIEW_BLUR && !r->blurred))
-        return rf_refuse(&log, REFOCUS_ERR_STATE, "nothing is %s yet",
+        return rf_refuse(log, REFOCUS_ERR_STATE, "nothing is %s yet",
                          r->prepared ? "rendered" : "prepared");
     photo = &r->photo;
     if (!rf_good_stride(stride, 2 * (ptrdiff_t)photo->width, photo->height))
-        return rf_refuse(&log, REFOCUS_ERR_ARGUMENT, "stride is %lld, may be %d or more either way",
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "stride is %lld, may be %d or more either way",
                          (long long)stride, 2 * photo->width);
     copy_disparities(r, out, stride / 2);
     if (view == REFOCUS_VIEW_BLUR)
         to_blur(r, out, stride / 2);
     return REFOCUS_OK;
+}
+
+int refocus_get_view(struct refocus_renderer *r, uint32_t view, uint16_t *out, ptrdiff_t stride)
+{
+    struct rf_log log = {.function = "refocus_get_view"};
+    int status;
+
+    if (!r)
+        return REFOCUS_ERR_ARGUMENT;
+    log.to = r->log;
+    status = rf_enter(r, &log);
+    return status ? status : rf_leave(r, get_view(r, &log, view, out, stride));
 }

@@ -1,6 +1,7 @@
 /* window.c: makes a part of the photo the window, and gives a frame the views of its planes. */
 #include "renderer/layout.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "renderer/renderer.h"
@@ -31,6 +32,7 @@ static void place_planes(struct refocus_renderer *r, const struct rf_photo *phot
     r->disparity.at = light + 3 * photo->pitch;
     r->blur.at = (int16_t *)smooth;
     r->background.blur.at = (int16_t *)background;
+    r->blur.unit = r->background.blur.unit = r->unit;
     r->light.stride = r->smooth.stride = r->background.light.stride = r->disparity.stride =
         r->blur.stride = r->background.blur.stride = photo->stride;
 }
@@ -48,16 +50,16 @@ static void share_planes(struct refocus_renderer *r)
                                  shared.stride};
     r->cone = (struct rf_dilated_blur){light->channel[0], light->channel[1], light->stride};
     r->background_weight = (struct rf_weight_q15){(uint16_t *)shared.at, shared.stride};
-    r->weight = r->yuv.on
-                    ? (struct rf_weight_q15){light->channel[2], light->stride}
-                    : (struct rf_weight_q15){(uint16_t *)r->foreground.most, r->foreground.stride};
+    r->own_weight = (struct rf_weight_q15){(uint16_t *)r->foreground.most, r->foreground.stride};
+    r->weight =
+        r->yuv->on ? (struct rf_weight_q15){light->channel[2], light->stride} : r->own_weight;
 }
 
 /* The place of row 0 of a plane of chroma. The window begins at a row of the photo that is a
  * multiple of RF_TILE, so the shift is exact. */
 static uint16_t *chroma_of(const struct refocus_renderer *r, uint16_t *plane)
 {
-    return plane - (r->view.y0 - (r->view.y0 >> r->yuv.down)) * r->light.stride;
+    return plane - (r->view.y0 - (r->view.y0 >> r->yuv->down)) * r->light.stride;
 }
 
 /*
@@ -69,16 +71,16 @@ static uint16_t *chroma_of(const struct refocus_renderer *r, uint16_t *plane)
 static void place_chroma(struct refocus_renderer *r)
 {
     const ptrdiff_t stride = r->light.stride;
-    const int down = r->yuv.down;
+    const int down = r->yuv->down;
 
-    if (!r->yuv.on)
+    if (!r->yuv->on)
         return;
     r->chroma = (struct rf_chroma_planes){
         .size = {(r->view.width + 1) / 2, rf_chroma_end(down, r->view.height), down},
         .light = {chroma_of(r, r->light.channel[1]), stride},
         .smooth = {chroma_of(r, r->smooth.channel[1]), stride},
         .background = {chroma_of(r, r->background.light.channel[1]), stride},
-        .blur = {(int16_t *)chroma_of(r, r->smooth.channel[2]), stride},
+        .blur = {(int16_t *)chroma_of(r, r->smooth.channel[2]), stride, r->unit},
         .codes = {r->alpha.at,
                   (uint8_t *)(chroma_of(r, r->light.channel[2]) - r->view.x0) + r->view.x0,
                   r->alpha.stride, stride * (ptrdiff_t)sizeof(uint16_t)},
@@ -137,21 +139,23 @@ void rf_set_planes(struct rf_frame *f)
     f->smooth = r->smooth;
     f->blur = r->blur;
     f->background = r->background;
-    f->weight = r->weight;
+    f->weight = rf_is_search(f) ? r->own_weight : r->weight;
     f->background_weight = r->background_weight;
     f->disparity = r->disparity;
     f->alpha = r->alpha;
     f->range = r->range;
     f->bins = r->bins;
-    f->yuv = &r->yuv;
+    f->yuv = r->yuv;
+    f->deep = &r->deep;
+    f->deep_out = &r->deep_out;
     f->chroma = r->chroma;
     f->transfer = &r->transfer[f->params->blend];
     f->light_weight = r->light_weight;
     f->ray_sets = &r->ray_sets;
-    f->cat_eye = &r->cat_eye;
-    f->cat_shape = &r->cat_shape;
+    f->cat_eye = r->cat_eye;
+    f->cat_shape = r->cat_shape;
     f->limits = (struct rf_limits){r->max_width, r->max_height, r->view.pad, r->pool.threads,
-                                   r->max_blur_radius};
+                                   fminf(r->max_blur_radius, RF_PLAIN_RADIUS)};
     f->work = &r->work;
     f->splat = (struct rf_splat){
         .exec = &r->exec,
@@ -160,11 +164,14 @@ void rf_set_planes(struct rf_frame *f)
                    .blur = r->blur,
                    .highlights = &r->photo.highlights,
                    .bins = r->bins,
-                   .channels = r->yuv.on ? 1 : 3},
+                   .channels = r->yuv->on ? 1 : 3,
+                   .known = r->deep.on && r->deep.exceeds ? &r->deep : NULL},
         .range = r->range,
         .aperture = f->aperture,
         .gain = f->params->highlight_gain,
-        .largest_radius = f->focus.radius,
+        .cat_eye = f->params->cat_eye,
+        .fringe = f->params->fringe,
+        .largest_radius = rf_in_pixels(f->focus.radius, f->focus.unit),
     };
     f->thin.exec = &r->exec;
     f->thin.view = &r->view;
@@ -218,6 +225,9 @@ void rf_set_gather_planes(struct rf_frame *f)
     if (!rf_plane_lives(lifetimes, RF_PLANE_BACKGROUND_BLUR))
         f->background.blur.at = NULL;
     if (!rf_plane_lives(lifetimes, RF_PLANE_BACKGROUND_WEIGHT))
-        f->background_weight.at = f->weight.at = NULL;
+        f->background_weight.at = NULL;
+    if (!rf_plane_lives(lifetimes, RF_PLANE_WEIGHT) &&
+        !rf_plane_lives(lifetimes, RF_PLANE_OWN_WEIGHT))
+        f->weight.at = NULL;
 #endif
 }

@@ -9,12 +9,24 @@
 
 struct rf_kernels;
 
+/* Memory for each worker, for what is too large for a stack: threads of callers may have 64 KiB. */
+struct rf_shares {
+    uint8_t *at;
+    uint64_t size; /* bytes each */
+};
+
+static inline void *rf_share(const struct rf_shares *shares, int worker)
+{
+    return shares->at + (uint64_t)worker * shares->size;
+}
+
 struct rf_executor {
     struct rf_pool *pool;
     struct rf_run *run;
     const struct rf_kernels *kernels; /* for the instruction set in use: kernels/kernels.h */
     uint16_t *scratch;                /* scratch_size elements for each thread */
     uint64_t scratch_size;
+    struct rf_shares shares; /* for one pass at a time */
 };
 
 /* The scratch of a worker: two rows of the largest picture with the margins of spread_row. */

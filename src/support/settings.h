@@ -15,12 +15,13 @@ struct rf_settings {
     int32_t rays;
     uint32_t blend;
     float sigma;
-    uint32_t prefilter, inpaint, reserved;
+    uint32_t prefilter, inpaint, dither;
     int32_t region_x, region_y, region_width, region_height;
     const struct refocus_aperture *aperture;
 
     float highlight_gain;     /* RF_MOST_GAIN where light is estimated */
     float highlight_estimate; /* times the estimate, or 0 */
+    float highlight_steady;   /* part of small changes since the last frame that is left out */
     uint32_t thin;
 
     float cat_eye, fringe, grain;

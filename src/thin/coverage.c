@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/compare.h"
 #include "thin/mixture.h"
 
 enum { CELLS = RF_TILE / RF_COVERAGE_CELL };
@@ -97,7 +98,8 @@ static void collect_band(void *context, int ty, int worker)
                 continue;
             out[sources].x = (uint16_t)(tx * CELLS + i % CELLS);
             out[sources].y = (uint16_t)(ty * CELLS + i / CELLS);
-            out[sources].radius = (uint16_t)(sum[i].blur / sum[i].weight * t->disc_scale >> 10);
+            out[sources].radius =
+                (uint16_t)rf_smaller(sum[i].blur / sum[i].weight * t->disc_scale >> 10, UINT16_MAX);
             share(sum[i].light, out[sources].radius, out[sources].each);
             sources++;
         }

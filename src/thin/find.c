@@ -22,9 +22,9 @@ static void find_band(void *context, int band, int worker)
     const uint64_t capacity = rf_thin_capacity(t->view->width);
     struct rf_thin *thin = list->pixel + (uint64_t)band * capacity;
     const int y = rf_band_start(band);
+    void *const share = rf_share(&t->exec->shares, worker);
     uint32_t count = list->given[band].count;
 
-    (void)worker;
     for (int tx = 0; tx < t->view->tiles_x; tx++) {
         const int x = tx * RF_TILE;
         const ptrdiff_t at = y * t->view->stride + x;
@@ -42,7 +42,8 @@ static void find_band(void *context, int band, int worker)
 
         if (list->run[(size_t)band * t->view->tiles_x + tx].given)
             continue;
-        found = t->exec->kernels->find_thin(thin + count, &tile, (int)(room < 256 ? room : 256));
+        found =
+            t->exec->kernels->find_thin(thin + count, &tile, (int)(room < 256 ? room : 256), share);
 
         for (int i = 0; i < found; i++)
             rf_fit_coverage(t, &thin[count + (uint32_t)i], tx, band);

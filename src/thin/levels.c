@@ -11,13 +11,13 @@ enum {
     SIDE = 42, /* a pixel that N covers less shows what is behind it */
 };
 
-/* Signed circle of confusion of one disparity, as the kernel signed_blur rounds it. */
+/* Signed circle of confusion of one disparity, 1/256 pixel, as the kernel signed_blur rounds it. */
 static int plain_blur(struct rf_focus focus, uint16_t disparity)
 {
     const int away = disparity - focus.disparity;
     const uint32_t blur = (uint32_t)(away < 0 ? -away : away) * focus.radius + 0x8000;
 
-    return away > 0 ? -(int)(blur >> 16) : (int)(blur >> 16);
+    return rf_in_pixels(away > 0 ? -(int)(blur >> 16) : (int)(blur >> 16), focus.unit);
 }
 
 int rf_thin_blur(const struct rf_thin_pass *t, uint16_t disparity, int x, int y)
@@ -27,7 +27,7 @@ int rf_thin_blur(const struct rf_thin_pass *t, uint16_t disparity, int x, int y)
     if (t->plan->plain)
         return plain_blur(t->plan->focus, disparity);
     rf_focus_row(t->plan, &blur, &disparity, t->view->x0 + x, t->view->y0 + y, 1);
-    return blur;
+    return rf_in_pixels(blur, t->plan->focus.unit);
 }
 
 int rf_near_blur(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)

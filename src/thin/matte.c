@@ -15,7 +15,7 @@ static bool is_visible(const struct rf_thin_pass *t, int tx, int ty)
 
             if (x < 0 || y < 0 || x >= t->view->tiles_x || y >= t->view->tiles_y)
                 continue;
-            blur = -t->bins[(size_t)y * t->view->tiles_x + x].least;
+            blur = rf_in_pixels(-t->bins[(size_t)y * t->view->tiles_x + x].least, t->blur.unit);
             across = abs(x - tx) > 1 ? (abs(x - tx) - 1) * RF_TILE : 0;
             down = abs(y - ty) > 1 ? (abs(y - ty) - 1) * RF_TILE : 0;
             if (blur > 256 * 3 / 2 && blur > 256 * (across > down ? across : down))

@@ -19,7 +19,7 @@ static bool is_filled(const struct rf_thin_pass *t, int tx, int ty, int blur)
         const int16_t *most = t->cell_most + (ty * CELLS + j) * t->cell_stride + tx * CELLS;
 
         for (int i = 0; i < CELLS; i++)
-            filled += most[i] <= blur;
+            filled += rf_in_pixels(most[i], t->blur.unit) <= blur;
     }
     return filled > FEW;
 }
@@ -110,9 +110,11 @@ static void patch_tile(const struct rf_thin_pass *t, int tx, int ty)
         const int y = ty * RF_TILE + thin[i].at / RF_TILE;
 
         if (is_apart(choice, i))
-            t->blur.at[y * t->view->stride + x] = (int16_t)rf_thin_blur(
-                t, rf_has_bit(choice->near, i) ? thin[i].near_disparity : thin[i].far_disparity, x,
-                y);
+            t->blur.at[y * t->view->stride + x] = rf_in_units(
+                rf_thin_blur(
+                    t, rf_has_bit(choice->near, i) ? thin[i].near_disparity : thin[i].far_disparity,
+                    x, y),
+                t->blur.unit);
     }
 }
 
@@ -161,7 +163,7 @@ void rf_thin_hide(const struct rf_thin_pass *t, struct rf_blur_q8 background_blu
             int16_t *blur = tile + place_of(t, &thin[i]);
 
             if (!rf_has_bit(choice->splat, i) || *blur == RF_NO_BLUR ||
-                abs(*blur) >= RF_TEXTURE_BLUR)
+                rf_in_pixels(abs(*blur), background_blur.unit) >= RF_TEXTURE_BLUR)
                 continue;
             *blur = RF_NO_BLUR;
             choice->filled[i / 64] |= UINT64_C(1) << i % 64;

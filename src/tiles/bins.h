@@ -7,13 +7,14 @@
 
 #include "kernels/slab.h"
 
-/* Occupied bins of signed blur, a bit each, nearest first, and the extremes in them. */
+/* Occupied bins of signed blur, a bit each, nearest first, and the extremes in them. Blurs are as
+ * they are stored. */
 struct rf_bins {
     uint64_t word[RF_BINS / 64];
-    int16_t least, most;  /* Q7.8 */
-    int16_t highlight;    /* largest |s| of a highlight, Q7.8; 0: it has none */
+    int16_t least, most;
+    int16_t highlight;    /* largest |s| of a highlight; 0: it has none */
     int16_t undersampled; /* largest |s| of a highlight narrower than the gaps between rays need */
-    int16_t background_blur; /* Q7.8: blur of the hidden background in the middle of the tile */
+    int16_t background_blur; /* blur of the hidden background in the middle of the tile */
     uint16_t brightest;      /* an upper bound of the light of either layer, as it is summed */
     bool subtracted;         /* highlights are subtracted from its light, highlights/subtract.c */
 };

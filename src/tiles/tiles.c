@@ -1,5 +1,4 @@
-/* tiles.c: notes the blurs of each tile, collects those that can reach it, and covers them by
- * slabs. */
+/* tiles.c: notes the blurs of each tile, and covers those that can reach it by slabs. */
 #include "tiles/tiles.h"
 
 #include <assert.h>
@@ -7,11 +6,12 @@
 
 #include "colour/transfer.h"
 #include "support/compare.h"
+#include "tiles/scale.h"
 
 enum { EACH = RF_TILE / RF_CELL }; /* cells of a tile, across and down */
 
 enum {
-    HALF = 128,           /* Q7.8 pixels, as all of these */
+    HALF = 128,           /* 1/256 pixel, as all of these */
     OVERLAP = 32,         /* a slab reaches so far into each of those beside it */
     CLOSED = 2 * OVERLAP, /* so that the slab of what is sharp overlaps them as much in all */
     WIDE = 16 * 256,      /* where slabs begin to be wider than a pixel */
@@ -20,13 +20,17 @@ enum {
 
 /* The widest slab begins in the first bin of whole pixels. In bins of whole pixels; it is cut to
  * them before it is widened by an eighth on each side. */
-enum { LARGEST = 127 * 256, WIDEST = (2 * (LARGEST + HALF) - WIDE) / WIDE };
+enum { LARGEST = RF_PLAIN_RADIUS * 256, WIDEST = (2 * (LARGEST + HALF) - WIDE) / WIDE };
 static_assert(WIDEST * 256 * 5 / 4 <= 20 * 256, "no slab is wider than 20 pixels");
 static_assert(MOST_SPREAD + 20 * 256 <= UINT16_MAX + 1, "told apart modulo 2^16");
 
-struct rf_bin_scale rf_bin_scale_of(float largest_blur)
+static_assert(2 * RF_UNIT_RADIUS * 256 <= MOST_SPREAD && RF_UNIT_RADIUS << RF_MAX_UNIT < 1024 &&
+                  RF_FINE + 5 * RF_OCTAVE <= 127,
+              "blurs with a unit have few bins, and slabs of any width");
+
+struct rf_bin_scale rf_bin_scale_of(float largest_blur, int unit)
 {
-    const int shift = largest_blur <= 31.5f ? 6 : largest_blur <= 63.5f ? 7 : 8;
+    const int shift = unit || largest_blur > 63.5f ? 8 : largest_blur <= 31.5f ? 6 : 7;
 
     /* So -31.5 .. 31.5 pixels are bins 3 .. 255 at shift 6, -63.5 .. 63.5 bins 1 .. 255 at
      * shift 7, -127 .. 127 bins 0 .. 254 at shift 8. */
@@ -34,18 +38,9 @@ struct rf_bin_scale rf_bin_scale_of(float largest_blur)
     static_assert(((127 * 128 + HALF) >> 7) + 127 < RF_BINS, "bins of 63.5 pixels at shift 7");
     static_assert(((LARGEST + HALF) >> 8) + 127 < RF_BINS, "bins of 127 pixels at shift 8");
     static_assert((LARGEST - HALF) / 256 < 127, "the nearest blur has no bin below 0");
-    return (struct rf_bin_scale){shift, 127, 256 >> shift};
-}
-
-static int bin_of(struct rf_bin_scale scale, int s)
-{
-    return ((s + HALF) >> scale.shift) + scale.focus;
-}
-
-/* Least blur of a bin. */
-static int edge_of(struct rf_bin_scale scale, int bin)
-{
-    return (bin - scale.focus) * (1 << scale.shift) - HALF;
+    static_assert(2 * 127 * 128 < 1 << 15, "blurs of up to 63.5 pixels or units differ by less");
+    return (struct rf_bin_scale){shift, 127, 256 >> shift, unit,
+                                 largest_blur <= 63.5f * (float)(1 << unit)};
 }
 
 static void add_bin(struct rf_bins *bins, int bin)
@@ -60,7 +55,7 @@ static void add_cell(struct rf_bins *bins, struct rf_bin_scale scale, const int1
     uint64_t found = 0; /* from `first` on */
 
     for (int i = 0; i < RF_CELL * RF_CELL; i++) {
-        const int bin = bin_of(scale, s[i / RF_CELL * stride + i % RF_CELL]);
+        const int bin = rf_bin_of(scale, s[i / RF_CELL * stride + i % RF_CELL]);
 
         if (last - first < 64)
             found |= UINT64_C(1) << (bin - first);
@@ -81,7 +76,7 @@ static void add_cells(struct rf_bins *bins, struct rf_bin_scale scale, struct rf
         const int16_t *most = cells->most + y * cells->stride;
 
         for (int x = tx * EACH; x < (tx + 1) * EACH; x++) {
-            const int first = bin_of(scale, least[x]), last = bin_of(scale, most[x]);
+            const int first = rf_bin_of(scale, least[x]), last = rf_bin_of(scale, most[x]);
 
             add_bin(bins, first);
             add_bin(bins, last);
@@ -107,8 +102,8 @@ static struct rf_bins bins_of_tile(struct rf_bin_scale scale, struct rf_blur_q8 
             bins.most = most[x] > bins.most ? most[x] : bins.most;
         }
     }
-    first = bin_of(scale, bins.least);
-    last = bin_of(scale, bins.most);
+    first = rf_bin_of(scale, bins.least);
+    last = rf_bin_of(scale, bins.most);
     add_bin(&bins, first);
     add_bin(&bins, last);
     if (last - first > 1)
@@ -128,7 +123,7 @@ void rf_add_bin(const struct rf_viewport *view, struct rf_bins *bins, struct rf_
 {
     struct rf_bins *tile = &bins[(size_t)(y / RF_TILE) * view->tiles_x + x / RF_TILE];
 
-    add_bin(tile, bin_of(scale, blur));
+    add_bin(tile, rf_bin_of(scale, blur));
     tile->least = blur < tile->least ? blur : tile->least;
     tile->most = blur > tile->most ? blur : tile->most;
 }
@@ -156,118 +151,52 @@ static int next_bin(const struct rf_bins *bins, int bin)
     return RF_BINS;
 }
 
-/* Clear bins [from, to). */
-static void clear(uint64_t word[RF_BINS / 64], int from, int to)
-{
-    for (int i = 0; i < RF_BINS / 64; i++) {
-        const int a = from - 64 * i < 0 ? 0 : from - 64 * i;
-        const int b = to - 64 * i > 64 ? 64 : to - 64 * i;
-
-        if (a < b)
-            word[i] &= ~((b - a == 64 ? ~UINT64_C(0) : (UINT64_C(1) << (b - a)) - 1) << a);
-    }
-}
-
-/* Pixels between tiles that are n tiles apart: those side by side are one pixel apart. */
-static int gap_of(int n)
-{
-    return n ? (n - 1) * RF_TILE + 1 : 0;
-}
-
-/* A ray hits a pixel g away only if |s| >= g - 1. */
-static struct rf_kept kept_at(struct rf_bin_scale scale, int gx, int gy, bool square)
-{
-    struct rf_kept kept = {.word = {UINT64_MAX, UINT64_MAX, UINT64_MAX, UINT64_MAX}};
-    int gap = gx > gy ? gx : gy;
-
-    if (!square)
-        while (gap * gap < gx * gx + gy * gy)
-            gap++;
-    kept.blur = (gap - 1) * 256;
-    if (gap > 1) {
-        const int first = bin_of(scale, -kept.blur + (1 << scale.shift));
-        const int end = bin_of(scale, kept.blur);
-
-        clear(kept.word, first, end);
-        kept.low = edge_of(scale, first);
-        kept.high = edge_of(scale, end);
-    }
-    return kept;
-}
-
-void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float largest_blur, int pad,
-                   bool square)
-{
-    /* No blur, not even one a bin larger, exceeds gap_of() - 1 of a tile farther away. */
-    const int farthest = (int)((largest_blur + 1) / RF_TILE) + 1;
-
-    reach->scale = scale;
-    reach->tiles = (pad - 2 + RF_TILE - 1) / RF_TILE;
-    if (reach->tiles > farthest)
-        reach->tiles = farthest;
-    for (int j = 0; j <= reach->tiles; j++)
-        for (int i = 0; i <= reach->tiles; i++)
-            reach->kept[j][i] = kept_at(scale, gap_of(i), gap_of(j), square);
-}
-
-/* Adds the blurs of a tile that reach so far. */
-static inline void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
-                            const struct rf_kept *kept)
-{
-    const int least = bins->least, most = bins->most;
-    const bool near = least < kept->low, far = most >= kept->high;
-
-    if (bins->brightest > sum->brightest)
-        sum->brightest = bins->brightest;
-    if (bins->highlight > sum->highlight && bins->highlight >= kept->blur)
-        sum->highlight = bins->highlight;
-    if (bins->undersampled > sum->undersampled && bins->undersampled >= kept->blur)
-        sum->undersampled = bins->undersampled;
-    if (!near && !far)
-        return;
-    for (int k = 0; k < RF_BINS / 64; k++)
-        sum->word[k] |= bins->word[k] & kept->word[k];
-    sum->least = (int16_t)rf_smaller(sum->least, near ? least : rf_larger(least, kept->high));
-    sum->most = (int16_t)rf_larger(sum->most, far ? most : rf_smaller(most, kept->low - 1));
-}
-
-/* Collects the bins that reach tile (tx, ty). */
-static struct rf_bins collect(const struct rf_viewport *view, const struct rf_bins *bins,
-                              const struct rf_reach *reach, int tx, int ty)
-{
-    const int x0 = rf_larger(tx - reach->tiles, 0);
-    const int x1 = rf_smaller(tx + reach->tiles, view->tiles_x - 1);
-    const int y0 = rf_larger(ty - reach->tiles, 0);
-    const int y1 = rf_smaller(ty + reach->tiles, view->tiles_y - 1);
-    struct rf_bins sum = {.least = INT16_MAX, .most = INT16_MIN};
-
-    for (int y = y0; y <= y1; y++) {
-        const struct rf_bins *row = &bins[(size_t)y * view->tiles_x];
-        const struct rf_kept *kept = reach->kept[abs(y - ty)];
-
-        for (int x = x0; x <= tx; x++)
-            add_kept(&sum, &row[x], &kept[tx - x]);
-        for (int x = tx + 1; x <= x1; x++)
-            add_kept(&sum, &row[x], &kept[x - tx]);
-    }
-    return sum;
-}
-
-/* Blurs of up to 63.5 pixels differ by less than 2^15, so that a range of any width is told from
- * what lies outside modulo 2^16; up to 127 pixels one slab is as much as can be. */
+/* Where blurs differ by less than 2^15, a range of any width is told from what lies outside modulo
+ * 2^16; else one slab is as much as can be. */
 static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struct rf_slab slab)
 {
-    static_assert(2 * 127 * 128 < 1 << 15, "blurs of up to 63.5 pixels");
     const int k = plan->slabs++;
 
     plan->slab[k] = slab;
     plan->joined[k] =
-        k > 0 && scale.shift < 8 && slab.low <= plan->slab[k - 1].low + plan->slab[k - 1].width + 1;
+        k > 0 && scale.joins && slab.low <= plan->slab[k - 1].low + plan->slab[k - 1].width + 1;
+}
+
+/* Where a slab that begins with that bin ends, about as wide as one of blurs without a unit. */
+static int end_with_unit(struct rf_bin_scale scale, int bin)
+{
+    const int low = rf_edge_of(scale, bin), pixel = 256 >> scale.unit;
+    const int until = low + abs(low) / 8 - pixel;
+    int end = rf_bin_of(scale, until);
+
+    if (2 * until >
+        rf_edge_of(scale, end) + rf_edge_of(scale, end + 1)) /* the next edge is nearer to it */
+        end++;
+    return rf_larger(end, bin + 1);
+}
+
+/* Where a slab ends that begins with that bin; `wide` ones may be. */
+static int end_of(struct rf_bin_scale scale, int bin, bool wide)
+{
+    const int pixel = 256 >> scale.shift, low = rf_edge_of(scale, bin);
+    int end = bin + pixel;
+
+    if (bin >= scale.focus && bin < scale.focus + scale.focus_bins)
+        return scale.focus + scale.focus_bins;
+    if (scale.unit)
+        end = end_with_unit(scale, bin);
+    else if (wide && abs(low) >= WIDE)
+        end = bin + (int)((int64_t)pixel * (2 * abs(low) - WIDE) / WIDE);
+    else if (pixel > 1 && low > -3 * 256 && low < 3 * 256)
+        end = bin + pixel / 2;
+    return bin < scale.focus && end > scale.focus ? scale.focus : end;
 }
 
 /* Covers the occupied bins by slabs, nearest first. Slabs are a pixel wide, half of that where the
  * blur is small and a pixel would show, and |s| / 8 less one pixel from 16 pixels on: there rays
- * lie farther apart than half of that.
+ * lie farther apart than half of that. Wide slabs end where those end that cover all bins from the
+ * nearest on, so that all tiles take the same blurs for one: what is in one slab does not occlude
+ * each other, and where tiles differed in that, their edges would show.
  *
  * The blurs below half a pixel are a slab of their own with offset 0, so that these pixels stay as
  * they are. No slab before it may hold them, as its rays would bring light from beside them. Yet no
@@ -279,33 +208,35 @@ static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struc
  */
 static void cover(const struct rf_bins *bins, struct rf_bin_scale scale, struct rf_tile_plan *plan)
 {
-    const int pixel = 256 >> scale.shift;
+    const int unit = scale.unit, half = HALF >> unit, closed = CLOSED >> unit;
     const int focus_end = scale.focus + scale.focus_bins;
+    const bool wide = bins->most - bins->least < MOST_SPREAD;
+    int cell = 0; /* the slab that `bin` is in, of those that cover all bins: where it begins */
 
     plan->slabs = 0;
     plan->reach = 0;
     plan->least = INT16_MAX;
     plan->sharp = true;
     for (int bin = next_bin(bins, 0); bin < RF_BINS; bin = next_bin(bins, bin)) {
-        int end = bin + pixel, last = bin, low, high, centre, overlap;
+        int end, last = bin, low, high, centre, overlap;
 
         if (bin >= scale.focus && bin < focus_end) {
-            add_slab(plan, scale, (struct rf_slab){-HALF - CLOSED, 2 * HALF + CLOSED - 1, 0});
+            add_slab(
+                plan, scale,
+                (struct rf_slab){(int16_t)(-half - closed), (uint16_t)(2 * half + closed - 1), 0});
             plan->least = 0;
             bin = focus_end;
             continue;
         }
-        low = edge_of(scale, bin);
-        if (pixel > 1 && low > -3 * 256 && low < 3 * 256)
-            end = bin + pixel / 2;
-        if (abs(low) >= WIDE && bins->most - bins->least < MOST_SPREAD)
-            end = bin + (int)((int64_t)pixel * (2 * abs(low) - WIDE) / WIDE);
-        if (bin < scale.focus && end > scale.focus)
-            end = scale.focus;
+        low = rf_edge_of(scale, bin);
+        while ((end = end_of(scale, cell, wide)) <= bin)
+            cell = end;
+        if (!unit && abs(low) < WIDE)
+            end = end_of(scale, bin, false);
         for (int b = bin; b < end && b < RF_BINS; b++)
             if (has(bins, b))
                 last = b;
-        high = edge_of(scale, last + 1) - 1;
+        high = rf_edge_of(scale, last + 1) - 1;
         low = low < bins->least ? bins->least : low;
         high = high > bins->most ? bins->most : high;
         centre = low + (high - low + 1) / 2; /* exact for a single blur */
@@ -318,26 +249,28 @@ static void cover(const struct rf_bins *bins, struct rf_bin_scale scale, struct 
             plan->least = low;
         if (high < 0 && -high < plan->least)
             plan->least = -high;
-        overlap = rf_larger(OVERLAP, (high - low) / 8);
+        overlap = rf_larger(OVERLAP >> unit, (high - low) / 8);
         low -= overlap;
         high += overlap;
-        if (centre < 0 && high >= -HALF)
-            high = -HALF - 1;
-        if (centre > 0 && low < HALF)
-            low = HALF - CLOSED;
+        if (centre < 0 && high >= -half)
+            high = -half - 1;
+        if (centre > 0 && low < half)
+            low = half - closed;
         add_slab(plan, scale,
                  (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre});
         bin = last + 1;
     }
+    plan->reach = rf_in_pixels(plan->reach, unit);
+    plan->least = rf_in_pixels(plan->least, unit);
 }
 
 void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,
                   const struct rf_reach *reach, int tx, int ty, struct rf_tile_plan *plan)
 {
-    const struct rf_bins in_reach = collect(view, bins, reach, tx, ty);
+    const struct rf_bins in_reach = rf_collect(view, bins, reach, tx, ty);
 
     cover(&in_reach, reach->scale, plan);
-    plan->highlight = in_reach.highlight;
+    plan->highlight = rf_in_pixels(in_reach.highlight, reach->scale.unit);
     plan->undersampled = in_reach.undersampled > 0;
     plan->brightest = in_reach.brightest;
 }

@@ -13,30 +13,23 @@
 #ifndef RF_TILES_H
 #define RF_TILES_H
 
+#include "image/planes.h"
 #include "image/viewport.h"
 #include "kernels/slab.h"
 #include "tiles/ranges.h"
+#include "tiles/scale.h"
 
-/*
- * Bins of signed blur: a quarter pixel wide where none exceeds 31.5 pixels, half up to 63.5,
- * then whole pixels. Their edges lie so that |s| < 1/2 pixel, the blurs that leave a pixel as it
- * is, are whole bins.
- */
-struct rf_bin_scale {
-    int shift;      /* a bin is 1 << shift in Q7.8 */
-    int focus;      /* first bin of |s| < 1/2 pixel */
-    int focus_bins; /* bins of |s| < 1/2 pixel */
-};
-struct rf_bin_scale rf_bin_scale_of(float largest_blur);
+/* The scale of blurs of up to so many pixels. */
+struct rf_bin_scale rf_bin_scale_of(float largest_blur, int unit);
 
 enum { RF_MAX_SLABS = RF_BINS };
 
 struct rf_tile_plan {
     int slabs;
-    int reach;          /* largest |s| that reaches the tile, Q7.8, */
+    int reach;          /* largest |s| that reaches the tile, in 1/256 pixel, */
     int least;          /* the least |s| that reaches it */
     bool sharp;         /* nothing here or reaching here is blurred by half a pixel */
-    int highlight;      /* largest |s| of a highlight in reach, Q7.8; 0: none is in reach */
+    int highlight;      /* largest |s| of a highlight in reach, 1/256 pixel; 0: none is in reach */
     bool undersampled;  /* a highlight that is narrow beside the gaps of the rays is in reach */
     uint16_t brightest; /* brightest light of the tiles in reach, as in rf_bins */
     struct rf_slab slab[RF_MAX_SLABS];
@@ -46,15 +39,42 @@ struct rf_tile_plan {
 /* Blurs that reach from a tile to another that is some tiles away. */
 struct rf_kept {
     uint64_t word[RF_BINS / 64]; /* bit set of the bins that reach it */
-    int low, high;               /* blurs from low to high - 1 do not reach it; Q7.8 */
-    int blur;                    /* the least |s| that does */
+    int low, high; /* blurs from low to high - 1 do not reach it, as they are stored */
+    int blur;      /* the least |s| that does */
 };
-enum { RF_REACH_TILES = (127 + RF_TILE - 1) / RF_TILE };
+
+/*
+ * Blurs in units of two pixels and more reach hundreds of tiles. So what is far from a tile is
+ * collected from blocks of RF_BLOCK x RF_BLOCK tiles, each the union of its tiles. They lie at
+ * multiples of RF_BLOCK in the photo, and reach a tile as their nearest pixel does.
+ */
+enum {
+    RF_REACH_TILES = (RF_PLAIN_RADIUS + RF_TILE - 1) / RF_TILE,
+    RF_FAR_TILES = (RF_UNIT_RADIUS << RF_MAX_UNIT) / RF_TILE + 3,
+    RF_BLOCK = 4
+};
 struct rf_reach {
     struct rf_bin_scale scale;
-    int tiles; /* tiles farther away than this reach none */
-    struct rf_kept kept[RF_REACH_TILES + 1][RF_REACH_TILES + 1]; /* [tiles down][across] */
+    bool square; /* distances count by the larger axis */
+    int tiles;   /* tiles farther away than this reach none */
+    union {
+        struct rf_kept kept[RF_REACH_TILES + 1][RF_REACH_TILES + 1]; /* [tiles down][across] */
+        struct rf_kept far[RF_FAR_TILES];                            /* [tiles away], of blocks */
+    } table;
+    const struct rf_bins *blocks; /* row by row, those that the window is in; only with a unit */
 };
+/* Blocks that a window has, at most, of so many tiles. */
+static inline int rf_blocks_across(int tiles)
+{
+    return (tiles + 2 * (RF_BLOCK - 1)) / RF_BLOCK;
+}
+
+/* Makes the blocks of row `row` of blocks from the bins of all tiles. */
+void rf_join_blocks(const struct rf_viewport *view, const struct rf_bins *bins,
+                    struct rf_bins *blocks, int row);
+/* Rows of blocks of the window. */
+int rf_block_rows(const struct rf_viewport *view);
+
 /* Tabulates the reach of blurs up to the largest there can be in this frame, pixels, and pad - 2.
  * `square`: the aperture reaches beyond the unit circle, so that distances count by the larger
  * axis. */
@@ -72,6 +92,10 @@ void rf_add_bin(const struct rf_viewport *view, struct rf_bins *bins, struct rf_
 /* Writes to the bins of the tiles of row ty the background's blur in the middle of each. */
 void rf_note_background_blur(const struct rf_viewport *view, struct rf_blur_q8 background_blur,
                              struct rf_bins *bins, int ty);
+
+/* The bins of all tiles that reach tile (tx, ty). */
+struct rf_bins rf_collect(const struct rf_viewport *view, const struct rf_bins *bins,
+                          const struct rf_reach *reach, int tx, int ty);
 
 /* Finds everything the rays of a tile need, from the bins of those in reach. */
 void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,

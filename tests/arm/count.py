@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Counts the instructions of whole frames on AArch64 and ARMv7 and estimates their cycles.
 
-usage: count.py [--build FOLDER] [--quick] [--out tests/performance.md]
+usage: count.py [--build FOLDER] [--quick] [--search] [--out tests/performance.md]
 
 Cross-builds the core, renders under qemu-user with a plugin that counts blocks (plugin.c), and
 takes the difference between two runs that differ by whole frames: counts are exact and the
@@ -33,6 +33,10 @@ ARCHES = {"aarch64": ("aarch64-linux-gnu", "qemu-aarch64", "cortex-a76"),
 CORES = {"A53": "cortex-a53", "A55": "cortex-a55", "A72": "cortex-a72", "A76": "neoverse-n1"}
 SIZES = [(720, 540), (1280, 720), (1920, 1080)]
 BLUR = 20
+# beside each other: name, rays, tests of the search (0: sweep), sigma (0: linear light, no eq. 5)
+METHODS = [("`sweep`", 64, 0, 0), ("`sweep`", 64, 0, 128), ("`search`", 64, 1, 0),
+           ("`search`", 64, 1, 128), ("`search`", 64, 2, 0), ("`search`", 64, 2, 128),
+           ("`search`", -1, 1, 0), ("`search`", -1, 1, 128)]
 # what four cores are to reach: size, core, frames a second, a usual clock in MHz
 TARGETS = [((1920, 1080), "A76", 30, 2400), ((1280, 720), "A72", 30, 1800),
            ((720, 540), "A53", 15, 1400), ((720, 540), "A55", 15, 1800)]
@@ -89,6 +93,12 @@ class Counter:
             key = int(address, 16), int(size)
             found[key] = int(instructions), found.get(key, (0, 0))[1] + int(runs)
         return found
+
+    def render(self, arch, program, size, rays, tests, sigma):
+        """Blocks of rendering a photo once more."""
+        def of(renders):
+            return self.blocks(arch, program, *size, BLUR, rays, 1, renders, "auto", tests, sigma)
+        return difference(of(3), of(1), 2)
 
     def frame(self, arch, program, size, rays):
         """Blocks of a new photo, prepared and rendered, and of rendering it once more."""
@@ -209,10 +219,27 @@ def report(counter, programs, mca, rays_list):
     return counts, needs, goes
 
 
+def search_report(counter, program):
+    """The section of the search: instructions a pixel beside those of the sweep."""
+    rows, pixels = [], SIZES[0][0] * SIZES[0][1]
+    for method, rays, tests, sigma in METHODS:
+        print(f"{method}, {rays} rays, T = {tests}, sigma {sigma}", file=sys.stderr)
+        rows.append([method, "full" if rays < 0 else rays, tests or "-",
+                     f"stored, sigma {sigma}" if sigma else "linear"] +
+                    [f"{total(counter.render('aarch64', program, SIZES[0], rays, tests, sigma)) / pixels:.0f}"])
+    return "\n".join([
+        "## ARM: the search beside the sweep, instructions counted\n",
+        f"examples/data/portrait, 720x540, K = {BLUR}, focus 0.689, NEON on AArch64, one thread, RGB "
+        "in and out: what it takes to render a prepared photo anew, with another focus. The sweep "
+        "splats highlights.\n",
+        sections.table(["method", "rays", "tests", "light", "instructions a pixel"], rows)])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--build", type=Path, help="folder that is kept; default a new one")
     parser.add_argument("--quick", action="store_true", help="720x540 and 32 rays alone")
+    parser.add_argument("--search", action="store_true", help="the section of the search alone")
     parser.add_argument("--out", type=Path, default=SOURCE / "tests" / "performance.md")
     args = parser.parse_args()
     tools = ["meson", "ninja", "cc"] + [t for triple, qemu, _ in ARCHES.values()
@@ -230,7 +257,11 @@ def main():
         folder.mkdir(parents=True, exist_ok=True)
         scene_file(folder / "scene")
         counter = Counter(folder, folder / "scene")
-        programs = {arch: build(folder, arch) for arch in ARCHES}
+        programs = {arch: build(folder, arch) for arch in (["aarch64"] if args.search else ARCHES)}
+        sections.put(args.out, "arm-search", "tests/arm/count.py",
+                     search_report(counter, programs["aarch64"]))
+        if args.search:
+            return
         counts, needs, goes = report(counter, programs, mca, [32] if args.quick else [32, 64])
     text = ["## ARM: instructions counted, cycles estimated\n",
             f"examples/data/portrait brought to each size by repeating pixels, K = {BLUR}, `sweep`, "

@@ -1,6 +1,9 @@
 /* frame.c: renders a scene so that instructions can be counted:
  *
- *     frame SCENE WIDTH HEIGHT K RAYS PHOTOS RENDERS [CPU]
+ *     frame SCENE WIDTH HEIGHT K RAYS PHOTOS RENDERS [CPU [TESTS [SIGMA]]]
+ *
+ * RAYS is -1 for every ray. With TESTS above 0 the search renders, of so many tests; with SIGMA
+ * above 0 stored values are averaged, weighted by eq. 5.
  *
  * One thread, RGB in and out. PHOTOS times it is prepared and rendered, then the last RENDERS times
  * more; highlights are splatted. SCENE is raw: two 32-bit numbers, width and height; RGB, three
@@ -69,7 +72,8 @@ int main(int argc, char **argv)
         cpu++;
     if (argc < 8 || number[0] < 1 || number[1] < 1 ||
         !read_scene(&scene, argv[1], number[0], number[1])) {
-        fprintf(stderr, "usage: frame SCENE WIDTH HEIGHT K RAYS PHOTOS RENDERS [CPU]\n");
+        fprintf(stderr,
+                "usage: frame SCENE WIDTH HEIGHT K RAYS PHOTOS RENDERS [CPU [TESTS [SIGMA]]]\n");
         return 2;
     }
     const struct refocus_image photo = refocus_image_packed(
@@ -86,6 +90,14 @@ int main(int argc, char **argv)
     params.cpu = cpu;
     lens.render.rays = number[3];
     lens.highlights.gain = 4; /* The command line renders with this gain. */
+    if (argc > 9 && atoi(argv[9]) > 0) {
+        lens.render.method = REFOCUS_METHOD_SEARCH;
+        lens.search.iterations = atoi(argv[9]);
+    }
+    if (argc > 10 && atoi(argv[10]) > 0) {
+        lens.render.blend = REFOCUS_BLEND_STORED;
+        lens.render.sigma = (float)atoi(argv[10]);
+    }
     status = refocus_renderer_create(&renderer, &params);
     for (int i = 0; i < number[4] + number[5] && status == REFOCUS_OK; i++) {
         if (i < number[4])

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 import pictures
 
@@ -14,10 +15,18 @@ REFOCUS = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else 'refocus'
 ROOT = os.environ.get('REFOCUS_SOURCE_ROOT', os.path.join(os.path.dirname(__file__), '../..'))
 PHOTOS = os.environ.get('REFOCUS_PHOTOS', os.path.join(ROOT, '../shared/photos'))
 W, H = 48, 32
+os.environ['XDG_CONFIG_HOME'] = os.devnull  # nobody's own configuration
 
 
 class Case(unittest.TestCase):
-    """Runs in a folder of its own with photo.ppm, depth.pgm and friends."""
+    """Runs in a folder of its own with photo.ppm, depth.pgm and friends. With REFOCUS_BRIEF every
+    third test runs, chosen by its name: for sanitizers, which take half a second for a command."""
+
+    def run(self, result=None):
+        name = self._testMethodName
+        if 'REFOCUS_BRIEF' in os.environ and zlib.crc32(name.encode()) % 3:
+            return result
+        return super().run(result)
 
     @classmethod
     def setUpClass(cls):

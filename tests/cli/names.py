@@ -5,7 +5,7 @@ import subprocess
 
 
 def read_help(refocus):
-    return subprocess.run([refocus, 'render', '--help'], stdout=subprocess.PIPE, text=True,
+    return subprocess.run([refocus, 'render', '--help-all'], stdout=subprocess.PIPE, text=True,
                           check=True).stdout
 
 

@@ -24,6 +24,14 @@ def pfm(path, width, height, value):
         file.write(b'Pf\n%d %d\n-1.0\n' % (width, height) + b''.join(reversed(rows)))
 
 
+def pfm_colour(path, width, height, value):
+    """value(x, y) is (R, G, B)."""
+    rows = [struct.pack('<%df' % (3 * width), *(v for x in range(width) for v in value(x, y)))
+            for y in range(height)]
+    with open(path, 'wb') as file:
+        file.write(b'PF\n%d %d\n-1.0\n' % (width, height) + b''.join(reversed(rows)))
+
+
 def png(path, width, height, rows, depth=8, colour=2):
     def chunk(name, data):
         return (struct.pack('>I', len(data)) + name + data +
@@ -51,6 +59,56 @@ def insert_xmp(path, attributes):
                    data[2:])
 
 
+def insert_mpf(path, parts):
+    """Further pictures behind a JPEG, by an index (CIPA DC-007)."""
+    data = read_bytes(path)
+    segment = 4 + 4 + 8 + 2 + 12 + 4 + 16 * (len(parts) + 1)
+    place = len(data) + segment - 10  # counted from the TIFF header, at 10
+    entries = struct.pack('>IIIHH', 0x30000, len(data) + segment, 0, 0, 0)
+    for part in parts:
+        entries += struct.pack('>IIIHH', 0, len(part), place, 0, 0)
+        place += len(part)
+    index = (b'MPF\0MM\0*' + struct.pack('>IHHHIII', 8, 1, 0xb002, 7, len(entries), 26, 0) +
+             entries)
+    with open(path, 'wb') as file:
+        file.write(data[:2] + b'\xff\xe2' + struct.pack('>H', len(index) + 2) + index + data[2:] +
+                   b''.join(parts))
+
+
+def insert_dynamic(path, attributes, items):
+    """Dynamic Depth: a packet with the attributes of a DepthMap and a directory of items, pairs of
+    URI and bytes, which are put behind the JPEG."""
+    place = 'http://ns.google.com/photos/dd/1.0/'
+    names = ''.join(' xmlns:%s="%s%s/"' % (name, place, name.lower())
+                    for name in ('Container', 'Item', 'Camera', 'DepthMap'))
+    listed = ''.join('<rdf:li><Container:Item Item:Mime="image/png" Item:Length="%d" '
+                     'Item:DataURI="%s"/></rdf:li>' % (len(data), uri)
+                     for uri, data in [('primary_image', b'')] + items)
+    packet = (b'http://ns.adobe.com/xap/1.0/\0' + (
+        '<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF '
+        'xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#"><rdf:Description%s>'
+        '<Container:Directory><rdf:Seq>%s</rdf:Seq></Container:Directory>'
+        '<Camera:DepthMap %s/></rdf:Description></rdf:RDF></x:xmpmeta>' %
+        (names, listed, attributes)).encode())
+    data = read_bytes(path)
+    with open(path, 'wb') as file:
+        file.write(data[:2] + b'\xff\xe1' + struct.pack('>H', len(packet) + 2) + packet +
+                   data[2:] + b''.join(item for _, item in items))
+
+
+def ultra_hdr(path, photo, gain_map, stops):
+    """Two JPEGs in one: gain_map is from 0 to so many stops."""
+    packet = (b'http://ns.adobe.com/xap/1.0/\0<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF '
+              b'xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#"><rdf:Description '
+              b'xmlns:hdrgm="http://ns.adobe.com/hdr-gain-map/1.0/" hdrgm:Version="1.0" '
+              b'hdrgm:GainMapMax="%d" hdrgm:HDRCapacityMax="%d"/></rdf:RDF></x:xmpmeta>'
+              % (stops, stops))
+    part = read_bytes(gain_map)
+    with open(path, 'wb') as file:
+        file.write(read_bytes(photo) + part[:2] + b'\xff\xe1' +
+                   struct.pack('>H', len(packet) + 2) + packet + part[2:])
+
+
 def read_bytes(path):
     with open(path, 'rb') as file:
         return file.read()
@@ -70,11 +128,11 @@ def read_pfm(path):
     data = read_bytes(path)
     kind, width, height, scale = data.split(None, 4)[:4]
     width, height = int(width), int(height)
-    assert kind == b'Pf'
-    values = struct.unpack(('<' if float(scale) < 0 else '>') + '%df' % (width * height),
-                           data[-4 * width * height:])
+    row = width * {b'Pf': 1, b'PF': 3}[kind]
+    values = struct.unpack(('<' if float(scale) < 0 else '>') + '%df' % (row * height),
+                           data[-4 * row * height:])
     return width, height, tuple(v for y in reversed(range(height))
-                                for v in values[y * width:(y + 1) * width])
+                                for v in values[y * row:(y + 1) * row])
 
 
 def read_png(path):

@@ -15,7 +15,7 @@ METHODS = method_names(REFOCUS)
 
 
 class Usage(Case):
-    SUBCOMMANDS = ('render', 'sheet', 'pull', 'depth', 'info', 'compare', 'bench', 'view')
+    SUBCOMMANDS = ('render', 'sheet', 'pull', 'depth', 'info', 'compare', 'bench', 'view', 'stack')
     PAPERS = ('--cell --seed --spread --airy-radius --depth-ratio --star --star-length '
               '--star-angle --star-strength --sharp-radius --middle-ratio --last-ratio '
               '--attention --attention-angle --picture-angle --attention-depth --field '
@@ -36,64 +36,70 @@ class Usage(Case):
     def test_help_lists_every_option(self):
         options = {
             'render': self.PAPERS + self.CONTROLS +
-                      '-o --output --depth --depth-unit --near --far --invalid --speckle --behind --behind-depth '
-                      '--depth-edges --matte --focus --focus-at --focus-rectangle '
+                      '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match '
+                      '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --focus --focus-at --focus-rectangle '
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
                       '--highlights --mirror --background --no-thin --fill --threads --cpu --repeat --json --view '
-                      '--parallax --region --settings --save-settings -h --help',
-            'depth': '-o --output --depth --depth-unit --near --far --invalid --speckle --full '
-                     '--depth-edges --upsample --estimate --preset --input-size --input-mean --input-scale '
-                     '--far-is-large --match --strokes --stereo-file --side-by-side --view '
-                     '--focus-at --blur --json -h --help',
+                      '--low-memory --parallax --region --jobs --format --resize --jpeg-quality --config --preset --settings --save-settings --strip --editable --no-editable --transfer --white -h --help --help-all',
+            'depth': '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --full '
+                     '--orient-depth --depth-edges --upsample --estimate --network --input-size --input-mean --input-scale '
+                     '--far-is-large --match --strokes --focal-stack --positions --reference --align --photo --stereo-file --side-by-side --view '
+                     '--focus-at --blur --json -h --help --help-all',
+            'stack': '-o --output --photo --keep --camera --steps --range --average --settle --size '
+                     '--dry-run --json -h --help --help-all',
             'sheet': self.PAPERS + self.CONTROLS +
-                     '-o --output --depth --depth-unit --near --far --invalid --speckle --behind --behind-depth '
-                     '--depth-edges --matte --kind --focuses --blurs --f-numbers --apertures --sigmas '
+                     '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match '
+                     '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --kind --focuses --blurs --f-numbers --apertures --sigmas '
                      '--cell-width --region --focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --f-number --focal-length --sensor-width --method --rays --iterations '
                      '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin --fill '
-                     '--threads --cpu --json --settings --save-settings -h --help',
+                     '--threads --cpu --json --config --preset --settings --save-settings -h --help --help-all',
             'pull': self.PAPERS + self.CONTROLS +
-                    '-o --output --depth --depth-unit --near --far --invalid --speckle --behind --behind-depth '
-                    '--depth-edges --matte --from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
+                    '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match '
+                    '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
                     '--wiggle '
                     '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality --aperture --blend '
                     '--sigma --highlights --mirror --background --no-thin --fill --threads --cpu --json '
-                    '--settings --save-settings -h --help',
+                    '--config --preset --settings --save-settings -h --help --help-all',
             'view': self.PAPERS + self.CONTROLS +
-                    '-o --output --depth --depth-unit --near --far --invalid --speckle '
-                    '--depth-edges --matte --strokes --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
+                    '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match '
+                    '--upsample --depth-edges --orient-depth --matte --strokes --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality '
                     '--aperture --blend --sigma --highlights --mirror --background --no-thin --fill --threads '
-                    '--cpu --json --settings --size --fullscreen --seconds -h --help',
-            'info': '--json -h --help',
+                    '--cpu --json --config --preset --settings --size --fullscreen --seconds -h --help --help-all',
+            'info': '--max-side --max-pixels --raw-preview --max-memory --json -h --help --help-all',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
-                       '--depth-unit --near --far --depth-edges --matte --focus --focus-at --focus-rectangle '
+                       '--depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --upsample --depth-edges --orient-depth --matte --gain-map --no-dither --focus --focus-at --focus-rectangle '
                        '--focus-distance --blur --f-number --focal-length --sensor-width --rays --iterations '
                        '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin --fill '
-                       '--threads --cpu --repeat --json -h --help',
-            'bench': self.PAPERS + '--frames --kernels --size --depth --depth-unit --near --far '
+                       '--threads --cpu --repeat --json -h --help --help-all',
+            'bench': self.PAPERS + '--frames --kernels --size --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory '
                      '--focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --method --rays --iterations --quality '
                      '--aperture --blend --sigma --highlights --mirror --background --no-thin --fill --threads --cpu '
-                     '--repeat --json -h --help',
+                     '--repeat --json -h --help --help-all',
         }
         for name, expected in options.items():
-            text = self.succeeds(name, '--help')
-            self.assertEqual(text, self.succeeds(name, 'x', '--help', '--nonsense'))
+            text = self.succeeds(name, '--help-all')
+            file = () if name == 'stack' else ('x',)
+            self.assertEqual(text, self.succeeds(name, *file, '--help-all', '--nonsense'))
             listed = set(re.findall(r'(?m)^  (-\w|--[\w-]+)(?=[ ,\n])', text))
             listed |= set(re.findall(r'(?m)^  -\w, (--[\w-]+)', text))
             self.assertEqual(listed, set(expected.split()))
             self.assertLessEqual(max(map(len, text.splitlines())), 80)
-            for word in set(expected.split()) - {'-h', '--help'}:  # and the parser knows it
+            for word in set(expected.split()) - {'-h', '--help', '--help-all'}:  # and the parser knows it
                 error = self.run_it(name, word + '=' if word.startswith('--') else word)
                 self.assertNotIn('unknown', error.stderr)
             for method in METHODS if '--method' in listed else ():
                 self.assertRegex(text, r'(?m)^ {28}%s +\w' % method)
 
     def test_version(self):
-        self.assertRegex(self.succeeds('--version'), r'^refocus \d+\.\d+\.\d+\nfiles: \S')
+        text = self.succeeds('--version')
+        self.assertRegex(text, r'^refocus \d+\.\d+\.\d+\nfiles: \S')
+        for word in '-V', '-v', 'version':
+            self.assertEqual(self.succeeds(word), text)
 
     def test_wrong_beginnings(self):
         self.fails(2, "subcommand: none is given; 'refocus --help' lists them")
@@ -108,17 +114,17 @@ class Usage(Case):
         self.fails(2, '--bulr: unknown option; did you mean --blur?', *self.render('--bulr', '3'))
         self.fails(2, '--iter: unknown option; did you mean --iterations?',
                    *self.render('--iter', '3'))
-        self.fails(2, "-x: unknown option; 'refocus render --help' lists them",
+        self.fails(2, "-x: unknown option; 'refocus render --help-all' lists them",
                    *self.render('-x'))
         self.fails(2, '--focus: has no value; give D', *self.render('--focus'))
         self.fails(2, '--focus: has no value; give D', *self.render('--focus', '--json'))
         self.fails(2, "--json: takes no value; leave '=1' out", *self.render('--json=1'))
         self.fails(2, '--depth: is empty; give FILE', *self.render('--depth='))
-        self.fails(2, 'two.ppm: one file too many; give refocus render PHOTO -o OUT [options]',
-                   'render', 'photo.ppm', 'two.ppm')
-        self.fails(2, 'render: no file; give refocus render PHOTO -o OUT [options]', 'render')
-        self.fails(2, 'info: no file; give refocus info FILE [--json]', 'info')
-        self.fails(2, 'info: a file name is empty; give refocus info FILE [--json]', 'info', '')
+        self.fails(2, 'two.ppm: one file too many; give refocus sheet PHOTO -o OUT [options]',
+                   'sheet', 'photo.ppm', 'two.ppm')
+        self.fails(2, 'render: no file; give refocus render PHOTO... -o OUT [options]', 'render')
+        self.fails(2, 'info: no file; give refocus info FILE|- [--json]', 'info')
+        self.fails(2, 'info: a file name is empty; give refocus info FILE|- [--json]', 'info', '')
         self.fails(2, '-o: the output has no name; give -o OUT', 'render', 'photo.ppm')
         self.fails(2, re.compile("^refocus: --method: 'swep' is not one of " + ', '.join(METHODS) +
                                  ".*; did you mean 'sweep'\\?"),
@@ -146,8 +152,8 @@ class Limits(Case):
         nonsense = ['x', '1x', '0x1', 'nan', ' 1', '1 ', '1,5', '-', '1e', 'inf']
         unit = ['-0.001', '1.001'] + nonsense
         self.check('--focus', ['0', '1', '0.5', '1e-3'], unit, 'a number from 0 to 1')
-        self.check('--blur', ['0', '0.3', '127'], ['-1', '127.1', '1e99'] + nonsense,
-                   'a number from 0 to 127')
+        self.check('--blur', ['0', '0.3', '127', '128', '944'], ['-1', '944.1', '1e99'] + nonsense,
+                   'a number from 0 to 944')
         self.check('--near', ['1e-9', '1e9'], ['0', '-1', '1.1e9'] + nonsense,
                    'a number above 0, at most 1e+09')
         self.check('--far', ['1e-9', '7', 'inf'], ['0', '-1', '-inf', 'nan', 'x'],
@@ -168,6 +174,21 @@ class Limits(Case):
                    'a whole number from 0 to 64')
         self.check('--repeat', ['1', '3'], ['0', '-1', '10001'] + nonsense,
                    'a whole number from 1 to 10000')
+
+    def test_limits_of_files(self):
+        for order in (('info', 'photo.ppm'), self.render()):
+            self.succeeds(*order, '--max-side', '48', '--max-pixels', '1536', '--max-memory', '1')
+            for option, value, what in (('--max-side', 47, 'a side; scale it down'),
+                                        ('--max-pixels', 1535, 'pixels')):
+                self.fails(1, 'photo.ppm: its 48 x 32 pixels are more than the limit of %d %s' %
+                           (value, what), *order, option, str(value))
+        self.check('--max-pixels', ['1e5', '4294836225'], ['0', '-1', '1.5', '4294836226'],
+                   'a whole number from 1 to 4.29483622e+09')
+        with open('large.ppm', 'wb') as file:  # 1.2 MB, and as much again for its pixels
+            file.write(b'P6 640 640 255 ' + bytes(3 * 640 * 640))
+        self.fails(1, 'large.ppm: decoding it needs 2457615 bytes, more than the limit of 2097152',
+                   'info', 'large.ppm', '--max-memory', '2')
+        self.succeeds('info', 'large.ppm', '--max-memory', '3')
 
     def test_positions(self):
         self.check('--focus-at', ['0,0', '47,31', '3x4'],
@@ -209,12 +230,16 @@ class Limits(Case):
         self.assertEqual(self.reports(*self.render('--highlights', 'auto'))['highlights'], 'auto')
         self.assertEqual(self.reports(*self.render('--highlights', '4'))['highlights'], 4)
         self.assertEqual(self.reports(*self.render('--highlights', 'off'))['highlights'], 1)
+        for method, given, said in (('search', 'auto', 'auto'), ('search', '3', 3), ('blur', None, 1)):
+            more = ('--highlights', given) if given else ()
+            self.assertEqual(self.reports(*self.render('--method', method, *more))['highlights'],
+                             said)
 
     def test_what_would_change_nothing(self):
         for method, other, *option in (
                 ('search', 'sweep', '--iterations', '1'), ('search', 'blur', '--mirror'),
-                ('search', 'sweep', '--background'), ('sweep', 'search', '--highlights', '2'),
-                ('sweep', 'scatter', '--highlight-stops', '2'),
+                ('search', 'sweep', '--background'), ('sweep, search', 'blur', '--highlights', '2'),
+                ('sweep, search', 'scatter', '--highlight-stops', '2'),
                 (', '.join(methods_with_rays(REFOCUS)), 'jittered', '--rays', '8'),
                 ('jittered', 'sweep', '--cell', '3'),
                 ('scatter', 'sweep', '--spread', 'lommel'),
@@ -275,7 +300,7 @@ class Limits(Case):
                    '--tilt-line', '0,0,9,9')
         self.fails(2, '--ease: is for the way from --from to --to; leave it or --wiggle out',
                    *pull, '--wiggle', '3', '--ease', 'in')
-        self.fails(2, "--repeat: unknown option; 'refocus pull --help' lists them", *pull, '--repeat', '3')
+        self.fails(2, '--repeat: unknown option; did you mean --preset?', *pull, '--repeat', '3')
         self.fails(2, '--blur: --blurs is in its place; leave one of them out', *sheet, '--blur',
                    '3', '--blurs', '3')
         self.fails(2, '--aperture: --apertures is in its place; leave it out', *sheet,
@@ -378,9 +403,9 @@ class Limits(Case):
 class Failures(Case):
     def test_inputs(self):
         for command, out in (('render', 'out.ppm'), ('depth', 'out.png'), ('depth', 'out.pgm')):
-            self.fails(1, 'photo.ppm: it carries no depth; give a depth map to --depth, or make '
-                       "one by 'refocus depth PHOTO -o MAP.png' with --estimate MODEL.onnx or "
-                       '--strokes FILE.json', command, 'photo.ppm', '-o', out)
+            self.fails(1, 'photo.ppm: it carries no depth; give a depth map to --depth or '
+                       "MODEL.onnx to --estimate, or make a map by 'refocus depth PHOTO -o "
+                       "MAP.png' of a stereo pair or --strokes FILE.json", command, 'photo.ppm', '-o', out)
         self.fails(1, re.compile('^refocus: missing.jpg: .*No such file'), 'render',
                    'missing.jpg', '-o', 'out.ppm')
         self.fails(1, re.compile('^refocus: missing.png: .*No such file'), 'render',
@@ -417,14 +442,14 @@ class Failures(Case):
         os.remove('out.ppm')
 
     def test_outputs(self):
-        self.fails(2, re.compile('^refocus: out.tif: no such format is written; end the name in '
+        self.fails(2, re.compile('^refocus: out.bmp: no such format is written; end the name in '
                                  r'\.jpg, \.jpeg, \.png(, \.\w+)* or \.\w+$'),
-                   'render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.tif')
+                   'render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.bmp')
         self.fails(1, re.compile('^refocus: none/out.ppm: the folder none cannot be written to '
                                  r'\(No such file or directory\); give another place'), 'render',
                    'photo.ppm', '--depth', 'depth.pgm', '-o', 'none/out.ppm')
         os.mkdir('dir.ppm')
-        self.fails(1, 'dir.ppm: it is a folder; give the name of a file', 'render', 'photo.ppm',
+        self.fails(1, 'dir.ppm: it is a folder; give the name of a file', 'sheet', 'photo.ppm',
                    '--depth', 'depth.pgm', '-o', 'dir.ppm')
         os.rmdir('dir.ppm')
         if os.geteuid() != 0:

@@ -42,8 +42,8 @@ class Limits(Controls):
                        'a number from 0 to 1')
         self.check('--tilt-angle', ['-89', '0', '89'], ['-90', '90'] + nonsense,
                    'a number from -89 to 89')
-        self.check('--blur-limit', ['0', '127'], ['-1', '127.1'] + nonsense,
-                   'a number from 0 to 127')
+        self.check('--blur-limit', ['0', '127', '944'], ['-1', '944.1'] + nonsense,
+                   'a number from 0 to 944')
 
     def test_places(self):
         self.check('--focus-plane', ['0,0,47,0,0,31'],

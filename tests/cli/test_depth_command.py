@@ -30,8 +30,8 @@ class DepthAndInfo(Case):
         self.assertEqual(text, 'size     48x32\nnear     0.5 m\nfar      2 m\n'
                                'filled   1 samples without a value, 0.1 %\n'
                                'clamped  0 samples beyond the range, 0.0 %\n')
-        self.fails(2, 'd.tif: no such format is written; end the name in .png, .pgm, .pfm, .jpg '
-                   'or .jpeg', 'depth', 'depth.pgm', '-o', 'd.tif')
+        self.fails(2, 'd.bmp: no such format is written; end the name in .png, .tif, .tiff, .pgm, .pfm, .jpg '
+                   'or .jpeg', 'depth', 'depth.pgm', '-o', 'd.bmp')
         self.fails(1, 'd.jpg: depth is saved into JPEG photos; the photo is none',
                    'depth', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'd.jpg')
         self.fails(2, "--invalid: 'zero,7' is not known; give zero, max or 2047, or several with "
@@ -108,7 +108,7 @@ class DepthAndInfo(Case):
         self.fails(1, 's.json: strokes[0].disparity must be a number from 0 to 1', *command,
                    's.json')
         self.fails(1, 'no.json: cannot open it: No such file or directory', *command, 'no.json')
-        self.fails(1, '.: cannot read it: Is a directory', *command, '.')
+        self.fails(1, '.: it is a folder; give the name of a file', *command, '.')
         self.fails(1, re.compile(r'^refocus: photo.ppm: line 1 is no JSON: '), *command,
                    'photo.ppm')
         for content, why in ((b'', 'it is empty'), (b' ' * (64 << 20) + b' ',

@@ -3,11 +3,13 @@
 clear line, nothing written. Usage: test_depth_inputs.py REFOCUS [unittest arguments]"""
 import os
 import re
+import shutil
 import struct
+import subprocess
 import unittest
 
 import pictures
-from case import Case, H, PHOTOS, W
+from case import Case, H, PHOTOS, REFOCUS, W
 
 # file: what is said of it
 PICTURES = {
@@ -15,10 +17,10 @@ PICTURES = {
     'text': 'its content is of no known format',
     'cut.ppm': 'damaged: it ends in the middle of the picture',
     'none.pgm': 'damaged: it claims a picture without pixels',
-    'huge.ppm': r'its 65535 x 65535 pixels are more than the limit of \d+ pixels',
-    'huge.pgm': r'its 65535 x 65535 pixels are more than the limit of \d+ pixels',
+    'huge.ppm': r'its 65535 x 65535 pixels are more than the limit of 32768 a side',
+    'huge.pgm': r'its 65535 x 65535 pixels are more than the limit of 32768 a side',
     'missing': 'cannot open it: No such file',
-    '.': 'cannot read it: Is a directory',
+    '.': 'it is a folder; give the name of a file',
 }
 STROKES = {
     'empty': 'it is empty',
@@ -28,7 +30,7 @@ STROKES = {
     'huge.json': 'width and height must be those of the photo, 48x32',
     'huge.ppm': 'line 1 is no JSON',
     'missing': 'cannot open it: No such file',
-    '.': 'cannot read it: Is a directory',
+    '.': 'it is a folder; give the name of a file',
 }
 
 
@@ -61,7 +63,7 @@ class DepthInputs(Case):
         write('old.pgm', b'old')
 
     def setUp(self):
-        self.opencv = 'bilinear' in self.run_it('depth', '--help').stdout
+        self.opencv = 'OpenCV' in self.run_it('--version').stdout
 
     def refused(self, name, why, *arguments):
         """Onto a file that is there, which stays, and onto a new one."""
@@ -72,6 +74,26 @@ class DepthInputs(Case):
     def need_opencv(self):
         if not self.opencv:
             self.skipTest('this build has no OpenCV')
+
+    def test_opencv_is_a_module(self):
+        """The command starts without OpenCV, and tells what is missing where it is asked for."""
+        self.need_opencv()
+        found = subprocess.run(['ldd', REFOCUS], stdout=subprocess.PIPE, text=True)
+        if found.returncode:
+            self.skipTest('no ldd for this command')
+        self.assertNotIn('opencv', found.stdout)
+        own = re.findall(r'=> (\S*/)librefocus', found.stdout)
+        os.makedirs('alone/bin')
+        shutil.copy(REFOCUS, 'alone/bin/refocus')
+        for call in (('depth', 'photo.ppm', '--estimate', 'no.onnx', '-o', 'new.pgm'),
+                     ('render', 'photo.ppm', '--depth', 'small.pgm', '--upsample', 'guided', '-o',
+                      'new.ppm')):
+            pictures.pgm('small.pgm', 12, 8, lambda x, y: 20 * x)
+            result = subprocess.run(['alone/bin/refocus', *call], stderr=subprocess.PIPE, text=True,
+                                    env={**os.environ, 'LD_LIBRARY_PATH': ':'.join(own)})
+            self.assertRegex(result.stderr, r'^refocus: (no.onnx|--upsample): librefocus-opencv '
+                             r'cannot be loaded: [^\n]*\n$')
+            self.assertEqual(result.returncode, 1)
 
     def test_depth(self):
         for name, why in PICTURES.items():
@@ -96,8 +118,11 @@ class DepthInputs(Case):
         pictures.pgm('4to3.pgm', 40, 30, lambda x, y: x)
         pictures.pgm('few.pgm', 1, 15, lambda x, y: 16 * y)
         for name, size in (('side.pgm', '32x48'), ('long.pgm', '80x16')):
-            why = 'its %s samples have another shape than the photo of 48x32 pixels; give the ' \
-                  'map of this photo, as upright as the photo is' % size
+            why = 'its %s samples lie on their side beside the photo of 48x32 pixels; turn them ' \
+                  'by --orient-depth 90 or 270, or give the map of this photo' % size
+            if name == 'long.pgm':
+                why = 'its %s samples have another shape than the photo of 48x32 pixels; give ' \
+                      'the map of this photo, as upright as the photo is' % size
             self.refused(name, why, 'photo.ppm', '--depth', name)
             self.refused(name, why, 'photo.ppm', '--depth', name, '--full')
             for command in 'render', 'sheet':
@@ -109,6 +134,51 @@ class DepthInputs(Case):
         pictures.ppm('wide.ppm', 64, 32, lambda x, y: (x, y, 0))
         pictures.pgm('square.pgm', 32, 32, lambda x, y: x)
         self.succeeds('depth', 'wide.ppm', '--depth', 'square.pgm', '--full', '-o', 'made.pgm')
+
+    def test_orient_depth(self):
+        """The same map in four positions gives the same disparities; EXIF turns it by itself."""
+        pictures.pgm('upright.pgm', W, H, lambda x, y: 4 * x + y)
+        pictures.pgm('90.pgm', H, W, lambda x, y: 4 * (W - 1 - y) + x)
+        pictures.pgm('270.pgm', H, W, lambda x, y: 4 * y + H - 1 - x)
+        pictures.pgm('180.pgm', W, H, lambda x, y: 4 * (W - 1 - x) + H - 1 - y)
+        self.succeeds('depth', 'photo.ppm', '--depth', 'upright.pgm', '-o', 'made.pgm')
+        wanted = pictures.read_pnm('made.pgm')
+        for degrees in '90', '180', '270':
+            self.succeeds('depth', 'photo.ppm', '--depth', degrees + '.pgm', '-o', 'made.pgm',
+                          '--orient-depth', degrees)
+            self.assertEqual(pictures.read_pnm('made.pgm'), wanted, degrees)
+            self.succeeds('depth', degrees + '.pgm', '-o', 'made.pgm', '--orient-depth', degrees)
+            self.assertEqual(pictures.read_pnm('made.pgm'), wanted, degrees)
+        self.succeeds('depth', 'photo.ppm', '--depth', 'upright.pgm', '-o', 'made.pgm',
+                      '--orient-depth', '0')
+        self.assertEqual(pictures.read_pnm('made.pgm'), wanted)
+        # a photo that lies on its side by EXIF, and a map that lies as its pixels are stored
+        pictures.ppm('stored.ppm', H, W, lambda x, y: (9 * x & 255, 5 * y & 255, 99))
+        self.succeeds('render', 'stored.ppm', '--depth', '90.pgm', '--blur', '0', '-o', 'side.jpg')
+        for orientation, name in ((6, '90.pgm'), (8, '270.pgm')):
+            exif = (b'Exif\0\0MM\0*\0\0\0\x08\0\1\x01\x12\0\3\0\0\0\1\0' +
+                    bytes([orientation]) + bytes(6))
+            data = pictures.read_bytes('side.jpg')
+            write('turned.jpg', data[:2] + b'\xff\xe1' + struct.pack('>H', len(exif) + 2) + exif +
+                  data[2:])
+            line = ('%s: its 32x48 samples lie on their side; they are turned by EXIF orientation '
+                    '%d of the photo; --orient-depth says otherwise' % (name, orientation))
+            result = self.run_it('depth', 'turned.jpg', '--depth', name, '-o', 'made.pgm')
+            self.assertEqual((result.returncode, result.stderr), (0, 'refocus: %s\n' % line))
+            self.assertEqual(pictures.read_pnm('made.pgm'), wanted)
+            # a map in the file that was upright already: turned with the photo, and back
+            with_map = pictures.read_bytes('turned.jpg')
+            pictures.png('upright.png', W, H, [bytes(255 - 4 * x - y for x in range(W))
+                                               for y in range(H)], colour=0)
+            write('own.jpg', with_map)
+            pictures.insert_dynamic('own.jpg', 'DepthMap:Format="RangeInverse" '
+                                    'DepthMap:DepthURI="d"',
+                                    [('d', pictures.read_bytes('upright.png'))])
+            result = self.run_it('depth', 'own.jpg', '--full', '--depth-edges', 'as-given', '-o',
+                                 'made.pgm')
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn('turned back by EXIF orientation %d' % orientation, result.stderr)
+            self.assertEqual(pictures.read_pnm('made.pgm'), wanted)
 
     def test_cut_heic(self):
         whole = os.path.join(PHOTOS, 'stereo', 'spatial-photo.heic')
@@ -127,6 +197,11 @@ class DepthInputs(Case):
             how = ('--full', '--upsample', 'bilinear')
             self.refused(name, why, 'photo.ppm', '--depth', name, *how)
             self.refused(name, why, name, '--depth', 'depth.pgm', *how)
+            for command in 'render', 'sheet', 'pull', 'compare':
+                out = () if command == 'compare' else ('-o', 'x-%d.ppm')
+                more = ('--reference', 'photo.ppm') if command == 'compare' else ()
+                self.fails(1, re.compile('^refocus: %s: (%s)' % (re.escape(name), why)), command,
+                           'photo.ppm', '--depth', name, '--upsample', 'bilinear', *more, *out)
 
     def test_strokes(self):
         for name, why in STROKES.items():
@@ -163,6 +238,13 @@ class DepthInputs(Case):
     def test_without_opencv(self):
         if self.opencv:
             self.skipTest('this build has OpenCV')
+        for command, *more in (('render',), ('sheet',), ('pull',), ('view',),
+                               ('compare', '--reference', 'photo.ppm'), ('depth', '--full')):
+            self.fails(2, "--upsample: this build has no OpenCV, which 'guided' is of; give core",
+                       command, 'photo.ppm', '--depth', 'depth.pgm', *more, '--upsample', 'guided',
+                       *(() if more[:1] == ['--reference'] else ('-o', 'x.png')))
+        self.fails(2, "--upsample: this build has no OpenCV, which 'guided' is of; give core",
+                   'live', '--camera', 'replay:', '--depth', 'depth.pgm', '--upsample', 'guided')
         for name in PICTURES:
             none = 'this build has no OpenCV'
             self.refused(name, none, 'photo.ppm', name)

@@ -25,8 +25,8 @@ def content(name):
         return file.read()
 
 
-def live(*args, stdin=None, timeout=120, env=None):
-    return subprocess.run([REFOCUS, 'live', *SMALL, *args], input=stdin, capture_output=True,
+def live(*args, stdin=None, timeout=120, env=None, common=SMALL):
+    return subprocess.run([REFOCUS, 'live', *common, *args], input=stdin, capture_output=True,
                           timeout=timeout * SLOW, env={**os.environ, **(env or {})},
                           stdin=None if stdin is not None else subprocess.DEVNULL)
 
@@ -115,6 +115,29 @@ class Live(unittest.TestCase):
         self.fails(2, 'NV99', '--camera', 'replay::size 64x48', '--depth', DEPTH, '--out', 'raw:x,NV99')
         self.assertFalse(os.path.exists('x'))
 
+    @unittest.skipUnless('RF_JPEG' in os.environ, 'this build has no JPEG')
+    def test_mjpeg_keeps_its_y_u_and_v(self):
+        with open('photo.ppm', 'wb') as photo:  # slopes: nothing that JPEG would change much
+            photo.write(b'P6\n64 48\n255\n' + bytes(40 + 2 * x + y for y in range(48)
+                                                    for x in range(64) for _ in range(3)))
+        with open('depth.pgm', 'wb') as depth:
+            depth.write(b'P5\n1 1\n255\n\x80')
+        frames = {}
+        for quality, form in ('80', 'YUV420'), ('95', 'RGB24'):  # of 4:2:0, and of 4:4:4
+            subprocess.run([REFOCUS, 'render', 'photo.ppm', '--depth', 'depth.pgm', '--blur', '0',
+                            '--strip', '--jpeg-quality', quality, '-o', 'photo.jpg'], check=True)
+            for out in 'RGB24', 'own':
+                r = self.report('--camera', 'replay::jpeg photo.jpg;frames 3', '--depth', DEPTH,
+                                '--fast', '--frames-policy', 'every', '--blur', '0', '--out',
+                                'raw:out.raw,' + out)
+                self.assertEqual(r['rendered_in'], 'RGB24' if out == 'RGB24' else form)
+                frames[out] = content('out.raw')
+            if form == 'YUV420':  # codes of the full range, in Y as in the greys of the picture
+                self.assertEqual(len(frames['own']), 3 * 64 * 48 * 3 // 2)
+                self.assertEqual(frames['own'][:64 * 48], frames['RGB24'][1:64 * 48 * 3:3])
+            else:
+                self.assertEqual(frames['own'], frames['RGB24'])
+
     def test_edges_of_the_depth(self):
         # A wall, before it on the right another one, whose edge the depth has as a ramp.
         with open('photo.raw', 'wb') as photo:
@@ -172,6 +195,56 @@ class Live(unittest.TestCase):
                         '0.5', *SMALL, '-o', 'render.ppm'], check=True)
         self.assertEqual(content('live-0.ppm'), content('render.ppm'))
         self.assertNotEqual(content('live-0.ppm'), content('sharp-0.ppm'))
+
+    def test_the_looks_of_render(self):
+        photo = bytes((x * 37 + y * 91 + x * y * 13) % 199 + (56 if x % 9 == 4 and y % 9 == 4 else 0)
+                      for y in range(48) for x in range(64) for _ in range(3))
+        with open('photo.ppm', 'wb') as file:
+            file.write(b'P6\n64 48\n255\n' + photo)
+        with open('depth.pgm', 'wb') as file:
+            file.write(b'P5\n64 48\n255\n' + bytes(range(0, 256, 4)) * 48)
+        common = '--depth', 'depth.pgm', '--near', '1', '--far', '10'
+        looks = (['--bokeh', 'cine'], ['--bokeh', 'vintage', '--cat-eye', '0.5'],
+                 ['--aperture', 'polygon:5', '--curvature', '0.5', '--squeeze', '0.7'],
+                 ['--tilt-angle', '30'], ['--tilt-angle', '-30', '--tilt-line', '9,9,20,40'],
+                 ['--focus-width', '0.2', '--also-focus', '0.9:0.1', '--blur-limit', '2'],
+                 ['--sharp-mask', 'depth.pgm'], ['--focus-map', 'depth.pgm'],
+                 ['--field', 'cylinder', '--field-at', '20,20'], ['--star', '4', '--grain', '2'],
+                 ['--method', 'scatter', '--spread', 'lommel'],
+                 ['--method', 'foveated', '--attention', '9,9'])
+        focused = [['--focus', '0.4', '--blur', '5', *look] for look in looks]
+        focused += [['--focus-distance', '2', '--blur', '5'],
+                    ['--focus-distance', '2', '--f-number', '2', '--focal-length', '90'],
+                    ['--focus-at', '9,9', '--tilt-angle', '30', '--blur', '5']]
+        pictures = set()
+        for look in focused:
+            done = subprocess.run([REFOCUS, 'render', 'photo.ppm', *common, '--quality', 'preview',
+                                   *look, '-o', 'render.ppm'], capture_output=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.report('--camera', 'file:photo.ppm', *common, '--quality', 'preview', '--frames',
+                        '1', '--out', 'live-%d.ppm', *look, common=[])
+            self.assertEqual(content('live-0.ppm'), content('render.ppm'), look)
+            self.assertFalse(content('live-0.ppm') in pictures, look)
+            pictures.add(content('live-0.ppm'))
+
+        def refused(code, words, *look, depth=common):
+            self.fails(code, words, '--camera', 'file:photo.ppm', '--frames', '1', '--out',
+                       'none-%d.ppm', *depth, *look, common=[])
+            self.assertFalse(os.path.exists('none-0.ppm'))
+        refused(2, 'outside of the picture', '--field', 'plane', '--field-at', '64,2')
+        refused(2, 'outside of the picture', '--tilt-angle', '9', '--tilt-line', '1,1,2,48')
+        refused(2, '--focus-plane', '--focus-plane', '1,1,9,9,20,1')
+        refused(2, 'plain lens only', '--method', 'scatter', '--tilt-angle', '9')
+        refused(2, '--focus-distance', '--focus', '1', '--focus-distance', '2')
+        for bare in ['depth.pgm'], ['raw:depth.pgm,GREY,64x48,30']:
+            refused(1, 'need a depth in metres', '--focus-distance', '2', depth=['--depth', *bare])
+        # The lens stays as it is while the range moves, and a command takes its place.
+        args = ['--camera', 'replay::size 64x48;frames 9', '--depth', DEPTH, '--fast',
+                '--frames-policy', 'every', '--f-number', '2', '--focal-length', '24']
+        r = self.report(*args, common=[])
+        span = 1 / r['near_m'] - 1 / r['far_m']
+        self.assertAlmostEqual(r['blur'], 24 / 36 * 64 * 0.006 * span, delta=1e-4)
+        self.assertEqual(self.report(*args, stdin=b'blur 3\n', common=[])['blur'], 3)
 
     def test_the_newest_frame_wins(self):
         # Far more than can be rendered: what is left is dropped by the camera, or here.
@@ -290,7 +363,7 @@ class Live(unittest.TestCase):
         self.assertGreater(r['frames_out'], 0)
         self.check_sum(r)
 
-    def test_a_time_that_is_far_off_costs_one_frame(self):
+    def test_a_time_that_is_far_off_costs_no_frame(self):
         fast = ['--fast', '--frames-policy', 'every']
         for ms in 100000, -100000:
             fault = ';at 15 timestamp %d' % ms
@@ -299,17 +372,21 @@ class Live(unittest.TestCase):
                                 '--depth', DEPTH.replace('30', str(fps)), *more)
                 self.check_sum(r)
                 if more:  # the newest of a camera: a slow machine may leave out some
-                    self.assertEqual((r['frames_out'], r['paired']), (19, 19), more)
-                self.assertEqual(r['colour']['damaged'], 1)
-            # One of the depth: a single frame is without its own.
-            r = self.report('--camera', 'replay::size 64x48;frames 60', '--depth', DEPTH + fault,
-                            *fast)
-            self.assertEqual((r['frames_out'], r['paired'], r['depth']['damaged']), (60, 59, 1))
+                    self.assertEqual((r['frames_out'], r['paired']), (20, 20), more)
+                self.assertEqual((r['colour']['retimed'], r['colour']['damaged']), (1, 0))
+            # One of the depth, after two that did not come: its frame still has it.
+            r = self.report('--camera', 'replay::size 64x48;frames 60', '--depth',
+                            DEPTH + ';at 13 drop 2' + fault, *fast)
+            self.assertEqual((r['frames_out'], r['paired'], r['depth']['retimed']), (60, 58, 1))
+        # The first of a camera that keeps our time: there is no frame before it.
+        r = self.report('--camera', 'replay::size 64x48;fps 10;frames 5;at 0 timestamp 100000',
+                        '--depth', DEPTH.replace('30', '10'), '--frames-policy', 'every')
+        self.assertEqual((r['frames_out'], r['paired'], r['colour']['retimed']), (5, 5, 1))
         # All from there on: the camera's clock was set, and its frames go on.
         r = self.report('--camera', 'replay::size 64x48;frames 60;' +
                         ';'.join('at %d timestamp 100000' % n for n in range(15, 60)), '--depth',
                         DEPTH, *fast)
-        self.assertEqual((r['frames_out'], r['colour']['damaged']), (59, 1))
+        self.assertEqual((r['frames_out'], r['paired'], r['colour']['retimed']), (60, 60, 1))
 
     def test_depth_may_be_late_vanish_and_end(self):
         depth = ('replay::format Y16;size 32x24;fps 30;frames 40;at 10 vanish 400;'
@@ -574,6 +651,67 @@ class Live(unittest.TestCase):
         out, error = run.communicate(timeout=60 * SLOW)
         self.assertEqual(run.returncode, 0, error)
         self.assertGreater(json.loads(out)['frames_out'], 0)
+
+    def ends_by_sigterm(self, *args, begun=None):
+        """Report of a run that a signal ends while it does what takes for ever."""
+        run = subprocess.Popen([REFOCUS, 'live', '--json', *args, '--no-commands'],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        end = begun() if begun else None
+        time.sleep(1 * SLOW)
+        self.assertIsNone(run.poll())
+        run.send_signal(signal.SIGTERM)
+        try:
+            out, error = run.communicate(timeout=5 * SLOW)
+        finally:
+            run.kill()
+            if end:
+                end.close()
+        self.assertEqual((run.returncode, error), (0, b''))
+        return json.loads(out)
+
+    def test_sigterm_ends_a_frame_that_takes_minutes(self):
+        for more in [], ['--depth-edges', 'auto']:
+            r = self.ends_by_sigterm('--camera', 'replay::size 2000x1500', '--depth', DEPTH,
+                                     '--method', 'raytrace', '--blur', '60', '--rays', 'full', *more)
+            self.assertGreater(r['frames_in'], 0)
+            self.assertEqual(r['frames_out'], 0)
+
+    def test_sigterm_ends_the_wait_for_a_source(self):
+        still = ';at 0 stall 1e8'
+        os.mkfifo('fifo')
+        for camera, depth in (('y4m:fifo', DEPTH), ('raw:fifo,NV12,64x48', DEPTH),
+                              ('replay::size 64x48', 'raw:fifo,Z16,32x24'),
+                              ('replay::size 64x48' + still, DEPTH),
+                              ('replay::size 64x48', DEPTH + still),
+                              ('replay::size 64x48;at 0 late 1e8', DEPTH)):
+            r = self.ends_by_sigterm(*SMALL, '--camera', camera, '--depth', depth,
+                                     '--frames-policy', 'every')
+            self.assertLessEqual(r['frames_out'], 1)  # a stall begins behind the first
+
+        def half_a_frame():
+            fifo = open('fifo', 'wb', buffering=0)
+            fifo.write(b'YUV4MPEG2 W64 H48 F30:1\n' + (b'FRAME\n' + bytes(64 * 72)) * 2 + b'FRAME\n1')
+            return fifo
+        r = self.ends_by_sigterm(*SMALL, '--camera', 'y4m:fifo', '--depth', DEPTH,
+                                 '--frames-policy', 'every', begun=half_a_frame)
+        self.assertEqual((r['format'], r['frames_in'], r['frames_out']), ('YUV420', 2, 2))
+
+    def test_sigterm_ends_the_wait_for_who_reads(self):
+        os.mkfifo('fifo')
+        for out in 'y4m:/dev/stdout', 'y4m:fifo':  # one is opened and never read, one never opened
+            run = subprocess.Popen([REFOCUS, 'live', *SMALL, '--camera', 'replay::size 640x480',
+                                    '--depth', DEPTH, '--no-commands', '--socket', 'socket',
+                                    '--out', out], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            time.sleep(1 * SLOW)
+            self.assertTrue(os.path.exists('socket'))
+            run.send_signal(signal.SIGTERM)
+            try:
+                run.wait(timeout=5 * SLOW)
+            finally:
+                run.kill()
+                run.communicate()
+            self.assertEqual(run.returncode, -signal.SIGTERM)
+            self.assertFalse(os.path.exists('socket'))
 
     def test_wrong_command_lines(self):
         camera = ['--camera', 'replay::size 64x48']

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """usage: test_live_all.py REFOCUS  -- refocus live: each input format x each sink x each option.
 
-The formats, the sinks and the options are those that `refocus live --help` names; one that has no
+The formats, the sinks and the options are those that `refocus live --help-all` names; one that has no
 row in the tables here fails. Options that go together are tried in one run, and one by one when
 that fails. A run either works: exit 0, each frame, and what the sink holds has the right size and
 format. Or it is refused as the tables say: with that exit code, and one line with those words."""
@@ -43,7 +43,8 @@ SINKS = {'window': ['window'], 'v4l2:/dev/video9': ['v4l2:/dev/none'], 'y4m:FILE
          'frames-%04d.png': ['out-%d.png', 'out-%d.jpg', 'out-%d.ppm'], 'null': ['null']}
 REFUSED_SINKS = {'v4l2:/dev/none': (1, 'it is not there')}
 
-BASE = ['--depth', 'raw:depth.raw,Z16,8x6,30', '--blur', '3', '--json']
+HAS_OPENCV = b'OpenCV' in subprocess.run([REFOCUS, '--version'], capture_output=True).stdout
+BASE = ['--depth', 'raw:depth.raw,Z16,8x6,30', '--json']
 EVERY = ['--fast', '--frames-policy', 'every']
 FEW = ['--rays', '4', *EVERY]
 # Options that are tried together: each option of the help is in one of these.
@@ -52,21 +53,45 @@ GROUPS = [
     ['--rays', '4', '--frames', '3'],  # the newest wins; from files to files each frame
     [*FEW, '--steady', '0.9', '--near', '0.5', '--far', 'inf', '--depth-unit', 'mm', '--focus',
      '0.7', '--blur-most', '9', '--threads', '1', '--cpu', 'c', '--no-thin', '--no-commands',
-     '--patience', '1', '--highlights', 'off', '--depth-edges', 'auto', '--fill', 'smooth'],
+     '--patience', '1', '--highlights', 'off', '--depth-edges', 'auto', '--fill', 'smooth',
+     '--tilt-angle', '20', '--tilt-line', '0,5,9,5', '--tilt-compress', '0.5', '--far-clamp', '0.1',
+     '--near-clamp', '0.9', '--blur-limit', '4', '--f-number', '2', '--focal-length', '50',
+     '--sensor-width', '30', '--open-f-number', '1.4', '--aperture', 'polygon:6', '--curvature',
+     '0.5', '--squeeze', '0.8', '--ring', '0.3', '--field', 'plane', '--field-at', '4,4',
+     '--field-disparity', '0.5', '--field-radius', '0.1', '--field-falloff', '0.2', '--field-angle',
+     '30'],
     [*EVERY, '--focus-at', '3,3', '--quality', 'preview', '--aperture', 'polygon:5', '--blend',
-     'gamma', '--sigma', '100', '--fps', '25', '--size', '17x11', '--format', 'any',
+     'gamma', '--sigma', '100', '--focus-width', '0.1', '--focus-transition', '0.1',
+     '--also-focus', '0.2,0.9:0.1', '--focus-map', 'in-0.ppm', '--sharp-mask', 'in-1.ppm', '--fps',
+     '25', '--size', '17x11', '--format', 'any',
      '--calibration', 'calibration.json', '--socket', 'socket'],
     [*EVERY, '--quality', 'best', '--blend', 'stored', '--rays', 'full', '--highlights', '2',
-     '--aperture', 'heart', '--near', '1'],
+     '--aperture', 'heart', '--near', '1', '--field', 'picture', '--field-map', 'in-2.ppm'],
+    # By way of R, G and B: what Y, U and V cannot be rendered with.
+    [*FEW, '--bokeh', 'vintage', '--edge', '0.5', '--edge-before', '0.2', '--cat-eye', '0.3',
+     '--fringe', '0.1', '--grain', '1', '--seed', '3', '--highlight-stops', '2', '--star', '4',
+     '--star-length', '5', '--star-angle', '10', '--star-strength', '0.5', '--focus-distance', '2'],
     [*FEW, '--loop', '--duration', '0.05'],
+    [*FEW, '--upsample', 'joint-bilateral' if HAS_OPENCV else 'core', '--near', '1', '--focus',
+     '0.7'],
     [*FEW, '--method', 'search', '--iterations', '1', '--mirror', '--background', '--steady',
      '0.5'],
 ]
+BY_RGB = '--bokeh', 'joint-bilateral'
+# Options of single methods, tried with these.
+OF_METHODS = {'jittered': ['--cell', '3', '--seed', '1'],
+              'scatter': ['--spread', 'lommel', '--airy-radius', '2', '--depth-ratio', '3'],
+              'interpolated': ['--sharp-radius', '1', '--middle-ratio', '2', '--last-ratio', '3'],
+              'foveated': ['--attention', '3,3', '--attention-angle', '5', '--picture-angle', '40',
+                           '--attention-depth', '0.5'],
+              'diffusion': ['--layers', '2', '--solver', 'steps', '--conductivity', '0.2']}
 # Tried with each format and with each sink, but not with each pair of them.
 METHODS = [m for m in method_names(REFOCUS) if m not in ('sweep', 'search')]
 WITHOUT_RAYS = set(METHODS) - set(methods_with_rays(REFOCUS))
 # Options that nothing here takes: an exit code and words, or what standard output begins with.
-ALONE = {'--dmabuf': (2, 'it is for V4L2 cameras'), '--list': 'FORMAT', '--help': 'usage:'}
+ALONE = {'--dmabuf': (2, 'it is for V4L2 cameras'),
+         '--focus-plane=1,1,5,5,9,1': (2, 'changes in live'), '--list': 'FORMAT', '--help': 'usage:',
+         '--help-all': 'usage:'}
 IN_BASE = '--camera', '--depth', '--out', '--blur', '--json'
 
 
@@ -86,7 +111,7 @@ def run(args, folder, timeout=60):
 
 def read_help():
     """The formats, sinks, raw formats and options that the help names."""
-    text = run(['--help'], '.').stdout.decode()
+    text = run(['--help-all'], '.').stdout.decode()
     options = set(re.findall(r'^  (?:-., )?(?:    )?(--[a-z-]+)', text, re.M))
     flat = ' '.join(text.split())
     formats = re.search(r'--format NAME .*?: ([\w, ]+?) --size', flat).group(1).split(', ')
@@ -99,10 +124,11 @@ def read_help():
 def check_tables():
     """What the help has and the tables have not, and the other way."""
     formats, sinks, raw, options = read_help()
-    covered = {a for group in GROUPS for a in group if a.startswith('--')} | {'--method'}
+    covered = {a for group in (*GROUPS, *OF_METHODS.values()) for a in group
+               if a.startswith('--')} | {'--method'}
     for what, there, here in (('formats', formats, set(FORMATS)), ('sinks', sinks, set(SINKS)),
                               ('raw formats', raw, set(RAW)),
-                              ('options', options, covered | set(ALONE) | set(IN_BASE))):
+                              ('options', options, covered | {option.split('=')[0] for option in ALONE} | set(IN_BASE))):
         if there != here:
             yield '%s: the help has %s, the tables here %s' % (what, sorted(there - here),
                                                                sorted(here - there))
@@ -201,7 +227,8 @@ def check_run(camera, form, out, args, refused):
     """What is wrong with a run, or None."""
     with folder_of_its_own() as folder:
         try:
-            done = run(['--camera', camera, '--out', out, *BASE, *args], folder)
+            blur = [] if '--f-number' in args else ['--blur', '3']
+            done = run(['--camera', camera, '--out', out, *BASE, *blur, *args], folder)
         except subprocess.TimeoutExpired:
             return 'it does not end'
         lines = done.stderr.decode().splitlines()
@@ -217,7 +244,8 @@ def check_run(camera, form, out, args, refused):
         frames = report['frames_out']
         if not least <= frames <= most:
             return '%d frames, not %d to %d' % (frames, least, most)
-        direct = form in YUV and 'search' not in args and '--method' not in args and \
+        by_rgb = '--method' in args and 'search' not in args
+        direct = form in YUV and not by_rgb and not any(a in args for a in BY_RGB) and \
             (out == 'null' or out.startswith('y4m:') or out.partition(',')[2] in (*YUV, 'own'))
         rendered_in = 'RGB24' if not direct else 'YUYV' if form == 'UYVY' else form
         if frames and report['rendered_in'] != rendered_in:
@@ -243,7 +271,7 @@ def check(case):
     if not wrong:
         return []
     alone = [(option, check_run(camera, form, out, option, refused)) for option in one_by_one(args)]
-    named = [(option, why) for option, why in alone if why] or [(args, wrong)]
+    named = [(option, why) for option, why in alone if why == wrong] or [(args, wrong)]
     return ['%s -> %s %s: %s' % (camera, out, ' '.join(option), why) for option, why in named]
 
 
@@ -265,7 +293,8 @@ def all_cases(has_jpeg, has_window, has_v4l2):
     for n, method in enumerate(METHODS):
         for i in range(max(len(inputs), len(outs))):
             out = outs[(i + n) % len(outs)]
-            args = [*(EVERY if method in WITHOUT_RAYS else FEW), '--method', method]
+            args = [*(EVERY if method in WITHOUT_RAYS else FEW), '--method', method,
+                    *OF_METHODS.get(method, [])]
             yield (*inputs[i % len(inputs)], out, args, refused.get(out))
         if method in WITHOUT_RAYS:
             yield (*inputs[n], outs[n], [*FEW, '--method', method], (2, 'it changes nothing'))

@@ -91,8 +91,8 @@ class Pull(Case):
 
         fails("k.json: keys[0]: focs is no parameter; did you mean 'focus'?",
               [{'time': 0, 'focs': 1}, two])
-        fails('k.json: keys[1]: blur has to be a number from 0 to 127',
-              [{'time': 0}, {'time': 1, 'blur': 128}])
+        fails('k.json: keys[1]: blur has to be a number from 0 to 944',
+              [{'time': 0}, {'time': 1, 'blur': 945}])
         fails('k.json: keys[0]: ease has to be one of smooth, linear, in, out',
               [{'time': 0, 'ease': 'x'}, two])
         for time_ in (0, -1, 'x', 3601):

@@ -41,6 +41,62 @@ class Results(Case):
         self.assertRegex(text, r'^prepare [\d.]+ ms, render [\d.]+ ms \(median of 2; ')
         self.assertEqual(self.succeeds(*self.render()), '')
 
+    def test_gain_map(self):
+        """A highlight has the light of the map where it is blurred; what is sharp stays."""
+        width, height, bright = 96, 64, range(40, 48)
+        lit = lambda x, y: x in bright and y - 16 in range(8, 16)
+        pictures.ppm('dim.ppm', width, height, lambda x, y: (255 if lit(x, y) else 90,) * 3)
+        pictures.ppm('gains.ppm', width, height, lambda x, y: (255 if lit(x, y) else 0,) * 3)
+        pictures.pgm('flat.pgm', width, height, lambda x, y: 51)
+        sharp = '--depth', 'flat.pgm', '--focus', '0.2', '--blur', '20', '--highlights', 'off'
+        blurred = '--depth', 'flat.pgm', '--focus', '1', '--blur', '20', '--highlights', 'off'
+        for name in 'dim', 'gains':
+            self.succeeds('render', name + '.ppm', *sharp, '-o', name + '.jpg')
+        pictures.ultra_hdr('hdr.jpg', 'dim.jpg', 'gains.jpg', 3)
+        for photo, use, more in (('hdr.jpg', True, ()), ('hdr.jpg', False, ('--gain-map', 'ignore')),
+                                 ('dim.jpg', False, ())):
+            report = self.reports('render', photo, *blurred, '-o', 'out.pfm', *more)
+            self.assertEqual(report['gain_map'], use)
+            values = pictures.read_pfm('out.pfm')[2]
+            around = values[0]
+            light = sum(v - around for v in values[1::3])
+            self.assertAlmostEqual(light / (64 * ((8.11 if use else 1) - around)), 1, delta=0.05)
+        self.succeeds('render', 'hdr.jpg', *sharp, '-o', 'sharp.png')
+        self.succeeds('render', 'dim.jpg', *sharp, '-o', 'base.png')
+        self.same(pictures.read_bytes('sharp.png'), pictures.read_bytes('base.png'))
+        self.succeeds('render', 'hdr.jpg', *blurred, '-o', 'whole.ppm')
+        self.succeeds('render', 'hdr.jpg', *blurred, '-o', 'part.ppm', '--region', '30,20,40,30')
+        whole, part = (pictures.read_pnm(name)[2] for name in ('whole.ppm', 'part.ppm'))
+        for y in range(30):
+            at = 3 * ((20 + y) * width + 30)
+            # dither counts rows and columns of the photo, not of the region
+            self.same(part[3 * 40 * y:3 * 40 * (y + 1)], whole[at:at + 3 * 40])
+        self.assertGreater(whole[3 * (28 * width + 44)], 170)
+        self.succeeds('render', 'hdr.jpg', *blurred, '-o', 'round.ppm', '--no-dither')
+        rounded = pictures.read_pnm('round.ppm')[2]
+        self.assertLessEqual(max(abs(a - b) for a, b in zip(whole, rounded)), 1)
+        self.differs(whole, rounded)
+        pictures.pfm_colour('slope.pfm', width, height, lambda x, y: (0.2 + x / 10000,) * 3)
+        for more, fewest, most in (('--no-dither',), 1, 3), ((), 20, 96):
+            self.succeeds('render', 'slope.pfm', *blurred, '-o', 'slope.ppm', *more)
+            row = pictures.read_pnm('slope.ppm')[2][:3 * width:3]
+            changes = sum(a != b for a, b in zip(row, row[1:]))
+            self.assertTrue(fewest <= changes <= most, (more, changes))
+        for name, out in ('sheet', 'out.ppm'), ('pull', 'f%d.ppm'):
+            more = ('--seconds', '0.05') if name == 'pull' else ()
+            options = [o for o in blurred if o not in ('--focus', '1')]
+            self.succeeds(name, 'hdr.jpg', *options, '-o', out, *more)
+            own = 'out.ppm' if name == 'sheet' else 'f1.ppm'
+            used = pictures.read_bytes(own)
+            self.succeeds(name, 'hdr.jpg', *options, '-o', out, *more, '--gain-map', 'ignore')
+            self.differs(used, pictures.read_bytes(own))
+        scores = [self.reports('compare', 'hdr.jpg', *blurred, '--reference', 'whole.ppm',
+                               '--methods', methods)['methods'][-1]['rmse']
+                  for methods in ('sweep', 'sweep,blur')]
+        self.assertEqual(scores[0], 0)
+        self.fails(2, re.compile('^refocus: --gain-map: '), 'render', 'hdr.jpg', *blurred, '-o',
+                   'out.ppm', '--gain-map', 'perhaps')
+
     def test_depth_edges(self):
         """A soft map is parted where the photo's edge is; an exact one stays, to the byte."""
         width, height, edge = 96, 64, 45
@@ -105,6 +161,35 @@ class Results(Case):
                    '--matte', 'absent.pgm')
         self.fails(2, re.compile('^refocus: matte.pgm: '), 'render', *command, '-o', 'matte.pgm',
                    '--matte', 'matte.pgm')
+    def test_matte_of_the_photo(self):
+        """An iPhone's portrait matte is used like a file, and left out on demand."""
+        width, height = 96, 64
+        cover = [max(0, min(255, 51 * (47 - x))) for x in range(width)]
+        for name, pixel in (('mixed', lambda x, y: (200 * cover[x] // 255, 9 * (y % 8), 90)),
+                            ('matte', lambda x, y: 3 * (cover[x],))):
+            pictures.ppm(name + '.ppm', width, height, pixel)
+            pictures.pgm('map.pgm', width, height, lambda x, y: 200 if cover[x] > 127 else 40)
+            self.succeeds('render', name + '.ppm', '--depth', 'map.pgm', '--blur', '0', '-o',
+                          name + '.jpg')
+        pictures.insert_xmp('matte.jpg', 'xmlns:a="http://ns.apple.com/pixeldatainfo/1.0/" '
+                            'a:AuxiliaryImageType="urn:com:apple:photo:2018:aux:'
+                            'portraiteffectsmatte"')
+        command = ('mixed.jpg', '--depth', 'map.pgm', '--focus', '0.784', '--blur', '12')
+        self.succeeds('render', *command, '-o', 'file.ppm', '--matte', 'matte.jpg')
+        pictures.insert_mpf('mixed.jpg', [pictures.read_bytes('matte.jpg')])
+        report = self.reports('render', *command, '-o', 'own.ppm')['matte']
+        self.assertEqual((report['file'], report['width'], report['height']),
+                         ('mixed.jpg', width, height))
+        self.same(pictures.read_bytes('own.ppm'), pictures.read_bytes('file.ppm'))
+        report = self.reports('render', *command, '-o', 'none.ppm', '--matte', 'none')
+        self.assertIsNone(report['matte'])
+        self.differs(pictures.read_bytes('own.ppm'), pictures.read_bytes('none.ppm'))
+        self.assertEqual(self.reports('info', 'mixed.jpg')['matte'], [width, height])
+        self.assertIn('render uses it unless told --matte none', self.succeeds('info', 'mixed.jpg'))
+        for name in ('mixed.jpg', 'matte.jpg', 'mixed.ppm', 'matte.ppm', 'map.pgm', 'file.ppm',
+                     'own.ppm', 'none.ppm'):
+            os.remove(name)
+
     def test_behind(self):
         """A bar before stripes: what it hides is shown where it melts away."""
         width, height = 96, 64
@@ -253,32 +338,38 @@ class Results(Case):
         self.fails(1, 'depth.pgm: --focal-length needs distances in metres, which it does not '
                       'say; give --near and --far, or leave it out',
                    *self.render('--f-number', '2', '--focal-length', '50'))
-        self.fails(1, 'photo.ppm: --f-number needs a focal length, which it does not say; give '
-                      '--focal-length and --sensor-width, or --blur',
-                   *self.render('--f-number', '2', '--near', '1', '--far', '2'))
+        r = self.warns('--f-number: photo.ppm says no focal length; f/4 gives 0.5 pixels of blur, by '
+                       'the default of 1.0 at f/2; --focal-length gives that of a lens',
+                       *self.render('--f-number', '4', '--near', '1', '--far', '2'))
+        self.assertAlmostEqual(r['blur'], W / 100, 5)
 
     WIDE = ('--near', '0.01', '--far', 'inf', '--focal-length', '85')
 
     def test_f_number_is_limited(self):
         """More blur than there can be is the most that there can be."""
-        line = ('--f-number: f/1.4 gives 344 pixels of blur, limited to 127, the most, which '
-                'f/3.79 has')
-        report = self.warns(line, *self.render(*self.WIDE, '--f-number', '1.4'))
+        line = ('--f-number: f/0.5 gives 963 pixels of blur, limited to 944, the most, which '
+                'f/0.51 has')
+        report = self.warns(line, *self.render(*self.WIDE, '--f-number', '0.5'))
         limited = pictures.read_bytes('out.ppm')
-        self.assertEqual((report['blur'], report['blur_from']), (127, 'lens'))
-        self.assertAlmostEqual(report['f_number'], 1.4 * 344 / 127, 2)
-        least = self.reports(*self.render(*self.WIDE, '--f-number', '3.8'))
-        self.assertEqual(least['f_number'], 3.8)  # and what it says does work
-        self.assertLess(126, least['blur'])
-        self.assertLess(least['blur'], 127)
-        self.succeeds(*self.render(*self.WIDE[:4], '--blur', '127'))
+        self.assertEqual((report['blur'], report['blur_from']), (944, 'lens'))
+        self.assertAlmostEqual(report['f_number'], 0.5 * 963.3 / 944, 2)
+        wide = self.reports(*self.render(*self.WIDE, '--f-number', '1.4'))
+        self.assertEqual(wide['f_number'], 1.4)  # more than 127 pixels are rendered
+        self.assertAlmostEqual(wide['blur'], 344, 0)
+        self.succeeds(*self.render(*self.WIDE[:4], '--blur', '944'))
         self.same(pictures.read_bytes('out.ppm'), limited)
+        other = self.warns('--f-number: f/1.4 gives 344 pixels of blur, limited to 127, the most, '
+                           'which f/3.79 has',
+                           *self.render(*self.WIDE, '--f-number', '1.4', '--method', 'search'))
+        self.assertEqual(other['blur'], 127)
+        self.fails(2, '--blur: 127.5 pixels are more than 127, the most of view and of all methods '
+                      'but sweep', *self.render('--blur', '127.5', '--method', 'raytrace'))
         self.assertEqual(self.warns(line, 'pull', 'photo.ppm', '--depth', 'depth.pgm', '-o',
                                     'p.y4m', '--seconds', '0.1', *self.WIDE, '--f-number',
-                                    '1.4')['blur_from'], 'lens')
+                                    '0.5')['blur_from'], 'lens')
         sheet = self.warns(line, 'sheet', 'photo.ppm', '--depth', 'depth.pgm', '-o', 's.ppm',
-                           '--focuses', '0', *self.WIDE, '--f-numbers', '1.4,8')
-        self.assertEqual(sheet['cells'], ['focus 0  f/3.793', 'focus 0  f/8'])
+                           '--focuses', '0', *self.WIDE, '--f-numbers', '0.5,8')
+        self.assertEqual(sheet['cells'], ['focus 0  f/0.5102', 'focus 0  f/8'])
         for name in ('p.y4m', 's.ppm'):
             os.remove(name)
 
@@ -287,11 +378,11 @@ class Results(Case):
         line = ('--f-number: depth.pgm says no distances in metres; f/%s gives %s pixels of '
                 'blur%s, by the default of 1.0 at f/2; --near and --far give that of a lens')
         for number, words, limit in (('0.5', '3.8', ''), ('2', '1.0', ''), ('4', '0.5', ''),
-                                     ('0.01', '192.0',
-                                      ', limited to 127, the most, which f/0.0151 has')):
+                                     ('0.01', '192.0', ''), ('0.001', '1920.0',
+                                      ', limited to 944, the most, which f/0.00203 has')):
             report = self.warns(line % (number, words, limit),
                                 *self.render('--focus', '1', '--f-number', number))
-            self.assertAlmostEqual(report['blur'], min(W / 50 * 2 / float(number), 127), 5)
+            self.assertAlmostEqual(report['blur'], min(W / 50 * 2 / float(number), 944), 4)
             self.assertEqual(report['blur_from'], 'default')
 
     def gdepth(self, attributes):
@@ -321,13 +412,18 @@ class Results(Case):
             blurs.append(report['blur'])
         for blur, number in zip(blurs, (1.4, 2, 8)):
             self.assertAlmostEqual(blur, 9.6 / number, 4)
-        self.assertAlmostEqual(self.reports(*command)['blur'], W / 50, 5)
+        report = self.reports(*command)  # without an option: as the phone showed it
+        self.assertAlmostEqual(report['blur'], 4.8, 4)
+        self.assertEqual((report['blur_from'], report['f_number']), ('file', None))
         self.fails(1, 'photo.jpg: --focus-distance needs distances in metres, which it does not '
                       'say; give --near and --far, or --focus or --focus-at in its place',
                    *command, '--focus-distance', '30')
         info = self.reports('info', 'photo.jpg')
         self.assertEqual(info['depth']['near_m'], None)
         self.assertAlmostEqual(info['own_blur'], 0.1)
+        self.assertAlmostEqual(info['depth']['blur'], 4.8, 4)
+        self.assertIn('render takes  4.8 pixels of blur: the blur that the file names',
+                      self.succeeds('info', 'photo.jpg'))
         # --near and --far are metres, whatever the file meant
         lens = self.reports(*command, '--f-number', '8', '--focal-length', '50', '--near', '0.5',
                             '--far', '4')
@@ -338,6 +434,95 @@ class Results(Case):
         again = self.run_it('render', 'again.jpg', '-o', 'out.ppm', '--f-number', '2', '--json')
         self.assertAlmostEqual(json.loads(again.stdout)['blur'], 4.8, 3)
         for name in ('photo.jpg', 'again.jpg', 'bars.png', 'out.ppm'):
+            os.remove(name)
+
+    def dynamic(self, unsure):
+        """photo.jpg with Dynamic Depth of half its size: near on the left, and in the middle of
+        the right a square that is wrong, of which the confidence is `unsure`."""
+        width, height = W // 2, H // 2
+        wrong = [(x, y) for y in range(height // 3, 2 * height // 3)
+                 for x in range(3 * width // 4 - 1, 3 * width // 4 + 2)]
+        pictures.png('map.png', width, height, [
+            bytes(255 * (x >= width // 2 and (x, y) not in wrong) for x in range(width))
+            for y in range(height)], colour=0)
+        pictures.png('sure.png', width, height, [
+            bytes(unsure if (x, y) in wrong else 255 for x in range(width))
+            for y in range(height)], colour=0)
+        pictures.ppm('halves.ppm', W, H, lambda x, y: (200, 30, 30) if x < W / 2 else (30, 30, 200))
+        self.succeeds('render', 'halves.ppm', '--depth', 'depth.pgm', '--blur', '0', '-o',
+                      'photo.jpg')
+        pictures.insert_dynamic(
+            'photo.jpg', 'DepthMap:Format="RangeInverse" DepthMap:Near="0.5" DepthMap:Far="4" '
+            'DepthMap:Units="Meters" DepthMap:DepthURI="d" DepthMap:ConfidenceURI="c"',
+            [(name, pictures.read_bytes(file)) for name, file in (('d', 'map.png'),
+                                                                  ('c', 'sure.png'))])
+
+    def test_dynamic_depth(self):
+        """Read with its metres; samples that the file is unsure of are made of those around."""
+        middle = []
+        for unsure in (255, 0):
+            self.dynamic(unsure)
+            report = self.reports('render', 'photo.jpg', '-o', 'out.ppm', '--f-number', '2',
+                                  '--focal-length', '50')
+            self.assertEqual((report['depth']['source'], report['blur_from']),
+                             ('dynamic-depth', 'lens'))
+            self.assertAlmostEqual(report['depth']['near_m'], 0.5)
+            self.assertAlmostEqual(report['depth']['far_m'], 4)
+            self.succeeds('depth', 'photo.jpg', '--full', '-o', 'full.pgm')
+            width, _, samples = pictures.read_pnm('full.pgm')
+            middle.append(samples[H // 2 * width + 3 * W // 4])
+        self.assertGreater(middle[0], 60000)
+        self.assertLess(middle[1], 2000)
+        self.assertIn('a picture behind the main one', self.succeeds('info', 'photo.jpg'))
+        for name in ('photo.jpg', 'halves.ppm', 'map.png', 'sure.png', 'out.ppm', 'full.pgm'):
+            os.remove(name)
+
+    def test_deep_photos(self):
+        """16 bits and floats come out as they went in; light above white is spread; white and the
+        curve may be said; and where 8 bits are written, or asked for, so be it."""
+        def light(x, y):
+            return (20.0, 10.0, 1.5) if (x, y) == (10, 16) else (0.25 + x / 1000, 0.25, 0.125)
+        pictures.pfm_colour('light.pfm', W, H, light)
+        flat = b'P5\n%d %d\n255\n' % (W, H) + bytes(W * H)
+        with open('flat.pgm', 'wb') as file:
+            file.write(flat)
+        command = ('render', 'light.pfm', '--depth', 'flat.pgm', '--focus', '1')
+        self.succeeds(*command, '--blur', '0', '-o', 'out.pfm')
+        self.assertEqual(pictures.read_pfm('out.pfm'), pictures.read_pfm('light.pfm'))
+        self.succeeds(*command, '--blur', '6', '-o', 'out.pfm')
+        before, after = pictures.read_pfm('light.pfm')[2], pictures.read_pfm('out.pfm')[2]
+        self.assertLess(max(after), 1)
+        for c in range(2):
+            gained = sum(after[c::3]) - sum(before[c::3])
+            self.assertLess(abs(gained), 0.03 * (20, 10)[c])
+        self.succeeds(*command, '--blur', '0', '--white', '2', '-o', 'out.png')
+        width, height, bits, channels, rows = pictures.read_png('out.png')
+        self.assertEqual((width, height, bits, channels), (W, H, 16, 3))
+        value = struct.unpack('>3H', rows[0][:6])[1] / 65535
+        self.assertAlmostEqual(((value + 0.055) / 1.055) ** 2.4, 0.125, 3)
+        self.succeeds(*command, '--blur', '0', '-o', 'out.ppm')
+        greens = pictures.read_pnm('out.ppm')[2][1:3 * 64:3]
+        self.assertEqual(set(greens), {136, 137})  # 136.96, dithered
+        self.succeeds(*command, '--blur', '0', '--no-dither', '-o', 'out.ppm')
+        self.assertEqual(set(pictures.read_pnm('out.ppm')[2][1:3 * 8:3]), {137})
+        codes = [[(x * 1000 + y * 7 + c) % 65536 for x in range(W) for c in range(3)]
+                 for y in range(H)]
+        pictures.png('deep.png', W, H, [struct.pack('>%dH' % (3 * W), *row) for row in codes],
+                     depth=16)
+        for curve in 'auto', 'linear', 'pq', 'hlg', 'bt709', 'gamma', 'srgb':
+            self.succeeds('render', 'deep.png', '--depth', 'flat.pgm', '--focus', '0', '--blur',
+                          '3', '--transfer', curve, '-o', 'out.png')
+            self.assertEqual([list(struct.unpack('>%dH' % (3 * W), row))
+                              for row in pictures.read_png('out.png')[4]], codes)
+        self.warns('deep.png: it has 16 bits a channel; 8 are taken, dithered', 'render',
+                   'deep.png', '--depth', 'flat.pgm', '--method', 'search', '-o', 'out.png')
+        self.assertEqual(pictures.read_png('out.png')[2], 8)
+        for file, *more in ('photo.ppm', '--white', '2'), ('deep.png', '--transfer', 'pq', '--grain',
+                                                           '1'):
+            self.fails(1, more[0] + ': the option is for photos of more than 8 bits, rendered by the sweep '
+                       'in linear light without --sigma, --grain, --star and --view; leave it out',
+                       'render', file, '--depth', 'depth.pgm', '-o', 'out.png', *more)
+        for name in ('light.pfm', 'flat.pgm', 'out.pfm', 'out.png', 'out.ppm', 'deep.png'):
             os.remove(name)
 
     def test_16_bits_are_told_and_dithered(self):
@@ -448,6 +633,8 @@ class Results(Case):
         names = [k['kernel'] for k in report['kernels']]
         self.assertIn('sweep', names)
         self.assertEqual(len(set(names)), len(names))
+        self.assertEqual({'search', 'search_weighted', 'count_hits', 'add_counted'} - set(names),
+                         set())
         for kernel in report['kernels']:
             self.assertGreater(kernel['ns'], 0)
             self.assertGreater(kernel['ns_c'], 0)

@@ -64,8 +64,8 @@ class Settings(Case):
         fails('s.json: zzz: unknown setting', '{"refocus":1,"zzz":1}')
         fails('s.json: threads: does not describe the picture; give it on the command line',
               '{"refocus":1,"threads":1}')
-        fails("s.json: blur: '128' cannot be used; give a number from 0 to 127",
-              '{"refocus":1,"blur":128}')
+        fails("s.json: blur: '945' cannot be used; give a number from 0 to 944",
+              '{"refocus":1,"blur":945}')
         fails("s.json: blend: 'foo' cannot be used; give one of linear, stored, gamma",
               '{"refocus":1,"blend":"foo"}')
         fails('s.json: mirror: give true or false', '{"refocus":1,"mirror":1}')

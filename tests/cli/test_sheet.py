@@ -83,7 +83,7 @@ class Sheet(Case):
 
     def test_bokeh(self):
         names = re.search(r'--bokeh NAME.*?\n((?: {28}.*\n)+)',
-                          self.succeeds('sheet', '--help')).group(1)
+                          self.succeeds('sheet', '--help-all')).group(1)
         names = re.findall(r'(?m)^ {28}(\S+)', names)
         self.assertIn('swirl', names)
         for more in (), ('--cat-eye', '0.3', '--seed', '2', '--grain', '0.5'):
@@ -144,7 +144,7 @@ class Sheet(Case):
         for option, kind, bad, what in (
                 ('--focuses', 'focus', '1.1', 'a number from 0 to 1'),
                 ('--focuses', 'focus', 'x', 'a number from 0 to 1'),
-                ('--blurs', 'focus', '128', 'a number from 0 to 127'),
+                ('--blurs', 'focus', '945', 'a number from 0 to 944'),
                 ('--f-numbers', 'focus', '0', 'a number above 0, at most 1000'),
                 ('--sigmas', 'sigma', '0.5', "a number from 1 to 1e+30, or 'off'")):
             self.fails(2, "%s: '%s' cannot be used; give %s" % (option, bad, what),

@@ -118,7 +118,7 @@ static int repair(void)
 }
 
 /* Large maps have tables. */
-static int repair_large(void)
+static int repair_in(void *work)
 {
     enum { SIDE = 260 };
     static uint16_t large[SIDE * SIDE], to[SIDE * SIDE];
@@ -136,9 +136,54 @@ static int repair_large(void)
     for (int i = 0; i < SIDE * SIDE; i++)
         large[i] = (uint16_t)(i % 97 * 300);
     params.speckle = 4;
+    params.memory = work;
+    params.memory_bytes = work ? (size_t)refocus_repair_memory(SIDE, SIDE, 4) : 0;
     status = refocus_depth_repair(&map, &params, to, 2 * SIDE, NULL);
     memcpy(out, to, sizeof out);
     return status;
+}
+
+static int repair_large(void)
+{
+    return repair_in(NULL);
+}
+
+/* In memory that is given nothing is allocated, the result is the same, and no byte behind it is
+ * touched; with less, or beside its alignment, it is refused. */
+static void repairs_in_memory_given(void **state)
+{
+    static uint16_t allocated[W * H];
+    const size_t bytes = (size_t)refocus_repair_memory(260, 260, 4);
+    uint8_t *work = malloc(bytes + 4);
+    struct refocus_repair_params params = refocus_repair_params_default();
+    struct refocus_depth_map map = refocus_depth_map_default();
+
+    (void)state;
+    assert_non_null(work);
+    assert_int_equal(bytes, 458752 + 5 * 260 * 260);
+    assert_int_equal(refocus_repair_memory(260, 260, 0), 458752 + 260 * 260);
+    assert_int_equal(repair_in(NULL), REFOCUS_OK);
+    memcpy(allocated, out, sizeof out);
+    memset(work, 0xa5, bytes + 4);
+    failing.calls = 0;
+    assert_int_equal(repair_in(work), REFOCUS_OK);
+    assert_int_equal(failing.calls, 0);
+    assert_memory_equal(out, allocated, sizeof out);
+    for (int i = 0; i < 4; i++)
+        assert_int_equal(work[bytes + (size_t)i], 0xa5);
+    map.samples = fine;
+    map.width = W;
+    map.height = H;
+    map.stride = 2 * W;
+    map.sample = REFOCUS_SAMPLE_U16;
+    params.memory = work;
+    params.memory_bytes = (size_t)refocus_repair_memory(W, H, 0) - 1;
+    assert_int_equal(refocus_depth_repair(&map, &params, out, 2 * W, NULL), REFOCUS_ERR_ARGUMENT);
+    params.memory_bytes++;
+    assert_int_equal(refocus_depth_repair(&map, &params, out, 2 * W, NULL), REFOCUS_OK);
+    params.memory = work + 1;
+    assert_int_equal(refocus_depth_repair(&map, &params, out, 2 * W, NULL), REFOCUS_ERR_ARGUMENT);
+    free(work);
 }
 
 static int filter(void)
@@ -157,6 +202,30 @@ static int filter(void)
         assert_int_equal(failing.calls, before); /* all memory is taken at creation */
     }
     refocus_temporal_destroy(&made);
+    assert_null(made);
+    return status;
+}
+
+static int make_of_stack(void)
+{
+    const struct refocus_stack_params params = refocus_stack_params_default(W, H, 3);
+    struct refocus_stack_result result = refocus_stack_result_default();
+    struct refocus_stack *made = (struct refocus_stack *)out;
+    const struct refocus_image image = photo();
+    int status = refocus_stack_create(&made, &params);
+
+    assert_int_equal(made == NULL, status != REFOCUS_OK);
+    result.disparity = out;
+    result.disparity_stride = 2 * W;
+    for (int i = 0; i < 3 && status == REFOCUS_OK; i++) {
+        const long before = failing.calls;
+
+        status = refocus_stack_add(made, &image, i);
+        if (status == REFOCUS_OK && i == 2)
+            status = refocus_stack_finish(made, &result);
+        assert_int_equal(failing.calls, before); /* all memory is taken at creation */
+    }
+    refocus_stack_destroy(&made);
     assert_null(made);
     return status;
 }
@@ -250,12 +319,21 @@ static void failing_filter(void **state)
     fail_each(filter, 2, 1);
 }
 
+static void failing_stack(void **state)
+{
+    (void)state;
+    fail_each(make_of_stack, 2, 1);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(failing_upsample), cmocka_unit_test(failing_edges),
-        cmocka_unit_test(largest_edges), cmocka_unit_test(failing_repair),
-        cmocka_unit_test(failing_filter)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(failing_upsample),
+                                       cmocka_unit_test(failing_edges),
+                                       cmocka_unit_test(largest_edges),
+                                       cmocka_unit_test(failing_repair),
+                                       cmocka_unit_test(repairs_in_memory_given),
+                                       cmocka_unit_test(failing_filter),
+                                       cmocka_unit_test(failing_stack)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 #include <refocus/refocus.h>
 
+#include "depth/upsample.h"
 #include "edges/place.h"
 #include "support/arena.h"
 
@@ -22,6 +23,7 @@ struct stage {
     struct refocus_disparity map;
     uint8_t *memory; /* GUARD bytes behind `bytes` of them */
     uint64_t bytes;
+    uint8_t *shares; /* for the workers */
     uint16_t *out;
     int looks, last; /* at the last look the run is cancelled; 0: never */
 };
@@ -69,7 +71,9 @@ static void start(struct stage *s, int threads)
     atomic_init(&s->run.state, RF_RUN_RUNNING);
     assert_int_equal(rf_pool_start(&s->pool, threads, NULL, &s->run), REFOCUS_OK);
     s->memory = aligned_alloc(RF_ARENA_ALIGN, (size_t)s->bytes + GUARD);
+    s->shares = malloc((size_t)rf_upsample_share() * (size_t)threads);
     assert_non_null(s->memory);
+    assert_non_null(s->shares);
     memset(s->memory, 0xa5, (size_t)s->bytes + GUARD);
 }
 
@@ -80,6 +84,7 @@ static bool place(struct stage *s)
                                          .photo = &s->photo,
                                          .map = &s->map,
                                          .memory = s->memory,
+                                         .shares = {s->shares, rf_upsample_share()},
                                          .out = {s->out, s->photo.width}};
     struct refocus_depth_edges_report report = refocus_depth_edges_report_default();
 
@@ -92,6 +97,7 @@ static void end(struct stage *s)
         assert_int_equal(s->memory[s->bytes + (uint64_t)i], 0xa5);
     rf_pool_end(&s->pool);
     free(s->memory);
+    free(s->shares);
     free(s->photo.plane[0]);
     free((void *)(uintptr_t)s->map.samples);
     free(s->out);

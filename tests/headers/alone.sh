@@ -10,10 +10,13 @@ failed=0 count=0 padded=
 if [ "$(echo __SIZEOF_POINTER__ | "$@" -E -P -x c -)" = 8 ]; then
     padded=-Wpadded
 fi
-for header in $(cd "$include" && find refocus -name '*.h' | sort); do
+names='*.h'
+# Those of C++, but that of OpenCV, which the program of tests/consumers has.
+[ $language = c ] || names='*.h*'
+for header in $(cd "$include" && find refocus -name "$names" ! -name opencv.hpp | sort); do
     count=$((count + 1))
     # struct refocus_settings is the program's own.
-    case $header in */settings.h | */refocus.h) padding= ;; *) padding=$padded ;; esac
+    case $header in */settings.h | */refocus.h*) padding= ;; *) padding=$padded ;; esac
     if printf '#include <%s>\n#include <%s>\n' "$header" "$header" |
         "$@" -x $language -std="$std" -pedantic -Wall -Wextra -Werror $padding -I"$include" \
             -fsyntax-only -; then

@@ -41,3 +41,16 @@ archive=$(find "$work/dest" -name librefocus.a)
     $(pkg-config --static --libs-only-l refocus | sed 's/-lrefocus//') -lm -pthread
 LD_LIBRARY_PATH='' ./static
 echo 'ok readme, static'
+
+# By CMake, in C and C++.
+if command -v cmake >/dev/null && command -v c++ >/dev/null; then
+    flags=
+    for word; do case $word in -fsanitize=*) flags=$word ;; esac done
+    config=$(find "$work/dest" -name refocus-config.cmake)
+    cmake -S "$source/tests/consumers/project" -B cmake -DCMAKE_PREFIX_PATH="${config%/lib*/cmake/*}" \
+        -DCMAKE_C_FLAGS="$flags" -DCMAKE_CXX_FLAGS="-Wall -Wextra -pedantic -Werror $flags" >cmake.log 2>&1 && cmake --build cmake >>cmake.log 2>&1 ||
+        { cat cmake.log; exit 1; }
+    ./cmake/consumer
+    ./cmake/consumer_cpp
+    echo 'ok find_package(refocus)'
+fi

@@ -18,7 +18,7 @@ static void pictures(void)
     GIVES(0, refocus_plane_rows, REFOCUS_FORMAT_RGB8, INT32_MIN, H);
     GIVES(0, refocus_image_bytes, UINT32_MAX, W, H);
     for (size_t i = 0; i < COUNT(sides); i++) {
-        for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_YUYV; format++) {
+        for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_P016; format++) {
             struct refocus_image image;
 
             GIVES(0, refocus_plane_row_bytes, format, 0, sides[i]);

@@ -1,5 +1,5 @@
-/* misuse_depth.c: misuse of depth maps: reading, repair, upsampling, edges, and the filter over
- * video. */
+/* misuse_depth.c: misuse of depth maps: reading, repair, upsampling, edges, focus stacks, and the
+ * filter over video. */
 #include "misuse.h"
 
 static uint16_t out[W * H];
@@ -96,7 +96,8 @@ static void repairing(void)
     const struct misuse bad[] = {BAD(refocus_repair_params, struct_size, 0),
                                  BAD(refocus_repair_params, speckle, -1),
                                  BAD(refocus_repair_params, speckle, INT32_MIN),
-                                 BAD(refocus_repair_params, speckle, INT32_MAX)};
+                                 BAD(refocus_repair_params, speckle, INT32_MAX),
+                                 BAD(refocus_repair_params, memory, (void *)out)};
     const struct refocus_repair_params good = TAKES_NOTHING(refocus_repair_params_default);
     uint16_t *const odd = (uint16_t *)(void *)((uint8_t *)out + 1);
     const struct refocus_depth_map map = depth_map();
@@ -108,6 +109,11 @@ static void repairing(void)
         REFUSED(refocus_depth_to_disparity, &map, out, 2 * W, &report);
         REFUSED(refocus_depth_repair, &map, &good, out, 2 * W, &report);
     }
+    GIVES(0, refocus_repair_memory, 0, 1, 0);
+    GIVES(0, refocus_repair_memory, 1, INT32_MIN, 0);
+    GIVES(0, refocus_repair_memory, REFOCUS_MAX_SIDE + 1, 1, 0);
+    GIVES(0, refocus_repair_memory, 1, 1, -1);
+    GIVES(0, refocus_repair_memory, 1, 1, REFOCUS_MAX_SPECKLE + 1);
     misuse_strides(use_out_stride, 2 * W);
     misuse_strides(use_confidence_stride, W);
     REFUSED(refocus_depth_to_disparity, &map, NULL, 2 * W, NULL);
@@ -337,6 +343,70 @@ static void filtering(void)
     refocus_temporal_destroy(&filter);
 }
 
+static struct refocus_stack *stack;
+
+static void stack_photo(const struct refocus_image *photo)
+{
+    REFUSED(refocus_stack_add, stack, photo, 1);
+}
+
+/* The stride of one picture of a result. */
+static void stack_stride(ptrdiff_t stride)
+{
+    struct refocus_stack_result result = refocus_stack_result_default();
+
+    result.disparity = out;
+    result.disparity_stride = stride;
+    REFUSED(refocus_stack_finish, stack, &result);
+}
+
+static void stacking(void)
+{
+    const struct misuse bad[] = {BAD(refocus_stack_params, struct_size, 0),
+                                 BAD(refocus_stack_params, width, 15),
+                                 BAD(refocus_stack_params, width, INT32_MIN),
+                                 BAD(refocus_stack_params, height, INT32_MAX),
+                                 BAD(refocus_stack_params, frames, 1),
+                                 BAD(refocus_stack_params, frames, 33),
+                                 BAD(refocus_stack_params, reference, -1),
+                                 BAD(refocus_stack_params, reference, 3),
+                                 BAD(refocus_stack_params, align, REFOCUS_STACK_ALIGN_COUNT)};
+    const struct refocus_stack_params good = RETURNS(refocus_stack_params_default, W, 16, 2);
+    struct refocus_stack_result result = RETURNS(refocus_stack_result_default, );
+    static uint8_t pixels[3 * W * 16];
+    const struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, 16, 3 * W);
+
+    REFUSED(refocus_stack_create, NULL, &good);
+    REFUSED(refocus_stack_create, &stack, NULL);
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        struct refocus_stack_params params = good;
+
+        misuse_spoil(&params, &bad[i]);
+        REFUSED(refocus_stack_create, &stack, &params);
+        assert_null(stack);
+    }
+    misuse_spoil(NULL, NULL);
+    RETURNS(refocus_stack_destroy, NULL);
+    RETURNS(refocus_stack_destroy, &stack);
+    REFUSED(refocus_stack_add, NULL, &photo, 1);
+    REFUSED(refocus_stack_finish, NULL, &result);
+    ANSWERS(REFOCUS_OK, refocus_stack_create, &stack, &good);
+    misuse_images(stack_photo);
+    REFUSED(refocus_stack_add, stack, &photo, (double)INFINITY);
+    ANSWERS(REFOCUS_ERR_STATE, refocus_stack_finish, stack, &result);
+    ANSWERS(REFOCUS_OK, refocus_stack_add, stack, &photo, 1);
+    REFUSED(refocus_stack_add, stack, &photo, 1);
+    REFUSED(refocus_stack_add, stack, &photo, (double)NAN);
+    ANSWERS(REFOCUS_OK, refocus_stack_add, stack, &photo, 2);
+    REFUSED(refocus_stack_finish, stack, NULL);
+    misuse_strides(stack_stride, 2 * W);
+    stack_stride(2 * W + 1);
+    result.reserved = 1;
+    REFUSED(refocus_stack_finish, stack, &result);
+    refocus_stack_destroy(&stack);
+}
+
 void misuse_depth(void **state)
 {
     (void)state;
@@ -345,6 +415,7 @@ void misuse_depth(void **state)
     upsampling();
     placing_edges();
     filtering();
+    stacking();
     for (size_t i = 0; i < COUNT(out); i++)
         assert_int_equal(out[i], 0x5a5a);
     misuse_done();

@@ -28,6 +28,7 @@ static void reading(void)
     const struct refocus_read_limits sizeless = {.max_pixels = 1};
     const struct refocus_read_limits any = TAKES_NOTHING(refocus_read_limits_default);
     struct refocus_photo *photo = NULL;
+    struct refocus_light *light = NULL;
     struct refocus_blob blob;
     struct refocus_reason reason;
 
@@ -48,6 +49,13 @@ static void reading(void)
     assert_null(photo);
     RETURNS(refocus_photo_free, NULL);
     RETURNS(refocus_photo_free, &photo);
+    REFUSED(refocus_light_create, NULL, NULL);
+    REFUSED(refocus_light_create, &light, NULL);
+    assert_null(light);
+    GIVES_NULL(refocus_light_image, NULL);
+    REFUSED(refocus_light_to_base, NULL, NULL, 0, 0, 0, NULL);
+    RETURNS(refocus_light_destroy, NULL);
+    RETURNS(refocus_light_destroy, &light);
 
     REFUSED(refocus_depth_read, NULL, MAP_NAME, NULL, 0, 0, NULL, NULL);
     REFUSED(refocus_depth_read, &photo, NULL, NULL, 0, 0, NULL, NULL);
@@ -107,7 +115,13 @@ static void writing(void)
         {.struct_size = sizeof bad[0], .quality = INT32_MIN},
         {.struct_size = 0},
         {.struct_size = 3}};
+    const struct refocus_image light[] = {
+        photo,
+        {.struct_size = 3},
+        refocus_image_packed(REFOCUS_FORMAT_RGB_HALF, NULL, W, H, 6 * W)};
     struct refocus_write_options empty = TAKES_NOTHING(refocus_write_options_default);
+    struct refocus_editable editable = TAKES_NOTHING(refocus_editable_default);
+    char *name = NULL;
     const int has_jpeg = strstr(refocus_file_formats(), "JPEG") != NULL;
 
     empty.exif = empty.icc = &nothing;
@@ -119,6 +133,16 @@ static void writing(void)
     ANSWERS(has_jpeg ? REFOCUS_OK : REFOCUS_ERR_UNSUPPORTED, refocus_image_write,
             "misuse-of-files.jpg", &photo, &empty, NULL);
     remove("misuse-of-files.jpg");
+    for (size_t i = 0; i < COUNT(light); i++) {
+        empty.light = &light[i];
+        REFUSED(refocus_image_write, "misuse-of-files.jpg", &photo, &empty, NULL);
+    }
+    empty.light = NULL;
+    empty.editable = &editable; /* without a photo that is kept */
+    editable.own_depth = 1;
+    REFUSED(refocus_image_write, "misuse-of-files.jpg", &photo, &empty, NULL);
+    editable.struct_size = 3;
+    REFUSED(refocus_image_write, "misuse-of-files.jpg", &photo, &empty, NULL);
     ANSWERS(REFOCUS_ERR_UNSUPPORTED, refocus_image_write, "", &photo, NULL, NULL);
     for (size_t i = 0; i < COUNT(sides); i++) {
         REFUSED(refocus_gray16_write, MAP_NAME, samples, sides[i], H, 2 * W, NULL);
@@ -130,6 +154,11 @@ static void writing(void)
     REFUSED(refocus_file_write, NULL, samples, 4, NULL);
     REFUSED(refocus_file_write, NAME, NULL, 4, NULL);
     ANSWERS(REFOCUS_ERR_IO, refocus_file_write, "", samples, 4, NULL);
+    REFUSED(refocus_file_temporary, NULL, &name, NULL);
+    REFUSED(refocus_file_temporary, "", &name, NULL);
+    REFUSED(refocus_file_temporary, NAME, NULL, NULL);
+    ANSWERS(REFOCUS_ERR_IO, refocus_file_temporary, "no-such-folder/" NAME, &name, NULL);
+    assert_null(name);
     REFUSED(refocus_file_move, NULL, NAME, NULL);
     REFUSED(refocus_file_move, NAME, NULL, NULL);
     ANSWERS(REFOCUS_ERR_IO, refocus_file_move, "", "", NULL);

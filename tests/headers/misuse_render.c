@@ -131,7 +131,9 @@ static void bad_planes(void)
         BAD(refocus_image, stride[0], PTRDIFF_MAX), BAD(refocus_image, stride[1], PTRDIFF_MAX),
         BAD(refocus_image, stride[2], PTRDIFF_MAX), BAD(refocus_image, stride[1], 0),
         BAD(refocus_image, matrix, UINT32_MAX),     BAD(refocus_image, range, UINT32_MAX),
-        BAD(refocus_image, width, INT32_MAX),       BAD(refocus_image, height, INT32_MIN)};
+        BAD(refocus_image, width, INT32_MAX),       BAD(refocus_image, height, INT32_MIN),
+        BAD(refocus_image, transfer, UINT32_MAX),   BAD(refocus_image, gamma, NAN),
+        BAD(refocus_image, white, -INFINITY),       BAD(refocus_image, reserved, 1)};
     static uint8_t memory[2 * W * H];
 
     for (size_t i = 0; i < COUNT(bad); i++) {
@@ -158,7 +160,9 @@ static void creating(void)
                                  BAD(refocus_renderer_params, depth_edges, 3),
                                  BAD(refocus_renderer_params, behind, 2),
                                  BAD(refocus_renderer_params, textured, 2),
-                                 BAD(refocus_renderer_params, estimate, 2),
+                                 BAD(refocus_renderer_params, highlights, 2),
+                                 BAD(refocus_renderer_params, deep, 2),
+                                 BAD(refocus_renderer_params, reserved2, 1),
                                  BAD(refocus_renderer_params, methods, UINT32_MAX)};
     const struct refocus_renderer_params good = RETURNS(refocus_renderer_params_default, W, H, 5);
     struct refocus_renderer_params most = refocus_renderer_params_default(

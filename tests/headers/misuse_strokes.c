@@ -31,10 +31,14 @@ static void without_painting(void)
     const struct refocus_stroke stroke = RETURNS(refocus_stroke_default, REFOCUS_STROKE_BRUSH, 2);
     const struct refocus_image photo = misuse_photo();
     static const float point[2] = {1, 1};
+    static uint8_t samples[6 * W * H];
+    const struct refocus_image deep =
+        refocus_image_packed(REFOCUS_FORMAT_RGB16, samples, W, H, 6 * W);
     uint8_t mask[1];
 
     REFUSED(refocus_strokes_create, NULL, &photo, NULL);
     misuse_images(create_photo);
+    create_photo(&deep);
     misuse_maps(create_base);
     RETURNS(refocus_strokes_destroy, NULL);
     RETURNS(refocus_strokes_destroy, &strokes);

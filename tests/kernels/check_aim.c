@@ -37,7 +37,8 @@ static bool check_aim_at(const struct subject *subject, int n, uint32_t seed)
 {
     const uint32_t first = seed;
     const int stride = noise_between(&seed, 100, 70000), cells = noise_between(&seed, 9, 9000);
-    const int blur = blur_noise(&seed, (int)(first % 3));
+    const int blur = blur_noise(&seed, (int)(first % 3)), unit = (int)(first / 3 % 4);
+    const int shift = 23 - unit;
     int16_t u[RF_RAY_CHUNK] = {0}, v[RF_RAY_CHUNK] = {0};
     int32_t offset[RF_RAY_CHUNK], cell[RF_RAY_CHUNK];
 
@@ -45,10 +46,10 @@ static bool check_aim_at(const struct subject *subject, int n, uint32_t seed)
         u[i] = (int16_t)(i < 4 ? (i % 2 ? 32767 : -32767) : noise_between(&seed, -32767, 32767));
         v[i] = (int16_t)(i < 4 ? (i / 2 ? 32767 : -32767) : noise_between(&seed, -32767, 32767));
     }
-    subject->kernels.aim(offset, cell, u, v, blur, stride, cells, n);
+    subject->kernels.aim(offset, cell, u, v, blur, unit, stride, cells, n);
     for (int i = 0; i < n; i++) {
-        const int x = floor_of((int64_t)u[i] * blur + (1 << 22), 1 << 23);
-        const int y = floor_of((int64_t)v[i] * blur + (1 << 22), 1 << 23);
+        const int x = floor_of((int64_t)u[i] * blur + (1 << (shift - 1)), 1 << shift);
+        const int y = floor_of((int64_t)v[i] * blur + (1 << (shift - 1)), 1 << shift);
 
         if (offset[i] != x + y * stride)
             return fail(subject, "aim", first, n, i, offset[i], x + y * stride);

@@ -22,12 +22,14 @@ static struct rf_disc_job make_job(uint32_t *seed, uint16_t visible[2 * LANES])
 {
     const int count = noise_between(seed, 1, 16), most = noise_between(seed, 0, 127 * 64);
     const int x = noise_between(seed, -most / 64 - count, RF_TILE + most / 64);
+    const int unit = noise_between(seed, 0, RF_DISC_MOST_UNIT);
     struct rf_disc_job job = {
         .first = noise_between(seed, 0, RF_TILE),
         .planes = noise(seed) % 2 ? 3 : 1,
-        .shift = 8,
-        .from = (int16_t)(64 * x - 32),
-        .to = (int16_t)(64 * (x + count) - 32),
+        .shift = 8 + unit,
+        .unit = unit,
+        .from = (int16_t)((64 * x - 32) >> unit),
+        .to = (int16_t)((64 * (x + count) - 32) >> unit),
         .visible = noise(seed) % 2 ? visible : NULL,
     };
 
@@ -35,8 +37,8 @@ static struct rf_disc_job make_job(uint32_t *seed, uint16_t visible[2 * LANES])
     for (int n = 1; n < count; n *= 2)
         job.shift--;
     for (int y = 0; y < RF_TILE; y++) {
-        job.right[y] = (int16_t)noise_between(seed, 0, most);
-        job.left[y] = (int16_t)noise_between(seed, -most, job.right[y]);
+        job.right[y] = (int16_t)noise_between(seed, 0, most >> unit);
+        job.left[y] = (int16_t)noise_between(seed, -(most >> unit), job.right[y]);
     }
     for (int c = 0; c < 3; c++)
         job.each[c] = (int16_t)(noise(seed) % (noise(seed) % 2 ? 32768 : 512));
@@ -45,10 +47,11 @@ static struct rf_disc_job make_job(uint32_t *seed, uint16_t visible[2 * LANES])
     return job;
 }
 
-/* Returns how much of the run pixel x sees, 1/64 pixel. */
+/* Returns how much of the run pixel x sees, 2^unit / 64 pixel. */
 static int seen(const struct rf_disc_job *job, int x, int y)
 {
-    const int from = 64 * x + job->left[y], to = 64 * x + job->right[y];
+    const int pixel = 64 >> job->unit;
+    const int from = pixel * x + job->left[y], to = pixel * x + job->right[y];
     const int v = (to < job->to ? to : job->to) - (from > job->from ? from : job->from);
 
     return v > 0 ? v : 0;
@@ -112,17 +115,20 @@ static double mean_half(double radius, int y, int tall)
 /* Compares with the chords of plain C, and roughly with those of double precision. */
 static int check_chords(const struct subject *subject)
 {
-    for (int radius = 0; radius <= 127 * 256; radius += radius < 1024 ? 1 : 61) {
+    for (int radius = 0; radius <= 950 * 256; radius += radius < 1024    ? 1
+                                                        : radius < 32512 ? 61
+                                                                         : 3001) {
         for (int first = -300; first <= 280; first += radius % 2 ? 15 : 32) {
             const int tall = 1 + (radius + first + 300) % 4;
+            const int unit = radius <= 127 * 256 ? radius % 3 : RF_DISC_MOST_UNIT;
             int16_t half[RF_TILE], plain[RF_TILE];
 
-            subject->kernels.half_chords(half, radius, first, tall);
-            subject->plain.half_chords(plain, radius, first, tall);
+            subject->kernels.half_chords(half, radius, first, tall, unit);
+            subject->plain.half_chords(plain, radius, first, tall, unit);
             for (int i = 0; i < RF_TILE; i++) {
-                const double should = 64 * mean_half(radius / 256.0, first + 2 * i, tall);
+                const double should = (64 >> unit) * mean_half(radius / 256.0, first + 2 * i, tall);
 
-                if (half[i] != plain[i] || fabs(half[i] - should) > 0.51)
+                if (half[i] != plain[i] || fabs(half[i] - should) > 0.52)
                     return wrong(subject, "half_chords", i, half[i], lround(should));
             }
         }
@@ -142,15 +148,17 @@ static bool is_hit(const struct rf_disc_job *job, const struct rf_disc_way *way,
                    const struct rf_slab *slab, const int16_t *blur, int x, int y, int k)
 {
     const long step = (1L << way->shift) * way->times;
-    const int from = 64 * x + job->left[y], to = 64 * x + job->right[y];
+    const int pixel = 64 >> job->unit, shift = 23 - way->unit;
+    const int from = pixel * x + job->left[y], to = pixel * x + job->right[y];
     const int sum = (from > job->from ? from : job->from) + (to < job->to ? to : job->to);
     const int sees = seen(job, x, y), is_left = way->mirrored ? k : !k;
     const int aside = is_left ? -(way->aside * sees / 16) : (16 - way->aside) * sees / 16;
-    const int whole = job->from + job->to - 128 * x;
+    const int whole = job->from + job->to - 2 * pixel * x;
     const int least = 2 * job->left[y], most = 2 * job->right[y];
     const int limited = whole < least ? least : whole > most ? most : whole;
-    const int right = rounded((sees ? sum - 128 * x + aside : limited) * step, 23);
-    const int down = rounded((64 * way->middle - 128 * y + (k ? 32 : -32)) * step, 23);
+    const int right = rounded((sees ? sum - 2 * pixel * x + aside : limited) * step, shift);
+    const int down =
+        rounded((pixel * (way->middle - 2 * y) + (k ? pixel / 2 : -pixel / 2)) * step, shift);
     const int s = blur[(y + down) * SIDE + x + right];
 
     return s >= slab->low && s <= slab->low + slab->width;
@@ -165,16 +173,18 @@ static int check_hide(const struct subject *subject)
     for (int round = 0; round < 2000; round++) {
         const int16_t *const blur = plane + FAR * SIDE + FAR;
         struct rf_disc_job job = make_job(&seed, unused);
+        const int unit = round % 4 > 2 ? round / 4 % 4 : 0;
         const int low = noise_between(&seed, -600, 400);
         const struct rf_slab slab = {(int16_t)low, (uint16_t)noise_between(&seed, 0, 500), 0};
-        const struct rf_disc_way way = {
-            .shift = noise_between(&seed, 0, 2),
-            .middle = noise_between(&seed, -24, 54),
-            .rows = 1 << noise_between(&seed, 0, 2),
-            .most = FAR,
-            .aside = noise_between(&seed, 1, 15),
-            .mirrored = noise(&seed) % 2,
-            .times = (int16_t)(noise_between(&seed, -19000, 19000) / (round % 2 ? 1 : 16))};
+        const struct rf_disc_way way = {.shift = noise_between(&seed, 0, 2),
+                                        .middle = noise_between(&seed, -24, 54),
+                                        .rows = 1 << noise_between(&seed, 0, 2),
+                                        .most = FAR,
+                                        .unit = unit,
+                                        .aside = noise_between(&seed, 1, 15),
+                                        .mirrored = noise(&seed) % 2,
+                                        .times = (int16_t)(noise_between(&seed, -19000, 19000) /
+                                                           (round % 2 ? 1 : 16) / (1 << unit))};
 
         for (int y = 0; y < RF_TILE; y++) {
             job.right[y] = (int16_t)noise_between(&seed, 0, 30 * 64);

@@ -13,7 +13,7 @@ enum {
     MOST = 300,   /* largest n */
     PATTERNS = 8, /* kinds of contents; see value() */
     MOST_BLUR = 127 * 256,
-    ROW_BYTES = 4 * (2 * MOST + 2 * RF_SPREAD_MARGIN + 2),
+    ROW_BYTES = 4 * (2 * MOST + 2 * SPREAD_MARGIN + 2),
 };
 
 /* Rows that the kernel sees, and copies of them for what it should give. */

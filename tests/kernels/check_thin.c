@@ -126,6 +126,8 @@ static bool same(const struct rf_thin *a, const struct rf_thin *b)
            a->far_disparity == b->far_disparity && !memcmp(a->light, b->light, sizeof a->light);
 }
 
+static uint64_t share[RF_THIN_SHARE / sizeof(uint64_t)];
+
 static struct rf_thin_tile tile_of(const struct photo *p, int tx, int ty)
 {
     const ptrdiff_t at = ty * RF_TILE * p->stride + tx * RF_TILE;
@@ -152,7 +154,7 @@ static int check_tile(const struct subject *subject, const struct photo *p, int 
     int count;
 
     memset(out, 0x5a, sizeof out);
-    count = subject->kernels.find_thin(out, &tile, most);
+    count = subject->kernels.find_thin(out, &tile, most, share);
     for (int i = 0; i < should && count == should; i++) {
         if (same(&out[i], &plain[i]))
             continue;
@@ -222,7 +224,7 @@ static void find_all(void *context)
         for (int tx = 0; tx * RF_TILE < b->photo.width; tx++) {
             const struct rf_thin_tile tile = tile_of(&b->photo, tx, ty);
 
-            b->find(out, &tile, RF_TILE * RF_TILE);
+            b->find(out, &tile, RF_TILE * RF_TILE, share);
         }
     }
 }

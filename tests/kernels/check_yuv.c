@@ -184,6 +184,7 @@ static int check_aim_chroma(const struct subject *subject)
     for (uint32_t seed = 1; seed <= 400; seed++) {
         uint32_t state = seed;
         const int n = (int)(seed % (RF_RAY_CHUNK + 1)), down = (int)(seed / 3 % 2);
+        const int unit = (int)(seed / 6 % 4), shift = 23 - unit;
         const int blur =
             seed % 4 ? noise_between(&state, -32512, 32512) : (seed % 8 ? 32512 : -32512);
 
@@ -191,10 +192,10 @@ static int check_aim_chroma(const struct subject *subject)
             u[i] = (int16_t)(i % 3 ? noise_between(&state, -32767, 32767) : i % 2 ? 32767 : -32767);
             v[i] = (int16_t)noise_between(&state, -32767, 32767);
         }
-        subject->kernels.aim_chroma(offset, pixel, u, v, blur, down, 1000, n);
+        subject->kernels.aim_chroma(offset, pixel, u, v, blur, unit, down, 1000, n);
         for (int i = 0; i < n; i++) {
-            const int x = round_down(u[i] * blur + (1 << 23), 1 << 24);
-            const int y = round_down(v[i] * blur + (1 << (22 + down)), 1 << (23 + down));
+            const int x = round_down(u[i] * blur + (1 << shift), 2 << shift);
+            const int y = round_down(v[i] * blur + (1 << (shift + down - 1)), 1 << (shift + down));
             const int32_t at = 2 * x + y * 1000, to = 2 * x + y * (1 << down) * 1000;
 
             if (pixel[i] != to)

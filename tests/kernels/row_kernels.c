@@ -11,7 +11,7 @@ enum { MOST_RADIUS = 127 * 256 + 1 };
 static struct rf_focus focus_of(int parameter)
 {
     uint32_t seed = (uint32_t)parameter;
-    struct rf_focus focus = {(uint16_t)noise(&seed), (uint16_t)(noise(&seed) % MOST_RADIUS)};
+    struct rf_focus focus = {(uint16_t)noise(&seed), (uint16_t)(noise(&seed) % MOST_RADIUS), 0};
 
     if (parameter % 3 == 0)
         focus.disparity = parameter % 2 ? 65535 : 0;
@@ -93,10 +93,18 @@ static void expect_smooth3(void *const *row, int parameter, int n)
                 smoothed((const uint16_t *)row[3 + c] + x, (const int16_t *)row[6] + x, parameter);
 }
 
-/* The result is moved to the first row, whichever it is in. */
+/* The unit of blurs that goes with a parameter. */
+static int unit_for(int parameter)
+{
+    return parameter % (RF_MAX_UNIT + 1);
+}
+
+/* The result is moved to the first row, whichever it is in. Values are `parameter` steps of a cone
+ * without a unit apart at the most. */
 static void run_spread_row(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
-    const uint16_t *result = k->spread_row(row[0], row[1], parameter, n);
+    const int unit = unit_for(parameter);
+    const uint16_t *result = k->spread_row(row[0], row[1], parameter << unit, unit, n);
 
     if (result != row[0])
         memcpy(row[0], result, (size_t)n * 2);
@@ -110,13 +118,13 @@ static int fallen(int value, int fall)
 static void expect_spread_row(void *const *row, int parameter, int n)
 {
     uint16_t *const in = row[0], *const out = row[1];
+    const int fall = RF_CONE_STEP >> unit_for(parameter);
 
-    (void)parameter;
     for (int x = 0; x < n; x++) {
         int most = 0;
 
         for (int q = 0; q < n; q++) {
-            const int value = fallen(in[q], abs(q - x) * RF_CONE_STEP);
+            const int value = fallen(in[q], abs(q - x) * fall);
 
             most = value > most ? value : most;
         }
@@ -128,19 +136,19 @@ static void expect_spread_row(void *const *row, int parameter, int n)
 
 static void run_dilate_from(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
-    (void)parameter;
-    k->dilate_from(row[0], row[1], n);
+    k->dilate_from(row[0], row[1], parameter, n);
 }
 
 static void expect_dilate_from(void *const *row, int parameter, int n)
 {
     uint16_t *out = row[0];
     const uint16_t *before = row[1];
+    const int half = 1 << parameter >> 1;
 
-    (void)parameter;
     for (int x = 0; x < n; x++) {
         for (int dx = -1; dx <= 1; dx++) {
-            const int value = fallen(before[x + dx], dx == 0 ? RF_CONE_STEP : RF_CONE_DIAGONAL);
+            const int fall = dx == 0 ? RF_CONE_STEP : RF_CONE_DIAGONAL;
+            const int value = fallen(before[x + dx], (fall + half) >> parameter);
 
             if (value > out[x])
                 out[x] = (uint16_t)value;
@@ -150,8 +158,7 @@ static void expect_dilate_from(void *const *row, int parameter, int n)
 
 static void run_mark(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
-    (void)parameter;
-    k->mark_foreground(row[0], row[1], row[2], n);
+    k->mark_foreground(row[0], row[1], row[2], parameter, n);
 }
 
 static void expect_mark(void *const *row, int parameter, int n)
@@ -160,9 +167,8 @@ static void expect_mark(void *const *row, int parameter, int n)
     const int16_t *blur = row[1];
     const uint16_t *dilated = row[2];
 
-    (void)parameter;
     for (int x = 0; x < n; x++) {
-        if (dilated[x] - 32768 > blur[x] + 128)
+        if (dilated[x] - 32768 > blur[x] + (128 >> parameter))
             background[x] = RF_NO_BLUR;
         else
             background[x] = blur[x];
@@ -504,7 +510,7 @@ const struct row_kernel row_kernels[] = {
      expect_smooth3},
     {"spread_row",
      2,
-     {{RAISED, 1, 0, RF_SPREAD_MARGIN}, {SCRATCH, 1, 0, RF_SPREAD_MARGIN}},
+     {{RAISED, 1, 0, SPREAD_MARGIN}, {SCRATCH, 1, 0, SPREAD_MARGIN}},
      1,
      258,
      run_spread_row,
@@ -513,14 +519,14 @@ const struct row_kernel row_kernels[] = {
      2,
      {{RAISED, 1, 0, 0}, {RAISED, 1, 1, 0}},
      0,
-     0,
+     RF_MAX_UNIT,
      run_dilate_from,
      expect_dilate_from},
     {"mark_foreground",
      3,
      {{BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}, {RAISED, 1, 0, 0}},
      0,
-     0,
+     RF_MAX_UNIT,
      run_mark,
      expect_mark},
     {"push",

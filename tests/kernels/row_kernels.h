@@ -4,6 +4,7 @@
 #define KERNELS_ROW_KERNELS_H
 
 #include "check.h"
+#include "image/planes.h"
 
 /* Kinds of elements of a row. */
 enum kind {
@@ -16,7 +17,9 @@ enum kind {
     SCRATCH,      /* anything, before and after */
 };
 
-enum { ROWS = 10 };
+/* Rows of a kernel at most, and what spread_row overwrites: rf_spread_margin() of the largest unit.
+ */
+enum { ROWS = 10, SPREAD_MARGIN = 256 << RF_MAX_UNIT };
 
 struct row_spec {
     enum kind kind;

@@ -43,8 +43,9 @@ static void mean_of_many(void **state)
     enum { MANY = 40 };
     struct picture p = picture_make(W, H, 6);
     struct refocus_renderer *renderer = prepared(&p, 6, 2);
-    uint8_t full[3 * W * H], exact[3 * W * H], out[3 * W * H];
-    double sum[3 * W * H] = {0}, bias = 0, scatter = 0, edge = 0;
+    static uint8_t full[3 * W * H], exact[3 * W * H], out[3 * W * H];
+    static double sum[3 * W * H];
+    double bias = 0, scatter = 0, edge = 0;
 
     (void)state;
     render(renderer, REFOCUS_METHOD_RAYTRACE, 2, 0, full);

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""usage: depth.py BUILD [SECTION...]
+"""usage: depth.py BUILD [--check] [SECTION...]
 Write tests/depth.md: what depth costs, and how good it is; or only these sections of it anew.
+With --check compare the scores that the scenes give with the page, and name the rows that moved.
 
-Scenes are those of REFOCUS_SCENES, else ../shared/scenes beside the source; photos with known
-depth those of REFOCUS_PHOTOS, else ../shared/photos. What is missing is left out, and said.
+The scenes are those in examples/data, unless REFOCUS_SCENES names another folder. Photos with known
+depth are not in the repository: REFOCUS_PHOTOS names their folder, else it is sought in
+../shared/photos beside the source. Without it their sections stay as they are.
 """
 import array
 import math
@@ -16,19 +18,24 @@ import tempfile
 import zipfile
 import zlib
 
-TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+from pages import SOURCE, check, photos, scenes  # noqa: E402
+
+PAGE = SOURCE / 'tests' / 'depth.md'
 
 UPSAMPLING = '''`refocus-depth-quality SCENE...` on `depth_lowres.png` of the reference scenes: 180x135 samples
 for 720x540 pixels, 1 % noise, 3 % holes. An edge is a step of 1/20 of the range. PSNR: sweep, 64
 rays, mean of all views without blades, against the path-traced references; *to exact* is the
 difference to rendering with the exact disparities. The joint bilateral mean is that of Kopf et
 al. 2007 over 5x5 samples, sigma 1 sample and 0.1 of the range of codes. Asked: at most 0.5 dB
-below exact on portrait and tabletop, 1.0 dB on fence.'''
+below exact on portrait and tabletop, 1.0 dB on fence. Builds with `-Dximgproc=enabled` add the
+filters of OpenCV's contrib modules.'''
 
 TIME = '''`refocus-depth-quality --time SCENE...`: 320x240 samples to 1920x1080 pixels, memory and threads of
 its own in every call, the least and the median of 21 calls (5 of slow ones), CPU time of the
 whole process. On a shared machine wall time means little; CPU time is reliable. Asked: 5 ms
-on two threads. OpenCV chooses its own number of threads.'''
+on two threads. OpenCV chooses its own number of threads, but
+for `joint-bilateral`, which works in one.'''
 
 FLICKER = '''`refocus-depth-flicker --scenes SCENE...`: videos of 20 frames made of the scenes, 150x120 samples
 with new noise of 1 % and new holes of 3 % in each, from the sixth frame on; panning by one sample
@@ -62,7 +69,18 @@ parts are more than 4 px from every edge.'''
 
 
 def run(*command):
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    try:
+        return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    except OSError as error:
+        sys.exit('depth.py: %s' % error)
+
+
+def tool(*command):
+    """What a program prints that cannot fail but by the tree or its files."""
+    try:
+        return run(*command)
+    except subprocess.CalledProcessError as error:
+        sys.exit('depth.py: %s: %s' % (os.path.basename(command[0]), error.stderr.strip()))
 
 
 def read_pfm(path):
@@ -186,8 +204,8 @@ def section(name, words, table):
 
 def scene_sections(tools, folders):
     """(name, function that makes it) of what the scenes say."""
-    def by(tool, *options):
-        return run(os.path.join(tools, tool), *options, *folders)
+    def by(name, *options):
+        return tool(os.path.join(tools, name), *options, *folders)
 
     yield 'Upsampling', lambda name: section(name, UPSAMPLING, by('refocus-depth-quality'))
     yield 'Faulty maps', lambda name: section(name, FAULTY, by('refocus-depth-quality',
@@ -200,8 +218,8 @@ def scene_sections(tools, folders):
 def photo_sections(tools, known):
     """And of what photos with known depth say."""
     yield 'Decimated ground truth', lambda name: section(
-        name, DECIMATED, run(os.path.join(tools, 'refocus-depth-quality'), '--truth',
-                             *known.truths()))
+        name, DECIMATED, tool(os.path.join(tools, 'refocus-depth-quality'), '--truth',
+                              *known.truths()))
     yield 'Stereo', lambda name: section(
         name, STEREO, '| pair | match | > 1 px, % | > 2 px, % |\n| --- | --- | --: | --: |\n' +
         '\n'.join(known.stereo_rows()))
@@ -218,31 +236,34 @@ def sections_of(path):
 
 
 def main():
-    if len(sys.argv) < 2:
+    only = [word for word in sys.argv[2:] if word != '--check']
+    checks = len(only) < len(sys.argv) - 2
+    if len(sys.argv) < 2 or sys.argv[1].startswith('-'):
         sys.exit(__doc__)
-    build, only = os.path.abspath(sys.argv[1]), sys.argv[2:]
-    page = os.path.join(TOP, 'tests', 'depth.md')
-    tools = os.path.join(build, 'tests', 'quality')
-    scenes = os.environ.get('REFOCUS_SCENES', os.path.join(TOP, '..', 'shared', 'scenes'))
-    photos = os.environ.get('REFOCUS_PHOTOS', os.path.join(TOP, '..', 'shared', 'photos'))
-    folders = [os.path.join(scenes, name) for name in ('portrait', 'tabletop', 'fence')]
-    there = sections_of(page) if only else {}
-    text = '# Depth: cost of coarse maps, and quality of estimated ones\n\nWritten by ' \
-           '`tests/quality/depth.py BUILD`.\n'
+    build, there = os.path.abspath(sys.argv[1]), sections_of(PAGE)
+    folders, where = scenes(['portrait', 'tabletop', 'fence'])
+    text = ('# Depth: cost of coarse maps, and quality of estimated ones\n\n'
+            'Written by `tests/quality/depth.py BUILD`. Scenes: %s. The sections from *%s* on are '
+            'of photos that are not in the repository.\n' % (where, 'Decimated ground truth'))
     with tempfile.TemporaryDirectory() as work:
-        parts = list(scene_sections(tools, folders))
-        if os.path.isdir(photos):
-            parts += photo_sections(tools, Photos(build, photos, work))
-        unknown = set(only) - {name for name, _ in parts}
+        makers = dict(scene_sections(os.path.join(build, 'tests', 'quality'), folders))
+        if checks:
+            del makers['Time of upsampling']
+        elif photos().is_dir():
+            makers.update(photo_sections(os.path.join(build, 'tests', 'quality'),
+                                         Photos(build, str(photos()), work)))
+        else:
+            print('depth.py: no photos at %s: their sections stay' % photos(), file=sys.stderr)
+        unknown = set(only) - set(makers)
         if unknown:
             sys.exit('depth.py: no such section, or its files are not there: %s' %
                      ', '.join(sorted(unknown)))
-        for name, make in parts:
-            text += there.get(name, '') if only and name not in only else make(name)
-    if not os.path.isdir(photos):
-        text += '\nThe photos with known depth were not there: only scenes are judged.\n'
-    with open(page, 'w', encoding='utf-8') as file:
-        file.write(text)
+        made = {name: make(name) for name, make in makers.items() if not only or name in only}
+    if checks:
+        check(PAGE, ''.join(made.values()), 'tests/pages.sh BUILD depth')
+        return
+    text += ''.join(made.get(name, there.get(name, '')) for name in {**there, **made})
+    PAGE.write_text(text, encoding='utf-8')
 
 
 if __name__ == '__main__':

@@ -446,7 +446,7 @@ static int time_scene(const char *folder)
         char name[80];
 
         snprintf(name, sizeof name, "OpenCV %s", refocus_cv_filter_name(i));
-        time_way(&large, &map, name, 2, 0, i, out);
+        time_way(&large, &map, name, i == REFOCUS_CV_JOINT_BILATERAL ? 1 : 2, 0, i, out);
     }
 #endif
     result = 0;

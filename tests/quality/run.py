@@ -1,22 +1,26 @@
 #!/usr/bin/env python3
 """Measures how good the pictures are and writes tests/quality.md.
 
-usage: run.py BUILD_DIR [--quick] [--out FILE]
+usage: run.py BUILD [--check | --floors]
 
-BUILD_DIR holds a release build. The scenes are in $REFOCUS_SCENES or in
-../shared/scenes beside the source tree. --quick leaves out what takes many
-seconds a view.
+BUILD is the folder of a release build. The scenes are those in examples/data, unless
+$REFOCUS_SCENES names another folder. --check compares with the page, all but what takes seconds a
+view, and names the rows that moved; --floors so too, but some fast methods on the views with
+K = 20 and a disc alone, in some seconds.
 """
 import argparse
 import json
-import os
 import subprocess
 import sys
 from math import inf
 from pathlib import Path
 
-SOURCE = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from pages import SOURCE, check, scenes  # noqa: E402
+from sections import table  # noqa: E402
+
 SCENES = ["portrait", "tabletop", "fence", "nightlights"]
+PAGE = SOURCE / "tests" / "quality.md"
 
 # label, settings (see refocus-quality --help), what it is
 METHODS = [
@@ -24,10 +28,18 @@ METHODS = [
     ("standard", "method=sweep,estimate=1,thin=1",
      "the default: two layers, 64 rays, light of highlights estimated, thin structures composited"),
     ("standard-off", "method=sweep,thin=1", "the same with `--highlights off`"),
+    ("preview", "method=sweep,rays=32,estimate=1", "quality `preview`: 32 rays"),
+    ("preview-off", "method=sweep,rays=32", "the same with `--highlights off`"),
     ("sweep", "method=sweep", "`standard-off` without thin structures"),
+    ("sweep-paper", "method=sweep,rays=full,blend=stored,sigma=128",
+     "the sweep with the paper's blending: every ray, stored values, eq. 5 with σ = 128"),
     ("best", "method=sweep,rays=128,estimate=1,thin=1", "the default with 128 rays"),
+    ("paper-64", "method=search,iterations=1,blend=stored,sigma=128",
+     "the paper as written with 64 rays: one test, stored values, eq. 5 with σ = 128"),
+    ("paper-plain", "method=search,iterations=1,rays=full,blend=stored",
+     "the paper with plain averages: one test, every ray, stored values, no eq. 5"),
     ("search-T1-full", "method=search,iterations=1,rays=full",
-     "as in the paper: one test, every ray"),
+     "one test, every ray, but the default's blending: linear light, no eq. 5"),
     ("search-T2-full", "method=search,iterations=2,rays=full", "two tests, every ray"),
     ("search-T1", "method=search,iterations=1", "one test, 64 rays"),
     ("search-T2", "method=search,iterations=2", "two tests, 64 rays"),
@@ -36,8 +48,13 @@ METHODS = [
      "two tests, 64 rays, rays without a hit take the hidden background"),
     ("raytrace", "method=raytrace", "ray tracing, 64 rays, rays without a hit mirrored"),
 ]
-# Many seconds a view, and so for the twelve views only.
+# Those that tests/run.sh holds to the page.
+FLOORS = ["standard", "standard-off", "preview", "preview-off", "sweep-paper", "paper-64",
+          "search-T1", "search-T2", "search-T2-back"]
+# Seconds a view, and so for the views with K = 20 and a disc only.
 SLOW = [
+    ("paper", "method=search,iterations=1,rays=full,blend=stored,sigma=128",
+     "the paper as written: one test, every ray, stored values, eq. 5 with σ = 128"),
     ("raytrace-full", "method=raytrace,rays=full",
      "ray tracing, every ray, rays without a hit mirrored (the reference)"),
 ]
@@ -100,7 +117,10 @@ def measure(tool, scenes, runs, blur, blades):
     rows = []
     for scene in scenes:
         print(f"K = {blur}, {blades} blades: {scene}", file=sys.stderr)
-        done = subprocess.run(command + [scene], stdout=subprocess.PIPE, check=True)
+        try:
+            done = subprocess.run(command + [scene], stdout=subprocess.PIPE, check=True)
+        except (OSError, subprocess.CalledProcessError) as error:
+            sys.exit(f"run.py: {error}")
         rows += json.loads(done.stdout)
     return rows
 
@@ -108,11 +128,6 @@ def measure(tool, scenes, runs, blur, blades):
 def mean(values):
     values = [inf if v is None else v for v in values]
     return sum(values) / len(values) if values else inf
-
-
-def table(head, lines):
-    out = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
-    return "\n".join(out + ["| " + " | ".join(line) + " |" for line in lines]) + "\n"
 
 
 def mean_table(runs, rows):
@@ -147,61 +162,71 @@ def settings_list(runs):
     return "".join(f"- `{label}`: `{settings}`\n" for label, settings, _ in runs)
 
 
-def write(out, methods, rows, rays, against, blends, lights, thin, others):
+def means(title, runs, rows):
+    views = len({(r["scene"], r["focus"]) for r in rows})
+    return f"## {title}: mean of {views} views\n\n" + mean_table(runs, rows)
+
+
+def methods(measure_at, runs):
+    """The section that the floors are taken from."""
+    rows = measure_at(runs, 20, 0)
+    yield means("Methods", runs, rows)
+    yield "Settings of each run beyond the defaults:\n\n" + settings_list(runs)
+    yield "## PSNR of each view\n\n" + view_table(runs, rows, "psnr", "{:.2f}")
+    yield "## PSNR near edges of each view\n\n" + view_table(runs, rows, "edge_psnr", "{:.2f}")
+    yield "## SSIM of each view\n\n" + view_table(runs, rows, "ssim", "{:.4f}")
+
+
+def others(measure_at):
+    rays = measure_at(RAYS, 20, 0)
+    against = measure_at([RAYS[0]] + [(l, s + ",against=sweep-full", w) for l, s, w in RAYS[1:]],
+                         20, 0)
+    yield means("Number of rays, `sweep`", RAYS, rays)
+    yield "The same against the picture of `sweep-full`:\n\n" + mean_table(RAYS[1:], against)
+    yield means("Blending, `sweep`", BLENDS, measure_at(BLENDS, 20, 0))
+    yield means("Clipped highlights, `sweep`", LIGHTS, measure_at(LIGHTS, 20, 0))
+    thin = measure_at(THIN, 20, 0)
+    yield means("Thin structures, `sweep`", THIN, thin)
+    yield "## Thin structures: PSNR of each view\n\n" + view_table(THIN, thin, "psnr", "{:.2f}")
+    rows = [r for blur, blades in ((20, 6), (10, 0), (40, 0))
+            for r in measure_at(METHODS, blur, blades)]
+    for key, words in ("psnr", "PSNR of each view"), ("edge_psnr", "PSNR near edges"):
+        yield f"## Other apertures: {words}\n\n" + view_table(METHODS, rows, key, "{:.2f}")
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("build", type=Path)
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--floors", action="store_true")
+    args = parser.parse_args()
+    tool = args.build / "tests" / "quality" / "refocus-quality"
+    folders, where = scenes(SCENES)
+
+    def measure_at(runs, blur, blades):
+        return measure(tool, folders, runs, blur, blades)
+
     parts = [
         "# How good the pictures are\n\n"
         "Written by `tests/quality/run.py`; do not edit. Renderings of path-traced scenes by "
         "the public API, scored against the pictures that the path tracer took through a real "
-        "thin lens: four scenes of 720x540, three focus distances each, K = 20, round "
+        f"thin lens: {where}; 720x540, three focus distances each, K = 20, round "
         "aperture. PSNR and RMSE over the 8-bit values of R, G and B; SSIM on luma "
         "(Gaussian 11x11, σ = 1.5); a border of K pixels left out. *Near edges*: PSNR of the "
         "pixels within the larger of the two blur radii of a depth edge of 2 pixels of blur "
         "or more. All in linear light, 64 rays, unless said; means are means of the views' "
-        "values.\n",
-        "## Methods: mean of the twelve views\n\n" + mean_table(methods, rows),
-        "Settings of each run beyond the defaults:\n\n" + settings_list(methods),
-        "## PSNR of each view\n\n" + view_table(methods, rows, "psnr", "{:.2f}"),
-        "## PSNR near edges of each view\n\n" + view_table(methods, rows, "edge_psnr", "{:.2f}"),
-        "## SSIM of each view\n\n" + view_table(methods, rows, "ssim", "{:.4f}"),
-        "## Number of rays, `sweep`: mean of the twelve views\n\n" + mean_table(RAYS, rays),
-        "The same against the picture of `sweep-full`:\n\n" + mean_table(RAYS[1:], against),
-        "## Blending, `sweep`: mean of the twelve views\n\n" + mean_table(BLENDS, blends),
-        "## Clipped highlights, `sweep`: mean of the twelve views\n\n" + mean_table(LIGHTS, lights),
-        "## Thin structures, `sweep`: mean of the twelve views\n\n" + mean_table(THIN, thin),
-        "## Thin structures: PSNR of each view\n\n" + view_table(THIN, thin, "psnr", "{:.2f}"),
-        "## Other apertures: PSNR of each view\n\n" + view_table(METHODS, others, "psnr", "{:.2f}"),
-        "## Other apertures: PSNR near edges\n\n"
-        + view_table(METHODS, others, "edge_psnr", "{:.2f}"),
-    ]
-    out.write_text("\n".join(parts), encoding="utf-8")
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("build", type=Path)
-    parser.add_argument("--quick", action="store_true", help="leave out what is slow")
-    parser.add_argument("--out", type=Path, default=SOURCE / "tests" / "quality.md")
-    args = parser.parse_args()
-
-    folder = Path(os.environ.get("REFOCUS_SCENES", SOURCE.parent / "shared" / "scenes"))
-    scenes = [folder / name for name in SCENES]
-    missing = [str(s) for s in scenes if not (s / "scene.json").is_file()]
-    if missing:
-        sys.exit(f"run.py: no reference scenes at {', '.join(missing)}: set REFOCUS_SCENES")
-    tool = args.build / "tests" / "quality" / "refocus-quality"
-    methods = METHODS + ([] if args.quick else SLOW)
-
-    rows = measure(tool, scenes, methods, 20, 0)
-    rays = measure(tool, scenes, RAYS, 20, 0)
-    against = measure(tool, scenes, [RAYS[0]] + [(l, s + ",against=sweep-full")
-                                                 for l, s, _ in RAYS[1:]], 20, 0)
-    blends = measure(tool, scenes, BLENDS, 20, 0)
-    lights = measure(tool, scenes, LIGHTS, 20, 0)
-    thin = measure(tool, scenes, THIN, 20, 0)
-    others = [r for blur, blades in ((20, 6), (10, 0), (40, 0))
-              for r in measure(tool, scenes, METHODS, blur, blades)]
-    write(args.out, methods, rows, rays, against, blends, lights, thin, others)
-    print(f"wrote {args.out}", file=sys.stderr)
+        "values.\n"]
+    if args.floors:
+        parts += methods(measure_at, [run for run in METHODS if run[0] in FLOORS])
+    else:
+        parts += methods(measure_at, METHODS + ([] if args.check else SLOW))
+        parts += others(measure_at)
+    text = "\n".join(parts)
+    if args.check or args.floors:
+        check(PAGE, text, "tests/pages.sh BUILD quality")
+    else:
+        PAGE.write_text(text, encoding="utf-8")
+        print(f"wrote {PAGE}", file=sys.stderr)
 
 
 if __name__ == "__main__":

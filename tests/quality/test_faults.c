@@ -1,19 +1,16 @@
 /* test_faults.c: pictures by faulty maps after refocus_depth_edges() are as good as they were
  * measured to be, to 0.1 dB near depth edges.
  *
- * With a committed photo the reference is its rendering with the exact map. With the night scene
- * it is the path tracer's: of what faults cost there beside the exact map at most half is left.
+ * With the portrait the reference is its rendering with the exact map. With the night scene it is
+ * the path tracer's: of what faults cost there beside the exact map at most half is left.
  *
- *     test-faults PHOTO SCENES    folders: of allfocus.png and disparity.png; and of the reference
- *                                 scenes, unless $REFOCUS_SCENES names it; left out when it is not
- *                                 there
+ *     test-faults SCENES    the folder of the reference scenes
  */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <refocus/refocus.h>
 
 #include "faults.h"
@@ -200,18 +197,16 @@ static int test(struct scene s, const char *folder, const char *const references
 int main(int argc, char **argv)
 {
     static const char *const traced[VIEWS] = {"gt_df0.294_K20.png", "gt_df0.966_K20.png"};
-    const char *scenes = getenv("REFOCUS_SCENES");
-    char night[4096];
-    struct stat found;
+    char portrait[4096], night[4096];
     int failed;
 
-    if (argc != 3) {
-        fputs("usage: test-faults PHOTO SCENES\n", stderr);
+    if (argc != 2) {
+        fputs("usage: test-faults SCENES\n", stderr);
         return 2;
     }
-    failed = test((struct scene){.focus = {0.6886f, 0}}, argv[1], NULL);
-    snprintf(night, sizeof night, "%s/nightlights", scenes ? scenes : argv[2]);
-    if (!stat(night, &found))
-        failed |= test((struct scene){.focus = {0.2937f, 0.966f}}, night, traced);
+    snprintf(portrait, sizeof portrait, "%s/portrait", argv[1]);
+    snprintf(night, sizeof night, "%s/nightlights", argv[1]);
+    failed = test((struct scene){.focus = {0.6886f, 0}}, portrait, NULL);
+    failed |= test((struct scene){.focus = {0.2937f, 0.966f}}, night, traced);
     return failed;
 }

@@ -130,7 +130,7 @@ static void sweep_all(const struct scene *s, const struct refocus_renderer *r,
                       const double light[256], uint8_t *out)
 {
     const float largest = (float)(s->K * fmax(s->df, 1 - s->df));
-    const struct rf_bin_scale scale = rf_bin_scale_of(largest);
+    const struct rf_bin_scale scale = rf_bin_scale_of(largest, 0);
     struct rf_reach reach;
     struct rf_tile_plan plan;
 

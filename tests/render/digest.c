@@ -209,7 +209,7 @@ static void pictures(void **state)
     }
 }
 
-/* Photos of Y, U and V: as `views`, in the sweep's styles. */
+/* Photos of Y, U and V: as `views`, in the styles of the methods that take them. */
 static const struct yuv_view {
     int width, height, coarse;
     float blur, focus, gain;
@@ -221,6 +221,11 @@ static const struct yuv_view {
     {45, 34, 3, 31.5f, 0.8f, 4, REFOCUS_FORMAT_NV21, 1, 1},
     {25, 19, 1, 100, 0.5f, 1, REFOCUS_FORMAT_YUYV, 0, 0},
 };
+
+static bool takes_yuv(int style)
+{
+    return refocus_method_traits(styles[style].method) & REFOCUS_METHOD_TAKES_YUV;
+}
 
 static uint64_t hash_samples(const struct refocus_image *image)
 {
@@ -262,7 +267,7 @@ static bool hash_yuv_view(const struct yuv_view *view, const struct picture *p, 
 
             params.render.aperture = aperture;
             params.highlights.gain = view->gain;
-            if (styles[i].method == REFOCUS_METHOD_SWEEP) {
+            if (takes_yuv(i)) {
                 assert_int_equal(refocus_render_settings(renderer, &params, &out.image),
                                  REFOCUS_OK);
                 hashes[i] = hash_samples(&out.image);
@@ -307,7 +312,7 @@ static void yuv_views_same(void **state)
         for (int i = 0; i < style_count; i++) {
             char name[120];
 
-            if (styles[i].method != REFOCUS_METHOD_SWEEP)
+            if (!takes_yuv(i))
                 continue;
             snprintf(name, sizeof name,
                      "%d x %d, depth / %d, K = %g, df = %g, gain %g, format %d %d %d, %s", p.width,
@@ -510,9 +515,13 @@ static void estimates(void **state)
     const struct refocus_image photo = picture_image(&p);
     const struct refocus_disparity disparity = picture_disparity(&p);
     struct refocus_settings params = refocus_settings_default(0.4f, 11);
+    struct refocus_aperture_params ring = refocus_aperture_params_default();
+    struct refocus_aperture *aperture;
     uint64_t plain[4];
 
     (void)state;
+    ring.hole = 0.2;
+    assert_int_equal(refocus_aperture_create(&aperture, &ring), REFOCUS_OK);
     for (uint32_t cpu = REFOCUS_CPU_C; refocus_cpu_name(cpu); cpu++) {
         struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 11);
         struct refocus_renderer *renderer;
@@ -528,6 +537,7 @@ static void estimates(void **state)
             uint64_t is;
 
             params.look.cat_eye = i % 2 ? 0.6f : 0;
+            params.render.aperture = i % 2 ? aperture : NULL;
             params.highlights.estimate = i < 2 ? 0 : 1;
             assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
             is = hash(out, sizeof out);
@@ -541,6 +551,7 @@ static void estimates(void **state)
         }
         refocus_renderer_destroy(&renderer);
     }
+    refocus_aperture_destroy(&aperture);
     picture_free(&p);
 }
 

@@ -29,6 +29,7 @@ const struct style styles[] = {
     {"search mirror", REFOCUS_METHOD_SEARCH, 64, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR, 0, 6, 0, 0},
     {"search background", REFOCUS_METHOD_SEARCH, 64, 4, 0, 1, 0, REFOCUS_BLEND_GAMMA, 0, 0, 0, 0},
     {"search mask", REFOCUS_METHOD_SEARCH, 24, 64, 1, 1, 0, REFOCUS_BLEND_LINEAR, 2, -1, 0, 0},
+    {"search weighted", REFOCUS_METHOD_SEARCH, 48, 2, 1, 0, 0, REFOCUS_BLEND_STORED, 40, 0, 0, 0},
     {"raytrace full", REFOCUS_METHOD_RAYTRACE, REFOCUS_RAYS_FULL, 1, 1, 0, 0, REFOCUS_BLEND_LINEAR,
      0, 0, 0, 0},
     {"raytrace plain", REFOCUS_METHOD_RAYTRACE, 32, 1, 0, 0, 0, REFOCUS_BLEND_STORED, 96, 7, 0, 0},

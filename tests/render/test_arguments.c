@@ -56,7 +56,7 @@ static void bad_limits(void **state)
         BAD(refocus_renderer_params, max_height, INT32_MIN),
         BAD(refocus_renderer_params, max_height, INT32_MAX),
         BAD(refocus_renderer_params, max_blur_radius, -0.001f),
-        BAD(refocus_renderer_params, max_blur_radius, 127.001f),
+        BAD(refocus_renderer_params, max_blur_radius, 944.1f),
         BAD(refocus_renderer_params, max_blur_radius, NAN),
         BAD(refocus_renderer_params, max_blur_radius, INFINITY),
         BAD(refocus_renderer_params, threads, -1),
@@ -143,6 +143,7 @@ static void bad_settings(void **state)
         BAD(refocus_settings, render.struct_size, 8),
         BAD(refocus_settings, render.method, REFOCUS_METHOD_COUNT),
         BAD(refocus_settings, render.method, UINT32_MAX),
+        BAD(refocus_settings, render.dither, 2),
         BAD(refocus_settings, render.focus_disparity, -0.01f),
         BAD(refocus_settings, render.focus_disparity, 1.01f),
         BAD(refocus_settings, render.focus_disparity, NAN),
@@ -163,6 +164,9 @@ static void bad_settings(void **state)
         BAD(refocus_settings, highlights.estimate, -0.01f),
         BAD(refocus_settings, highlights.estimate, 4.01f),
         BAD(refocus_settings, highlights.estimate, NAN),
+        BAD(refocus_settings, highlights.steady, -0.01f),
+        BAD(refocus_settings, highlights.steady, 0.96f),
+        BAD(refocus_settings, highlights.steady, NAN),
         BAD(refocus_settings, search.iterations, 0),
         BAD(refocus_settings, search.iterations, 65),
         BAD(refocus_settings, search.iterations, -1),
@@ -170,7 +174,6 @@ static void bad_settings(void **state)
         BAD(refocus_settings, search.background, 2),
         BAD(refocus_settings, render.prefilter, 2),
         BAD(refocus_settings, render.inpaint, 2),
-        BAD(refocus_settings, render.reserved, 1),
         BAD(refocus_settings, focus.reserved, 1),
         BAD(refocus_settings, render.region_x, -1),
         BAD(refocus_settings, render.region_x, 1),
@@ -254,7 +257,7 @@ static void bad_settings(void **state)
         BAD(refocus_settings, look.grain, NAN),
         BAD(refocus_settings, thin.enabled, 2),
         BAD(refocus_settings, focus.blur_limit, -1),
-        BAD(refocus_settings, focus.blur_limit, 127.1f)};
+        BAD(refocus_settings, focus.blur_limit, 944.1f)};
     struct picture p = picture_make(W, H, 1);
     struct refocus_renderer *renderer = heard(&p);
     uint8_t out[3 * W * H];
@@ -453,87 +456,6 @@ static void order_and_size(void **state)
     picture_free(&p);
 }
 
-static void names(void **state)
-{
-    (void)state;
-    for (uint32_t i = 0; i < REFOCUS_METHOD_COUNT; i++) {
-        assert_non_null(refocus_method_name(i));
-        assert_non_null(refocus_method_summary(i));
-    }
-    assert_string_equal(refocus_method_name(REFOCUS_METHOD_SEARCH), "search");
-    assert_null(refocus_method_name(REFOCUS_METHOD_COUNT));
-    assert_null(refocus_method_summary(UINT32_MAX));
-    assert_int_equal(refocus_method_traits(REFOCUS_METHOD_COUNT), 0);
-    assert_string_equal(refocus_cpu_name(REFOCUS_CPU_AVX2), "avx2");
-    assert_string_equal(refocus_cpu_name(REFOCUS_CPU_AVX512), "avx512");
-    for (uint32_t i = 0; i < REFOCUS_CPU_COUNT; i++)
-        assert_non_null(refocus_cpu_name(i));
-    assert_null(refocus_cpu_name(REFOCUS_CPU_COUNT));
-    assert_null(refocus_cpu_name(UINT32_MAX));
-    assert_string_equal(refocus_version(), REFOCUS_VERSION_STRING);
-    for (int i = -20; i < 3; i++)
-        assert_true(strlen(refocus_strerror(i)) > 0);
-    assert_int_equal(refocus_format_bytes(REFOCUS_FORMAT_BGR8), 3);
-    assert_int_equal(refocus_format_bytes(REFOCUS_FORMAT_BGRA8), 4);
-    assert_int_equal(refocus_format_bytes(77), 0);
-}
-
-static void render_rays(struct refocus_renderer *renderer, uint32_t method, int rays, uint8_t *to)
-{
-    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, to, W, H, 3 * W);
-    struct refocus_settings params = refocus_settings_default(0.5f, 5);
-
-    params.render.method = method;
-    params.render.rays = rays;
-    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
-}
-
-/* A method does what its traits say; test_focus.c looks at those of focus. */
-static void traits(void **state)
-{
-    struct picture p = picture_make(W, H, 3);
-    const struct refocus_image photo = picture_image(&p);
-    const struct refocus_disparity disparity = picture_disparity(&p);
-    uint8_t few[3 * W * H], many[3 * W * H];
-    const struct refocus_image to = refocus_image_packed(REFOCUS_FORMAT_RGB8, few, W, H, 3 * W);
-    struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 5);
-    struct refocus_settings params = refocus_settings_default(0.5f, 5);
-    struct refocus_renderer *renderer, *strips;
-    struct refocus_aperture *polygon;
-    uint64_t least;
-
-    (void)state;
-    limits.papers = refocus_papers();
-    limits.threads = 1;
-    least = refocus_renderer_memory(&limits);
-    limits.methods = REFOCUS_METHODS_ALL;
-    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
-    assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
-    assert_int_equal(refocus_aperture_create_polygon(&polygon, 5, 0), REFOCUS_OK);
-    for (uint32_t i = 0; i < REFOCUS_METHOD_COUNT; i++) {
-        const uint32_t has = refocus_method_traits(i);
-        const int no_whole = has & REFOCUS_METHOD_WHOLE_PHOTO ? REFOCUS_ERR_ARGUMENT : REFOCUS_OK;
-
-        render_rays(renderer, i, 3, few);
-        render_rays(renderer, i, 40, many);
-        assert_int_equal(memcmp(few, many, sizeof few) != 0,
-                         (has & REFOCUS_METHOD_TAKES_RAYS) != 0);
-        params.render.method = i;
-        params.render.aperture = polygon;
-        assert_int_equal(refocus_render_settings(renderer, &params, &to),
-                         has & REFOCUS_METHOD_DISC_ONLY ? REFOCUS_ERR_ARGUMENT : REFOCUS_OK);
-        limits.methods = REFOCUS_METHOD_BIT(i);
-        assert_int_equal(refocus_renderer_memory(&limits) > least, no_whole != REFOCUS_OK);
-        limits.in_place = 1;
-        assert_int_equal(refocus_renderer_create(&strips, &limits), no_whole);
-        refocus_renderer_destroy(&strips);
-        limits.in_place = 0;
-    }
-    refocus_aperture_destroy(&polygon);
-    refocus_renderer_destroy(&renderer);
-    picture_free(&p);
-}
-
 static void bad_apertures(void **state)
 {
     static const uint8_t closed[4], open[4] = {255, 255, 255, 255};
@@ -593,8 +515,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_limits),     cmocka_unit_test(bad_settings),
         cmocka_unit_test(bad_pictures),   cmocka_unit_test(bad_disparities),
-        cmocka_unit_test(order_and_size), cmocka_unit_test(names),
-        cmocka_unit_test(traits),         cmocka_unit_test(bad_apertures),
+        cmocka_unit_test(order_and_size), cmocka_unit_test(bad_apertures),
         cmocka_unit_test(kernels)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

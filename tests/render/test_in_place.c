@@ -11,7 +11,7 @@ static struct refocus_renderer *create(const struct picture *p, float blur, int 
     struct refocus_renderer *renderer;
 
     limits.threads = 2;
-    limits.in_place = (uint32_t)in_place;
+    limits.in_place = limits.highlights = (uint32_t)in_place;
     limits.papers = refocus_papers();
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
@@ -92,6 +92,35 @@ static void same_bytes(void **state)
     }
 }
 
+/* Lamps that few rays would hit, cut off by margins of blocks: how wide they are, and what lies
+ * beside them, is known in all blocks. */
+static void wide_lamps(void **state)
+{
+    enum { W = 700, H = 170, BLUR = 40 };
+    struct picture p = picture_flat(W, H, (uint8_t[3]){20, 25, 30}, 3000);
+    struct refocus_settings params = refocus_settings_default(1, BLUR);
+    static uint8_t out[3][3 * W * H];
+
+    (void)state;
+    for (int y = 70; y < 90; y++)
+        for (int i = 0; i < 3 * W; i++)
+            if (i / 3 % 100 > 25)
+                p.rgb[3 * y * W + i] = (uint8_t)(i / 3 % 100 == 26 ? 90 : 255);
+    params.render.rays = 24;
+    for (int k = 0; k < 3; k++) {
+        const struct refocus_image image =
+            refocus_image_packed(REFOCUS_FORMAT_RGB8, out[k], W, H, 3 * W);
+        struct refocus_renderer *renderer = create(&p, BLUR, k == 1);
+
+        params.highlights.gain = k < 2 ? 8 : 1;
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+        refocus_renderer_destroy(&renderer);
+    }
+    assert_same_pixels(out[1], out[0], W, H, "in strips");
+    assert_true(memcmp(out[0], out[2], sizeof out[0]) != 0);
+    picture_free(&p);
+}
+
 /* A map of few codes: slopes are made of its steps, whose neighbours may lie in other blocks. */
 static void few_codes(void **state)
 {
@@ -165,7 +194,7 @@ static void formats(void **state)
         const struct refocus_image to =
             refocus_image_packed(REFOCUS_FORMAT_RGBA8, out[in_place], W, H, 5 * W);
 
-        limits.in_place = (uint32_t)in_place;
+        limits.in_place = limits.highlights = (uint32_t)in_place;
         limits.papers = refocus_papers();
         assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
         assert_int_equal(refocus_prepare(renderer, &image, &disparity), REFOCUS_OK);
@@ -219,7 +248,8 @@ static void refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes), cmocka_unit_test(few_codes),
-                                       cmocka_unit_test(formats), cmocka_unit_test(refused)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes), cmocka_unit_test(wide_lamps),
+                                       cmocka_unit_test(few_codes), cmocka_unit_test(formats),
+                                       cmocka_unit_test(refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

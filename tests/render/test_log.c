@@ -75,9 +75,9 @@ static void ranges_of_limits(void **state)
     CREATE(max_width, 0, "max_width is 0, may be 1 to 65535");
     CREATE(max_width, 65536, "max_width is 65536, may be 1 to 65535");
     CREATE(max_height, -3, "max_height is -3, may be 1 to 65535");
-    CREATE(max_blur_radius, -0.5f, "max_blur_radius is -0.5, may be 0 to 127");
-    CREATE(max_blur_radius, 127.5f, "max_blur_radius is 127.5, may be 0 to 127");
-    CREATE(max_blur_radius, INFINITY, "max_blur_radius is inf, may be 0 to 127");
+    CREATE(max_blur_radius, -0.5f, "max_blur_radius is -0.5, may be 0 to 944");
+    CREATE(max_blur_radius, 944.5f, "max_blur_radius is 944.5, may be 0 to 944");
+    CREATE(max_blur_radius, INFINITY, "max_blur_radius is inf, may be 0 to 944");
     CREATE(threads, 65, "threads is 65, may be 0 to 64");
     CREATE(cpu, 6, "cpu is 6, may be 0 to 5");
     CREATE(methods, 1u << 10, "methods is 1024, may be 0 to 1023");
@@ -223,7 +223,7 @@ static void pictures_in(void **state)
          "refocus_prepare: photo is NULL");
     SAYS(refocus_prepare(renderer, &good, NULL), REFOCUS_ERR_ARGUMENT,
          "refocus_prepare: disparity is NULL");
-    PREPARE(photo, format, 99, REFOCUS_ERR_ARGUMENT, "photo->format is 99, may be 1 to 8");
+    PREPARE(photo, format, 99, REFOCUS_ERR_ARGUMENT, "photo->format is 99, may be 1 to 16");
     PREPARE(photo, width, 0, REFOCUS_ERR_ARGUMENT, "photo->width is 0, may be 1 to 65535");
     PREPARE(photo, height, -1, REFOCUS_ERR_ARGUMENT, "photo->height is -1, may be 1 to 65535");
     PREPARE(photo, plane[0], NULL, REFOCUS_ERR_ARGUMENT, "photo->plane[0] is NULL");
@@ -284,7 +284,7 @@ static void settings(void **state)
     assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
     RENDER(render.focus_disparity, 1.5f, "focus_disparity is 1.5, may be 0 to 1");
     RENDER(render.max_blur_radius, 5.5f, "max_blur_radius is 5.5, may be 0 to the renderer's 5");
-    RENDER(render.max_blur_radius, 128, "max_blur_radius is 128, may be 0 to 127");
+    RENDER(render.max_blur_radius, 945, "max_blur_radius is 945, may be 0 to 944");
     RENDER(render.rays, 0, "rays is 0, may be 1 to 1024, or -1");
     RENDER(render.sigma, 0.5f, "sigma is 0.5, may be 1 to inf");
     RENDER(highlights.gain, 17, "highlights->gain is 17, may be 1 to 16");

@@ -112,37 +112,50 @@ static void every_failure(void **state)
     }
 }
 
-/* render.h: 27 (W + 2P + 79)(H + 2P + 16) + 3 (W + 16)(H + 16) + 4 T (W + 512) + 24 W + 12 H + 2^20
- */
+/* Twice the margin of scratch rows, by the text of render.h. */
+static double scratch(float blur)
+{
+    return blur <= 127 ? 512 : blur <= 236 ? 1024 : blur <= 472 ? 2048 : 4096;
+}
+
+/* render.h: 27 (W + 2P + 79)(H + 2P + 16) + 3 (W + 16)(H + 16) + 4 T (W + R) + 620000 T + 24 W
+ * + 12 H + 2^20 */
 static double stated(int width, int height, float blur, int threads)
 {
     const double p = 2 * (ceil((double)blur) + 2);
 
     return 27 * (width + p + 79) * (height + p + 16) + 3.0 * (width + 16) * (height + 16) +
-           4.0 * threads * (width + 512) + 24.0 * width + 12.0 * height + 1048576.0;
+           4.0 * threads * (width + scratch(blur)) + 62e4 * threads + 24.0 * width + 12.0 * height +
+           1048576.0;
 }
 
 static void formula(void **state)
 {
     static const int sides[][2] = {{1, 1},     {1, 65535},   {65535, 1}, {16, 16},  {17, 33},
                                    {720, 540}, {1920, 1080}, {2, 40000}, {31, 5000}};
-    static const float blurs[] = {0, 0.5f, 1, 20, 40.25f, 127};
+    static const float blurs[] = {0, 0.5f, 1, 20, 40.25f, 127, 128, 300, 944};
     static const int threads[] = {1, 2, 8, 64};
 
     (void)state;
     for (int s = 0; s < 9; s++) {
-        for (int k = 0; k < 6; k++) {
+        for (int k = 0; k < 9; k++) {
             for (int t = 0; t < 4; t++) {
                 struct counter counter;
-                const struct refocus_renderer_params params =
+                struct refocus_renderer_params params =
                     counted(&counter, sides[s][0], sides[s][1], blurs[k], threads[t]);
                 const uint64_t bytes = refocus_renderer_memory(&params);
                 const double most = stated(sides[s][0], sides[s][1], blurs[k], threads[t]);
+                double deep;
 
                 if (bytes == 0 || (double)bytes > most)
                     fail_msg("%d x %d, K = %g, %d threads: says %llu bytes, header %.0f",
                              sides[s][0], sides[s][1], (double)blurs[k], threads[t],
                              (unsigned long long)bytes, most);
+                params.deep = 1;
+                deep = (double)refocus_renderer_memory(&params) - (double)bytes;
+                if (deep <= 0 || deep > 7 * (sides[s][0] + 16.0) * (sides[s][1] + 64.0) + 65536)
+                    fail_msg("%d x %d, K = %g, %d threads: deep photos take %.0f bytes",
+                             sides[s][0], sides[s][1], (double)blurs[k], threads[t], deep);
             }
         }
     }
@@ -151,12 +164,13 @@ static void formula(void **state)
 /* Returns the most memory that strip mode takes, by the text of render.h. */
 static double stated_in_place(int width, int height, float blur, int threads)
 {
-    const double p = ceil((double)blur) + 2, m = 16 * ceil((p + 28) / 16);
+    const double p = ceil((double)blur) + 2, m = 16 * ceil((p + (blur > 127 ? 148 : 28)) / 16);
     const double n = fmax(16 * ceil((2 * p + 9) / 16), m);
     const double s = 144 + 2 * n - m + fmax(m, 2 * p);
 
     return 28 * (s + 63) * (s + 16) + 0.78 * (width + 16.0) * (height + 64.0) +
-           4.0 * threads * (width + 512) + 24 * p * p + 131072;
+           4.0 * threads * (width + scratch(blur)) + 62e4 * threads +
+           24 * fmin(p, 129) * fmin(p, 129) + 150000;
 }
 
 /* The figures that strip mode is for. */
@@ -164,16 +178,15 @@ static void formula_of_modes(void **state)
 {
     static const int sides[][2] = {{1, 1},     {1, 65535},   {65535, 1}, {16, 16},  {17, 33},
                                    {720, 540}, {1920, 1080}, {2, 40000}, {31, 5000}};
-    static const float blurs[] = {0, 0.5f, 1, 12, 20, 40, 40.25f, 64, 100, 127};
+    static const float blurs[] = {0, 0.5f, 1, 12, 20, 40, 64, 100, 127, 128, 300, 944};
     struct refocus_renderer_params params = refocus_renderer_params_default(1920, 1080, 40);
 
     (void)state;
-    params.threads = 2;
+    params.threads = 1;
     params.in_place = 1;
     assert_true(refocus_renderer_memory(&params) < 6000000);
-    assert_true(stated_in_place(1920, 1080, 40, 2) < 6000000);
     for (int s = 0; s < 9; s++) {
-        for (int k = 0; k < 10; k++) {
+        for (int k = 0; k < 12; k++) {
             const int w = sides[s][0], h = sides[s][1], threads = k % 2 ? 1 : 64;
             double bytes;
 
@@ -184,7 +197,7 @@ static void formula_of_modes(void **state)
             if (bytes <= 0 || bytes > stated_in_place(w, h, blurs[k], threads))
                 fail_msg("%d x %d, K = %g: strip mode takes %.0f bytes, header %.0f", w, h,
                          (double)blurs[k], bytes, stated_in_place(w, h, blurs[k], threads));
-            params.estimate = 1;
+            params.highlights = 1;
             bytes = (double)refocus_renderer_memory(&params) - bytes;
             if (bytes < 0 || bytes > 24 * fmin(w, 512) * fmin(h, 512) + 65536)
                 fail_msg("%d x %d, K = %g: the estimate takes %.0f bytes in strip mode", w, h,

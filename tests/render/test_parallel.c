@@ -184,9 +184,81 @@ static void cancel_within(void **state)
     picture_free(&p);
 }
 
+/* Calls into the renderer from within its loop, from the thread that is in it and from another. */
+struct intruder {
+    struct refocus_renderer *renderer;
+    struct refocus_image photo;
+    struct refocus_disparity disparity;
+    int refused; /* loops in which all calls were */
+};
+
+static void *intrude(void *user)
+{
+    struct intruder *in = user;
+    const struct refocus_scene scene = refocus_scene_default(&in->photo, &in->disparity);
+    const struct refocus_render_params params = refocus_render_params_default(0.4f, 8);
+    struct refocus_depth_edges_report report = refocus_depth_edges_report_default();
+    struct refocus_renderer_info info = refocus_renderer_info_default();
+    uint8_t pixel[3] = {1, 2, 3};
+    const struct refocus_image out = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixel, 1, 1, 3);
+    uint16_t view;
+
+    assert_int_equal(refocus_prepare(in->renderer, &in->photo, &in->disparity), REFOCUS_ERR_BUSY);
+    assert_int_equal(refocus_prepare_scene(in->renderer, &scene), REFOCUS_ERR_BUSY);
+    assert_int_equal(refocus_render(in->renderer, &params, &out), REFOCUS_ERR_BUSY);
+    assert_int_equal(refocus_get_view(in->renderer, REFOCUS_VIEW_DISPARITY, &view, 2),
+                     REFOCUS_ERR_BUSY);
+    assert_int_equal(refocus_get_depth_edges(in->renderer, &report), REFOCUS_ERR_BUSY);
+    refocus_renderer_get_info(in->renderer, &info);
+    assert_int_equal(info.threads, 2);
+    assert_true(pixel[0] == 1 && pixel[1] == 2 && pixel[2] == 3);
+    return NULL;
+}
+
+static void intruding(void *user, void (*work)(void *context, int32_t item), void *context,
+                      int32_t count)
+{
+    struct intruder *in = user;
+    pthread_t thread;
+
+    intrude(in);
+    assert_int_equal(pthread_create(&thread, NULL, intrude, in), 0);
+    for (int32_t i = 0; i < count; i++)
+        work(context, i);
+    pthread_join(thread, NULL);
+    in->refused++;
+}
+
+static void second_call(void **state)
+{
+    struct picture p = picture_make(WIDTH, HEIGHT, 13);
+    struct intruder in = {NULL, picture_image(&p), picture_disparity(&p), 0};
+    struct refocus_renderer_params limits = refocus_renderer_params_default(WIDTH, HEIGHT, 8);
+    struct refocus_renderer *alone = prepared(&p, 8, 1);
+    static uint8_t expected[3 * WIDTH * HEIGHT], out[3 * WIDTH * HEIGHT];
+    static uint16_t view[WIDTH * HEIGHT];
+
+    (void)state;
+    render_style(alone, &p, &styles[0], 0.4f, 8, expected);
+    limits.threads = 2;
+    limits.parallel.parallel_for = intruding;
+    limits.parallel.user = &in;
+    assert_int_equal(refocus_renderer_create(&in.renderer, &limits), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(in.renderer, &in.photo, &in.disparity), REFOCUS_OK);
+    render_style(in.renderer, &p, &styles[0], 0.4f, 8, out);
+    assert_same_pixels(out, expected, WIDTH, HEIGHT, "with calls that were refused");
+    assert_true(in.refused > 3);
+    assert_int_equal(refocus_get_view(in.renderer, REFOCUS_VIEW_DISPARITY, view, 2 * WIDTH),
+                     REFOCUS_OK);
+    refocus_renderer_destroy(&in.renderer);
+    refocus_renderer_destroy(&alone);
+    picture_free(&p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes),
-                                       cmocka_unit_test(cancel_within)};
+                                       cmocka_unit_test(cancel_within),
+                                       cmocka_unit_test(second_call)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -165,7 +165,7 @@ static void regions(void **state)
     enum { W = 77, H = 50 };
     struct picture p = picture_make(W, H, 8);
     struct refocus_renderer *renderer = prepared(&p, 8, 2), *fresh = prepared(&p, 8, 2);
-    uint8_t whole[3 * W * H], part[3 * W * H], crop[3 * W * H];
+    static uint8_t whole[3 * W * H], part[3 * W * H], crop[3 * W * H];
 
     (void)state;
     for (int s = 0; s < style_count; s++) {

@@ -201,10 +201,65 @@ static void two_renderers(void **state)
     }
 }
 
+/* Two threads in one renderer: each call does all of its work, or is refused and does nothing. */
+struct rival {
+    struct refocus_renderer *renderer;
+    const uint8_t *expected;
+    int done, refused;
+};
+
+static void *render_rivalling(void *user)
+{
+    struct rival *rival = user;
+    const struct refocus_render_params params = refocus_render_params_default(0.7f, 6);
+    uint8_t out[3 * 80 * 60];
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 80, 60, 240);
+
+    while (rival->done < 20) {
+        int status;
+
+        memset(out, 0x33, sizeof out);
+        status = refocus_render(rival->renderer, &params, &image);
+        if (status == REFOCUS_OK) {
+            assert_same_pixels(out, rival->expected, 80, 60, "one of two threads");
+            rival->done++;
+            continue;
+        }
+        assert_int_equal(status, REFOCUS_ERR_BUSY);
+        for (size_t i = 0; i < sizeof out; i++)
+            assert_int_equal(out[i], 0x33);
+        rival->refused++;
+        pause_ms(1);
+    }
+    return NULL;
+}
+
+static void one_renderer(void **state)
+{
+    struct picture p = picture_make(80, 60, 44);
+    struct refocus_renderer *renderer = prepared(&p, 6, 2);
+    const struct refocus_render_params params = refocus_render_params_default(0.7f, 6);
+    static uint8_t expected[3 * 80 * 60];
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, expected, 80, 60, 240);
+    struct rival rival[2] = {{renderer, expected, 0, 0}, {renderer, expected, 0, 0}};
+    pthread_t thread;
+
+    (void)state;
+    assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+    assert_int_equal(pthread_create(&thread, NULL, render_rivalling, &rival[1]), 0);
+    render_rivalling(&rival[0]);
+    pthread_join(thread, NULL);
+    print_message("%d calls were refused\n", rival[0].refused + rival[1].refused);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(same_bytes), cmocka_unit_test(cancel_render),
-        cmocka_unit_test(cancel_prepare), cmocka_unit_test(two_renderers)};
+        cmocka_unit_test(cancel_prepare), cmocka_unit_test(two_renderers),
+        cmocka_unit_test(one_renderer)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -176,6 +176,20 @@ static void drawn(void **state)
     picture_free(&p);
 }
 
+/* Blurs in units of two and of four pixels. */
+static void far_out(void **state)
+{
+    struct picture p = picture_make(420, 310, 6);
+    static const float blurs[] = {200, 300};
+
+    (void)state;
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 4; k += 2) /* 64 rays, and 128 of an iris */
+            if (compare(&p, "drawn, large", &ways[k], i ? 0.4f : 0.9f, blurs[i]) < bound_db)
+                fail_msg("below %g dB", bound_db);
+    picture_free(&p);
+}
+
 /* A part of the shipped scene with an edge of the subject in it. */
 static void shipped(void **state)
 {
@@ -216,7 +230,8 @@ static void shipped(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(drawn), cmocka_unit_test(shipped)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(drawn), cmocka_unit_test(far_out),
+                                       cmocka_unit_test(shipped)};
 
     scene = argc > 1 ? argv[1] : ".";
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -8,6 +8,7 @@ static struct refocus_renderer *renderer_for(int width, int height, float blur, 
     struct refocus_renderer *renderer;
 
     limits.threads = threads;
+    limits.papers = refocus_papers();
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     return renderer;
 }
@@ -26,11 +27,11 @@ static void render(struct refocus_renderer *renderer, const struct refocus_setti
     assert_int_equal(refocus_render_settings(renderer, params, &out->image), REFOCUS_OK);
 }
 
-/* Every style of the sweep, one after another. */
-static const struct style *sweep_style(int *at)
+/* Every style of the methods that take Y, U and V, one after another. */
+static const struct style *yuv_style(int *at)
 {
     while (*at < style_count)
-        if (styles[(*at)++].method == REFOCUS_METHOD_SWEEP)
+        if (refocus_method_traits(styles[(*at)++].method) & REFOCUS_METHOD_TAKES_YUV)
             return &styles[*at - 1];
     return NULL;
 }
@@ -72,7 +73,7 @@ static void one_colour(void **state)
                 for (int k = 0; k < 3; k++)
                     *yuv_sample(&photo.image, k, x, y) = code[k];
         prepare(renderer, &photo, &deep);
-        for (int s = 0; (style = sweep_style(&s));) {
+        for (int s = 0; (style = yuv_style(&s));) {
             if (left_out(s + i, 4))
                 continue;
             render_style_yuv(renderer, style, 0.35f, 11, s % 2 ? 1 : 4, &out);
@@ -101,7 +102,7 @@ static void no_blur(void **state)
 
         yuv_noise(&photo, 17);
         prepare(renderer, &photo, &deep);
-        for (int s = 0; (style = sweep_style(&s));) {
+        for (int s = 0; (style = yuv_style(&s));) {
             render_style_yuv(renderer, style, 0.5f, 0, 1, &out);
             assert_same_yuv(&out.image, &photo.image, style->name);
             render_style_yuv(renderer, style, 0.5f, 0.98f, 1, &out); /* r <= 0.49 */
@@ -133,9 +134,11 @@ static void columns_stay(float focus, int edge, int from, int to)
 
         yuv_from_picture(&photo, &deep);
         prepare(renderer, &photo, &deep);
-        for (int s = 0; (style = sweep_style(&s));) {
+        for (int s = 0; (style = yuv_style(&s));) {
             int changed = 0;
 
+            if (style->method != REFOCUS_METHOD_SWEEP) /* a search may see what is not in focus */
+                continue;
             render_style_yuv(renderer, style, focus, K, 1, &out);
             for (int at = 0; at < W * H * 3; at++) {
                 const int x = at / 3 % W, y = at / 3 / W, c = at % 3;
@@ -177,7 +180,7 @@ static void layouts(void **state)
     const struct style *style;
 
     (void)state;
-    for (int s = 0; (style = sweep_style(&s));) {
+    for (int s = 0; (style = yuv_style(&s));) {
         for (int i = 0; i < 9; i++) {
             struct yuv_picture photo = yuv_make(yuv_formats[i / 3], W, H, i);
             struct yuv_picture out = yuv_make(yuv_formats[i % 3], W, H, 2 * i);
@@ -207,7 +210,7 @@ static void layouts(void **state)
 /* Grey stays grey, and its luma is that of the same picture in R, G, B, to one code. Up to 64 rays
  * what is deepest in view of half a tile, or of all of it, is taken from the background, so
  * that more rays are needed for that. */
-static void grey(void **state)
+static void grey_by(uint32_t method)
 {
     enum { W = 90, H = 70 };
     struct picture p = picture_make(W, H, 8);
@@ -219,7 +222,7 @@ static void grey(void **state)
     const struct refocus_disparity map = picture_disparity(&p);
     struct refocus_image photo_rgb;
 
-    (void)state;
+    params.render.method = method;
     params.render.rays = 96;
     for (int i = 0; i < W * H; i++)
         p.rgb[3 * i] = p.rgb[3 * i + 2] = p.rgb[3 * i + 1];
@@ -251,6 +254,13 @@ static void grey(void **state)
     picture_free(&p);
 }
 
+static void grey(void **state)
+{
+    (void)state;
+    grey_by(REFOCUS_METHOD_SWEEP);
+    grey_by(REFOCUS_METHOD_SEARCH);
+}
+
 /* A region is that part of the whole; one that splits samples is refused. */
 static void regions(void **state)
 {
@@ -262,11 +272,14 @@ static void regions(void **state)
     struct refocus_renderer *renderer = renderer_for(W, H, 9, 2);
 
     (void)state;
-    for (int i = 0; i < 4; i++) {
+    for (int j = 0; j < 8; j++) {
+        const int i = j / 2;
         struct refocus_settings params = refocus_settings_default(0.3f, 9);
         struct yuv_picture photo = yuv_make(yuv_formats[i], W, H, 0);
         struct yuv_picture whole = yuv_make(yuv_formats[i], W, H, 0);
 
+        params.render.method = j % 2 ? REFOCUS_METHOD_SEARCH : REFOCUS_METHOD_SWEEP;
+        params.highlights.gain = 3;
         yuv_from_picture(&photo, &deep);
         prepare(renderer, &photo, &deep);
         render(renderer, &params, &whole);
@@ -315,7 +328,7 @@ static void by_turns(void **state)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out_rgb, W, H, 3 * W);
 
     (void)state;
-    for (int i = 0; i < 16; i++) {
+    for (int i = 0; i < 24; i++) {
         struct refocus_settings params = refocus_settings_default(0.6f, 9);
         struct yuv_picture photo = yuv_make(yuv_formats[i % 4], W, H, 0);
         struct yuv_picture out = yuv_make(yuv_formats[i % 4], W, H, 0);
@@ -324,6 +337,8 @@ static void by_turns(void **state)
 
         params.highlights.gain = i % 2 ? 4 : 1;
         params.render.sigma = i % 3 ? 1e30f : 60;
+        params.render.method = i / 4 % 2 ? REFOCUS_METHOD_SEARCH : REFOCUS_METHOD_SWEEP;
+        params.search.background = i / 8 % 2;
         yuv_from_picture(&photo, &p);
         photo.image.range = (uint32_t)i / 2 % 2;
         photo.image.matrix = (uint32_t)i % 2;
@@ -373,7 +388,7 @@ static void refused(void **state)
     assert_int_equal(refocus_render_settings(renderer, &params, &yuyv.image),
                      REFOCUS_ERR_UNSUPPORTED);
     assert_int_equal(refocus_render_settings(renderer, &params, &i420.image), REFOCUS_OK);
-    params.render.method = REFOCUS_METHOD_SEARCH;
+    params.render.method = REFOCUS_METHOD_RAYTRACE;
     assert_int_equal(refocus_render_settings(renderer, &params, &i420.image),
                      REFOCUS_ERR_UNSUPPORTED);
     params.render.method = REFOCUS_METHOD_SWEEP;
@@ -409,19 +424,19 @@ static double luma_of(const uint8_t *rgb)
 }
 
 /* Colours that are the same over blocks as large as samples: luma close to what R, G, B give. */
-static void like_rgb(void **state)
+static void like_rgb_by(uint32_t method)
 {
     enum { W = 160, H = 120 };
     struct picture p = picture_make(W, H, 44);
     struct refocus_renderer *renderer = renderer_for(W, H, 10, 2);
-    const struct refocus_settings params = refocus_settings_default(0.2f, 10);
+    struct refocus_settings params = refocus_settings_default(0.2f, 10);
     const struct refocus_disparity map = picture_disparity(&p);
     static uint8_t rgb[3 * W * H];
     const struct refocus_image out_rgb =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, W, H, 3 * W);
     const struct refocus_image photo_rgb = picture_image(&p);
 
-    (void)state;
+    params.render.method = method;
     for (int i = 0; i < W * H; i++)
         memcpy(p.rgb + 3 * i, p.rgb + 3 * (i / W / 2 * 2 * W + i % W / 2 * 2), 3);
     assert_int_equal(refocus_prepare(renderer, &photo_rgb, &map), REFOCUS_OK);
@@ -451,11 +466,61 @@ static void like_rgb(void **state)
     picture_free(&p);
 }
 
+static void like_rgb(void **state)
+{
+    (void)state;
+    like_rgb_by(REFOCUS_METHOD_SWEEP);
+    like_rgb_by(REFOCUS_METHOD_SEARCH);
+}
+
+/* The disparities of a photo with a map of any size do not depend on the largest blur, by which
+ * planes lie closer together or farther apart: no picture of colours is written over while it is
+ * looked at. */
+static void same_depth_at_any_reach(void **state)
+{
+    enum { W = 61, H = 46 };
+    static const int maps[][2] = {{30, 22}, {64, 48}, {W, H}};
+    static uint16_t view[2][W * H];
+
+    (void)state;
+    for (uint32_t edges = 0; edges <= REFOCUS_DEPTH_EDGES_STEADY; edges++) {
+        for (int m = 0; m < 3; m++) {
+            struct picture colours = picture_make(W, H, 5);
+            struct picture depth = picture_make(maps[m][0], maps[m][1], 6);
+            struct yuv_picture photo = yuv_make(yuv_formats[0], W, H, 0);
+
+            yuv_from_picture(&photo, &colours);
+            for (int k = 0; k < 2; k++) {
+                struct refocus_renderer_params limits =
+                    refocus_renderer_params_default(64, 48, k ? 90 : 6);
+                const struct refocus_disparity map = picture_disparity(&depth);
+                struct refocus_scene scene = refocus_scene_default(&photo.image, &map);
+                struct refocus_renderer *renderer;
+
+                limits.depth_edges = scene.depth_edges = edges;
+                assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+                assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_OK);
+                refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, view[k], 2 * W);
+                refocus_renderer_destroy(&renderer);
+            }
+            for (int at = 0; at < W * H; at++)
+                if (view[0][at] != view[1][at])
+                    fail_msg("edges %d, map %d: disparity %d or %d at %d,%d", (int)edges, m,
+                             view[0][at], view[1][at], at % W, at / W);
+            yuv_free(&photo);
+            picture_free(&depth);
+            picture_free(&colours);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_colour), cmocka_unit_test(no_blur), cmocka_unit_test(in_focus),
-        cmocka_unit_test(layouts),    cmocka_unit_test(grey),    cmocka_unit_test(regions),
-        cmocka_unit_test(by_turns),   cmocka_unit_test(refused), cmocka_unit_test(like_rgb)};
+        cmocka_unit_test(one_colour), cmocka_unit_test(no_blur),
+        cmocka_unit_test(in_focus),   cmocka_unit_test(layouts),
+        cmocka_unit_test(grey),       cmocka_unit_test(regions),
+        cmocka_unit_test(by_turns),   cmocka_unit_test(refused),
+        cmocka_unit_test(like_rgb),   cmocka_unit_test(same_depth_at_any_reach)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,6 +35,22 @@ void draw_thing(struct picture *p, const struct thing *t, double cx, double cy)
         }
 }
 
+void draw_skirt(struct picture *p, double cx, double cy, double area, const double light[3],
+                double share)
+{
+    for (int y = 0; y < p->height; y++)
+        for (int x = 0; x < p->width; x++) {
+            const double away = hypot(x - cx, y - cy) / 2;
+            const double skirt = share * area / (12 * pow(1 + away * away, 1.5));
+
+            for (int c = 0; c < 3; c++) {
+                uint8_t *code = &p->rgb[3 * (y * p->width + x) + c];
+
+                *code = picture_code(picture_light(*code) + skirt * light[c]);
+            }
+        }
+}
+
 struct picture night(uint32_t seed, int w, int h)
 {
     struct picture p = picture_make(w, h, seed);

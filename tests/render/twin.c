@@ -43,6 +43,7 @@ void twin_create(struct twin *t, const struct picture *p, const struct refocus_s
                        params,
                        (double)params->render.max_blur_radius,
                        (double)params->render.focus_disparity,
+                       1,
                        p->disparity,
                        silhouette,
                        silhouettes,
@@ -52,6 +53,8 @@ void twin_create(struct twin *t, const struct picture *p, const struct refocus_s
                        0,
                        0,
                        0};
+    for (double most = 127; t->K > most; most = 118 * t->unit)
+        t->unit *= 2;
     t->map_blur = plane(t);
     t->blur = plane(t);
     t->background_blur = plane(t);
@@ -82,7 +85,7 @@ void twin_destroy(struct twin *t)
 }
 
 /* Along one axis: a third of the way from a pixel to each of those neighbours, `step` pixels away,
- * whose blur is within an eighth, one pixel to two, of its own; the pixel itself where it is
+ * whose blur is within an eighth, one unit to two, of its own; the pixel itself where it is
  * blurred by `above` or less, and, of at most 64 rays, a part of both up to 5/4
  * of that. */
 static void smooth(const struct twin *t, double *out, const double *in, int step_x, int step_y,
@@ -98,7 +101,7 @@ static void smooth(const struct twin *t, double *out, const double *in, int step
             for (int i = -1; i <= 1; i++) {
                 const int q = twin_at(t, x + i * step_x, y + i * step_y);
 
-                if (fabs(t->blur[q] - t->blur[p]) <= fmin(fmax(size / 8, 1), 2))
+                if (fabs(t->blur[q] - t->blur[p]) <= fmin(fmax(size / 8, t->unit), 2 * t->unit))
                     way += in[q] - in[p];
             }
             out[p] = in[p] + way / 3 * (t->params->render.rays > 64 ? size > above : part);
@@ -106,17 +109,21 @@ static void smooth(const struct twin *t, double *out, const double *in, int step
     }
 }
 
-/* Steps of 1, 2 and 4 pixels from where rays lie 1.5, 3 and 6 pixels apart; the two last if
- * that can be at all. */
+/* Steps of 1, 2 and 4 pixels from where rays lie 1.5, 3 and 6 pixels apart, and so on to 64 where
+ * blurs may exceed 127 pixels; two more each if that can be at all. */
 void twin_prefilter(struct twin *t)
 {
     const double apart = sqrt(t->params->render.rays / 3.14159265358979);
+    const int most = t->unit > 1 ? 64 : 4;
     double *between;
+    int last = 1;
 
     if (!t->params->render.prefilter || t->params->render.rays == REFOCUS_RAYS_FULL)
         return;
     between = plane(t);
-    for (int step = 1; step <= (t->K > 3 * apart ? 4 : 1); step *= 2) {
+    while (last < most && t->K > 3 * last * apart)
+        last *= 4;
+    for (int step = 1; step <= last; step *= 2) {
         for (int c = 0; c < 3; c++) {
             smooth(t, between, t->smooth[c], 0, step, 1.5 * step * apart);
             smooth(t, t->smooth[c], between, step, 0, 1.5 * step * apart);

@@ -18,6 +18,8 @@ struct twin {
     int width, height;
     const struct refocus_settings *params;
     double K, df;
+    int unit; /* pixels: blurs of up to 127 pixels have bins and tolerances of one pixel, larger
+                 ones coarser ones */
     const uint16_t *disparity;
     const struct twin_silhouette *silhouette;
     int silhouettes;
@@ -72,8 +74,8 @@ struct twin_strip {
 /* Whether the background is taken for slab [low, high] where rays that are moved by (dx, dy) hit
  * it: in the cells around there nothing is deeper, the background shows it just so, and some is
  * nearer. */
-bool twin_is_deepest(const struct twin_cells *cells, struct twin_strip strip, int dx, int dy,
-                     double low, double high);
+bool twin_is_deepest(const struct twin *t, const struct twin_cells *cells, struct twin_strip strip,
+                     int dx, int dy, double low, double high);
 
 /* Weighted sums over the rays of a pixel, eq. 5. */
 struct twin_sum {

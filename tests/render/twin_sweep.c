@@ -24,21 +24,45 @@ struct plan {
     bool sharp;
 };
 
-/* Returns the width of a bin, by the largest blur. */
+/* Returns the width of a bin, by the largest blur; 0: they are a pixel wide up to 31.5 pixels of
+ * blur, then a sixteenth of the octave. */
 static double bin_width(const struct twin *t)
 {
     const double largest = t->K * fmax(t->df, 1 - t->df);
 
-    return largest <= 31.5 ? 0.25 : largest <= 63.5 ? 0.5 : 1;
+    return t->unit > 1 ? 0 : largest <= 31.5 ? 0.25 : largest <= 63.5 ? 0.5 : 1;
+}
+
+/* Whole pixels to bins, and back to the least of a bin. */
+static int place_of(int p)
+{
+    const int octave = p < 32 ? 0 : (int)floor(log2(p / 16.0));
+
+    return 16 * octave + (p >> octave);
+}
+
+static int pixels_of(int place)
+{
+    const int octave = place < 32 ? 0 : place / 16 - 1;
+
+    return (place - 16 * octave) << octave;
 }
 
 static int bin_of(double width, double s)
 {
+    const int p = (int)floor(s + 0.5);
+
+    if (width <= 0)
+        return FOCUS_BIN + (p < 0 ? -place_of(-p) : place_of(p));
     return (int)floor((s + 0.5) / width) + FOCUS_BIN;
 }
 
 static double edge_of(double width, int bin)
 {
+    const int place = bin - FOCUS_BIN;
+
+    if (width <= 0)
+        return (place < 0 ? 1 - pixels_of(1 - place) : pixels_of(place)) - 0.5;
     return (bin - FOCUS_BIN) * width - 0.5;
 }
 
@@ -104,6 +128,58 @@ static struct bins reach_of_tile(const struct twin *t, const struct bins *tiles,
     return reach;
 }
 
+static void add(struct bins *reach, const struct bins *bins)
+{
+    if (bins->least > bins->most)
+        return;
+    for (int i = 0; i < BINS; i++)
+        reach->has[i] |= bins->has[i];
+    reach->least = fmin(reach->least, bins->least);
+    reach->most = fmax(reach->most, bins->most);
+}
+
+/* Whole tiles between one and those from `from` to from + count - 1. */
+static int between_tiles(int tile, int from, int count)
+{
+    const int n = tile < from ? from - tile : tile - from - count + 1;
+
+    return n > 1 ? n - 1 : 0;
+}
+
+/* Blurs of large units are collected from blocks of 4 x 4 tiles, but where these are less than four
+ * tiles away from single ones; by whole tiles in between. */
+static struct bins reach_from_blocks(const struct bins *tiles, int across, int down, int tx, int ty)
+{
+    enum { BLOCK = 4 };
+    struct bins reach = {{false}, 1e9, -1e9};
+
+    for (int y = 0; y < down; y += BLOCK)
+        for (int x = 0; x < across; x += BLOCK) {
+            const int dx = between_tiles(tx, x, BLOCK), dy = between_tiles(ty, y, BLOCK);
+            const bool near = dx < BLOCK && dy < BLOCK;
+            struct bins block = {{false}, 1e9, -1e9};
+
+            for (int i = 0; i < BLOCK * BLOCK; i++) {
+                const int u = x + i % BLOCK, v = y + i / BLOCK;
+                struct bins bins;
+
+                if (u >= across || v >= down)
+                    continue;
+                bins = tiles[v * across + u];
+                if (near)
+                    drop_short(&bins, 0,
+                               floor(hypot(between_tiles(tx, u, 1), between_tiles(ty, v, 1))) *
+                                       TWIN_TILE -
+                                   1);
+                add(&block, &bins);
+            }
+            if (!near)
+                drop_short(&block, 0, floor(hypot(dx, dy)) * TWIN_TILE - 1);
+            add(&reach, &block);
+        }
+    return reach;
+}
+
 /* A slab over bins [bin, last], nothing of it in focus. */
 static struct slab slab_over(const struct bins *bins, double width, int bin, int last)
 {
@@ -116,16 +192,46 @@ static struct slab slab_over(const struct bins *bins, double width, int bin, int
     return slab;
 }
 
+/* Where a slab of blurs of large units ends: at that edge of a bin which is nearest to an eighth of
+ * the blur, less a pixel. */
+static int end_of_units(int bin)
+{
+    const double low = edge_of(0, bin), until = low + fabs(low) / 8 - 1;
+    int end = bin_of(0, until);
+
+    if (2 * until > edge_of(0, end) + edge_of(0, end + 1))
+        end++;
+    return end > bin ? end : bin + 1;
+}
+
+/* Where a slab ends that begins with that bin. */
+static int end_of(int bin, double width)
+{
+    const int pixel = width > 0 ? (int)(1 / width) : 1;
+    const double low = edge_of(width, bin);
+    int end = bin + pixel;
+
+    if (bin >= FOCUS_BIN && bin < FOCUS_BIN + pixel)
+        return FOCUS_BIN + pixel;
+    if (pixel > 1 && low > -3 && low < 3)
+        end = bin + pixel / 2;
+    if (width <= 0)
+        end = end_of_units(bin);
+    else if (fabs(low) >= 16)
+        end = bin + (int)floor(pixel * (fabs(low) / 8 - 1));
+    return bin < FOCUS_BIN && end > FOCUS_BIN ? FOCUS_BIN : end;
+}
+
 /* Slabs a pixel wide from the near side on, half as wide below 3 pixels of blur, an eighth of the
- * blur less a pixel from 16 on; one for all that is in focus. */
+ * blur less a pixel from 16 on, where they end as those do that cover all bins; one for all that is
+ * in focus. */
 static struct plan cover(const struct bins *bins, double width)
 {
-    const int pixel = (int)(1 / width);
+    const int pixel = width > 0 ? (int)(1 / width) : 1;
     struct plan plan = {.sharp = true};
 
     for (int bin = 0; bin < BINS;) {
-        const double low = edge_of(width, bin);
-        int end = bin + pixel, last = bin;
+        int end, last = bin, cell = 0;
         struct slab slab;
         double wide;
 
@@ -138,12 +244,10 @@ static struct plan cover(const struct bins *bins, double width)
             bin = FOCUS_BIN + pixel;
             continue;
         }
-        if (pixel > 1 && low > -3 && low < 3)
-            end = bin + pixel / 2;
-        if (fabs(low) >= 16)
-            end = bin + (int)floor(pixel * (fabs(low) / 8 - 1));
-        if (bin < FOCUS_BIN && end > FOCUS_BIN)
-            end = FOCUS_BIN;
+        while ((end = end_of(cell, width)) <= bin)
+            cell = end;
+        if (width > 0 && fabs(edge_of(width, bin)) < 16)
+            end = end_of(bin, width);
         for (int i = bin; i < end && i < BINS; i++)
             last = bins->has[i] ? i : last;
         slab = slab_over(bins, width, bin, last);
@@ -202,7 +306,7 @@ static int deepest_of(const struct twin *t, const struct twin_cells *cells, cons
         const int dy = (int)floor(ray.v / 32768.0 * slab->centre + 0.5);
 
         if (t->params->render.rays != REFOCUS_RAYS_FULL && t->params->render.rays <= 64 &&
-            twin_is_deepest(cells, strip, dx, dy, slab->low, slab->high))
+            twin_is_deepest(t, cells, strip, dx, dy, slab->low, slab->high))
             break;
         i++;
     }
@@ -418,7 +522,8 @@ void twin_sweep(struct twin *t, uint8_t *rgb)
         tiles[i] = bins_of_tile(t, width, i % across, i / across);
     for (int i = 0; i < across * down; i++) {
         const struct bins reach =
-            reach_of_tile(t, tiles, across, down, width, i % across, i / across);
+            t->unit > 1 ? reach_from_blocks(tiles, across, down, i % across, i / across)
+                        : reach_of_tile(t, tiles, across, down, width, i % across, i / across);
         const struct plan plan = cover(&reach, width);
 
         if (plan.sharp)

@@ -48,13 +48,13 @@ static struct twin_cell window(const struct twin_cells *cells, int x, int y)
 }
 
 /* More than a slab is wide. */
-static double bare_depth(double blur)
+static double bare_depth(const struct twin *t, double blur)
 {
-    return fmax(1.25, fabs(blur) * 5 / 32 - 1);
+    return fmax(1.25 * t->unit, fabs(blur) * 5 / 32 - t->unit);
 }
 
-bool twin_is_deepest(const struct twin_cells *cells, struct twin_strip strip, int dx, int dy,
-                     double low, double high)
+bool twin_is_deepest(const struct twin *t, const struct twin_cells *cells, struct twin_strip strip,
+                     int dx, int dy, double low, double high)
 {
     double least = 1e9, most = -1e9;
     bool bare = true;
@@ -64,9 +64,9 @@ bool twin_is_deepest(const struct twin_cells *cells, struct twin_strip strip, in
 
         least = fmin(least, seen.least);
         most = fmax(most, seen.most);
-        bare = bare && seen.foreground < seen.most - bare_depth(seen.most);
+        bare = bare && seen.foreground < seen.most - bare_depth(t, seen.most);
     }
-    if (high - low > bare_depth(low > 0 ? low : high < 0 ? high : 0))
+    if (high - low > bare_depth(t, low > 0 ? low : high < 0 ? high : 0))
         return false;
     return bare && most >= low && most <= high && least < low;
 }

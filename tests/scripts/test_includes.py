@@ -14,7 +14,7 @@ import sys
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 # What the core is made of, from the ground up. A folder knows those before it.
 ORDER = ['tables', 'support', 'colour', 'simd', 'kernels', 'image', 'aperture', 'optics', 'focus',
-         'depth', 'edges', 'tiles', 'background', 'passes', 'thin', 'highlights', 'look', 'gather',
+         'depth', 'edges', 'focus_stack', 'tiles', 'background', 'passes', 'thin', 'highlights', 'look', 'gather',
          'papers', 'renderer']
 INCLUDE = re.compile(r'^\s*#\s*include\s+([<"])([^>"]+)[>"]', re.M)
 SOURCES = ('*.c', '*.h', '*.cpp', '*.hpp')

@@ -10,7 +10,7 @@ import stubs
 
 SCRIPT = 'examples/quickstart.sh'
 # Options that cost nothing on the first day when they are off.
-NOT_ASKED = {'simd', 'tests', 'ximgproc'}
+NOT_ASKED = {'python', 'simd', 'tests', 'ximgproc'}
 
 
 def feature_options():

@@ -24,7 +24,8 @@ import pictures  # noqa: E402
 
 # What may be missing on the machine, by what the command asks for: another camera is another
 # reason, but the line begins with its name.
-DEVICES = ((' v4l2:', r'^refocus: v4l2:/dev/video\d: .*$'),
+DEVICES = ((' estimate:', r'^refocus: model\.onnx: OpenCV finds no depth network .*$'),
+           (' v4l2:', r'^refocus: v4l2:/dev/video\d: .*$'),
            (' libcamera:', r'^refocus: libcamera:0: .*$'),
            (' --out window', r'^refocus: window: .* display .*$'),
            (' view ', r'^refocus: .*: no display can be opened: .*$'))
@@ -82,6 +83,9 @@ class Readme(unittest.TestCase):
                 file.write(texture(width, height, shift))
             cls.make('render', name + '.ppm', '--depth', 'depth.pgm', '--blur', '0', '-o',
                      name + '.jpg')
+        for name, focus in (('far', '0'), ('middle', '0.5'), ('near', '1')):
+            cls.make('render', 'left.ppm', '--depth', 'depth.pgm', '--focus', focus, '--blur', '6',
+                     '-o', name + '.jpg')
         cls.make('depth', 'photo.jpg', '--depth', 'depth.pgm', '--full', '--near', '1', '--far',
                  '9', '-o', 'with-depth.jpg')
         with open('photo.jpg', 'wb') as file:
@@ -117,6 +121,9 @@ class Readme(unittest.TestCase):
                 result = self.run_it(*shlex.split(command)[1:])
                 self.assertNotIn('this build', result.stderr)
                 lines = [line for asks, line in DEVICES if asks in command]
+                if ' file:' in command:
+                    self.assertRegex(result.stderr, r'\A\d+ frames in, 1 out, .*\n\Z')
+                    result.stderr = ''
                 if result.returncode == 0 or not lines:
                     self.assertEqual((result.returncode, result.stderr), (0, ''))
                 else:
@@ -124,10 +131,39 @@ class Readme(unittest.TestCase):
                     self.assertRegex(result.stderr, '|'.join(lines))
                     self.assertEqual(result.stderr.count('\n'), 1)
 
+    def test_other_lines(self):
+        """What is no refocus command is run by another test, which is named here."""
+        others = {r'examples/quickstart\.sh': 'scripts/test_quickstart.py',
+                  r'tests/run\.sh': 'scripts/test_run.py',
+                  r'apt-get install ': 'scripts/test_quickstart.py',
+                  r'meson setup build && ninja -C build && meson test': 'headers/installed.sh',
+                  r'cc program\.c ': 'headers/installed.sh',
+                  r'gst-launch-1\.0 ': 'gstreamer/test_lines.py',
+                  r'pip install \./platform/python': 'python/wheel.sh'}
+        with open(os.path.join(ROOT, 'README.md'), encoding='utf-8') as file:
+            text = re.sub(r'(?s)```.*?```', '', file.read())
+        lines = [line for line in code_lines(text) if re.match(r'[\w./-]+ *', line)]
+        for line in lines:
+            if line in commands():
+                continue
+            tests = [test for start, test in others.items() if re.match(start, line)]
+            self.assertEqual(len(tests), 1, line)
+            self.assertTrue(os.path.exists(os.path.join(ROOT, 'tests', tests[0])))
+        self.assertGreater(len(lines), len(commands()))
+
+    def test_front(self):
+        """The first paragraphs say what it is made of."""
+        with open(os.path.join(ROOT, 'README.md'), encoding='utf-8') as file:
+            page = ' '.join(file.read().split())
+        for words in ('fixed-point, NEON-friendly C core', 'depth-guided randomized intersection '
+                      'search and Gaussian-weighted blending', 'libcamera and V4L2', 'OpenCV'):
+            self.assertIn(words, page[:1500])
+
     def test_names_each_source_of_depth(self):
         shown = '\n'.join(commands())
         for pattern in (r'live .*--camera v4l2:', r'live .*--camera libcamera:',
-                        r'--depth estimate:\S+\.onnx', r'depth \S+ \S+\.jpg -o', r'--strokes ',
+                        r'--depth estimate:\S+\.onnx', r'--upsample joint-bilateral',
+                        r'live .*--camera file:', r'depth \S+ \S+\.jpg -o', r'--strokes ',
                         r'refocus view '):
             self.assertRegex(shown, pattern)
 
@@ -138,7 +174,7 @@ class Readme(unittest.TestCase):
         for line, arguments in (
                 ('^refocus: photo.heic: ', ('render', 'photo.heic', '-o', 'out.jpg')),
                 ('^refocus: model.onnx: OpenCV finds no depth network ',
-                 ('depth', 'photo.jpg', '--estimate', 'model.onnx', '--preset', 'midas-small',
+                 ('depth', 'photo.jpg', '--estimate', 'model.onnx', '--network', 'midas-small',
                   '-o', 'out.png')),
                 ('^refocus: window: .* display ',
                  ('live', '--camera', 'replay::size 64x48;frames 1', '--depth', 'depth.pgm',

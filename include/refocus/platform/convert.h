@@ -36,13 +36,22 @@ REFOCUS_API void refocus_converter_destroy(struct refocus_converter **converter)
 REFOCUS_API uint32_t refocus_frame_image_format(uint32_t frame_format);
 
 /**
- * A frame of such a format, copied. Reads each row of each plane once, whole and in
- * order: camera memory may be uncached.
+ * Find that format of a frame, for which a JPEG picture is looked at: 4:2:0 of even sides is
+ * decoded as REFOCUS_FORMAT_I420, 4:2:2 of even width as REFOCUS_FORMAT_YUYV.
+ * REFOCUS_FORMAT_NONE also for a damaged one, for a build without JPEG, without memory and for
+ * wrong arguments.
+ */
+REFOCUS_API uint32_t refocus_convert_image_format(struct refocus_converter *converter,
+                                                  const struct refocus_frame *frame);
+
+/**
+ * A frame of such a format, copied, or of MJPEG decoded. Reads each row of each plane once, whole
+ * and in order: camera memory may be uncached.
  *
- * @param out  of the frame's size and of refocus_frame_image_format(); its matrix and
- *             range are set to the frame's
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (no such format),
- *         REFOCUS_ERR_MEMORY
+ * @param out  of the frame's size and of refocus_convert_image_format(); its matrix and
+ *             range are set to the frame's, or to those of JPEG: BT.601 in the full range
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (refocus_convert_image_format()
+ * says none), REFOCUS_ERR_FORMAT (a damaged JPEG), REFOCUS_ERR_MEMORY
  */
 REFOCUS_API int refocus_convert_copy(struct refocus_converter *converter,
                                      const struct refocus_frame *frame, struct refocus_image *out,

@@ -201,12 +201,20 @@ REFOCUS_API void refocus_cv_estimator_destroy(struct refocus_estimator **estimat
 
 /**
  * Joint bilateral upsampling (Kopf et al. 2007) of a map of disparities to the photo's
- * size, of OpenCV's parts: the mean of the samples around, weighted by nearness and
- * likeness. The core's refocus_upsample() is better and faster; this is what it is
- * compared with.
+ * size: each pixel p is the mean of the 5x5 samples q around it,
  *
- * @param sigma_range  of the likeness, in codes
- * @param out          width x height, packed
+ *     d(p) = sum w d(q) / sum w,  w = exp(-|p - q|^2 / 2) (exp(-|I(p) - I(q)|^2 / 2 s^2) + 1e-9)
+ *
+ * with |p - q| in samples, and I the photo, which a sample has at its middle. Beyond the
+ * map its last samples go on. The core's
+ * refocus_upsample() measures better and is faster: tests/depth.md compares them.
+ *
+ * Thread-safe; it works in the caller's thread alone.
+ *
+ * @param sigma_range  s of the likeness, in codes, > 0
+ * @param out          width x height, packed; undefined after an error
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY, or
+ *         REFOCUS_ERR_UNSUPPORTED where OpenCV gives up
  */
 REFOCUS_API int refocus_cv_upsample(const struct refocus_image *photo,
                                     const struct refocus_disparity *map, float sigma_range,

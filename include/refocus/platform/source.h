@@ -8,7 +8,8 @@
  *     file:frames-%04d.png        pictures; one conversion that takes an int, from 0 or
  *         1 on
  *     file:photo.jpg              one picture, as often as it is asked for
- *     y4m:FILE                    a YUV4MPEG2 stream; "-" is standard input
+ *     y4m:FILE                    a YUV4MPEG2 stream; "-" is standard input. Of a pipe the
+ *         header is read when it is started, or asked for its mode
  *     raw:FILE,NV12,640x480,30    frames without a header: format, size, rate
  *     replay:SCRIPT               frames and faults by a script; see platform/README.md
  *     replay::LINE;LINE;...       the same with the script in the name
@@ -233,7 +234,8 @@ REFOCUS_API void refocus_source_close(struct refocus_source **source);
  *
  * @param mode  receives it; only its struct_size is read
  * @return REFOCUS_OK, or REFOCUS_ERR_ARGUMENT: there are not as many, or the struct_size of
- *         @p mode is out of its range, which leaves it untouched
+ *         @p mode is out of its range, which leaves it untouched; for a pipe as
+ *         refocus_source_start()
  */
 REFOCUS_API int refocus_source_get_mode(struct refocus_source *source, int index,
                                         struct refocus_source_mode *mode);
@@ -244,7 +246,8 @@ REFOCUS_API int refocus_source_get_mode(struct refocus_source *source, int index
  * @param config  NULL: whatever the source prefers
  * @param mode    receives what will come; only its struct_size is read; may be NULL
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (it streams),
- *         REFOCUS_ERR_UNSUPPORTED (not in this format), and as refocus_source_open().
+ *         REFOCUS_ERR_UNSUPPORTED (not in this format), REFOCUS_ERR_CANCELLED (interrupted
+ *         while it waited for the header of a pipe), and as refocus_source_open().
  *         After an error the source is stopped.
  */
 REFOCUS_API int refocus_source_start(struct refocus_source *source,
@@ -300,6 +303,68 @@ REFOCUS_API void refocus_source_interrupt(struct refocus_source *source);
  */
 REFOCUS_API int refocus_source_set_control(struct refocus_source *source, const char *name,
                                            double value, struct refocus_reason *reason);
+
+/** How a lens comes to its focus. */
+enum refocus_source_focus {
+    REFOCUS_SOURCE_FOCUS_CONTINUOUS = 0, /**< by the camera, all the time */
+    REFOCUS_SOURCE_FOCUS_ONCE = 1,       /**< by the camera, once; then it stays */
+    REFOCUS_SOURCE_FOCUS_FIXED = 2,      /**< at a position */
+    REFOCUS_SOURCE_FOCUS_COUNT
+};
+
+/** The abilities and the place of a lens. Start from refocus_source_lens_default(). */
+struct refocus_source_lens {
+    uint32_t struct_size; /**< sizeof(struct refocus_source_lens), set by the caller */
+    uint32_t modes;    /**< bit n: refocus_source_set_focus() takes enum refocus_source_focus n */
+    uint32_t dioptres; /**< 1: positions are dioptres, 1 / metres; 0: they have no unit. In
+                            either case a larger one is nearer. */
+    uint32_t reserved; /**< 0 */
+    double least, greatest; /**< positions that it can be sent to; 0 and 0 without FIXED */
+    double position;        /**< where it is: as the frame that was last taken says (libcamera,
+                                 replay), or as the driver says now (V4L2); NAN = not known */
+};
+
+static inline struct refocus_source_lens refocus_source_lens_default(void)
+{
+    struct refocus_source_lens lens;
+
+    memset(&lens, 0, sizeof lens);
+    lens.struct_size = sizeof lens;
+    lens.position = NAN;
+    return lens;
+}
+
+/**
+ * Ask what the lens can do. Cameras whose lens does not move, and files, have no modes.
+ *
+ * @param lens  receives it; only its struct_size is read
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_GONE
+ */
+REFOCUS_API int refocus_source_get_lens(struct refocus_source *source,
+                                        struct refocus_source_lens *lens,
+                                        struct refocus_reason *reason);
+
+/**
+ * Focus. It takes effect some frames later; refocus_source_get_lens() says where the lens is.
+ * Of libcamera it holds for the stream that runs, and is forgotten with its end.
+ *
+ * @param mode      enum refocus_source_focus
+ * @param position  for FIXED, within the range of the lens; else it is not read
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (the mode or the position), REFOCUS_ERR_UNSUPPORTED
+ *         (the lens has no such mode), REFOCUS_ERR_GONE, REFOCUS_ERR_IO
+ */
+REFOCUS_API int refocus_source_set_focus(struct refocus_source *source, uint32_t mode,
+                                         double position, struct refocus_reason *reason);
+
+/**
+ * Keep exposure, gain and white balance as they are now, or leave them to the camera again.
+ * What a camera cannot keep is passed over.
+ *
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (it keeps none of them),
+ *         REFOCUS_ERR_GONE, REFOCUS_ERR_IO
+ */
+REFOCUS_API int refocus_source_lock_exposure(struct refocus_source *source, int lock,
+                                             struct refocus_reason *reason);
 
 /** Get the counts so far, all 0 for a NULL source. With NULL @p counters, or with ones whose
  *  struct_size is out of its range, it does nothing. */

@@ -91,6 +91,12 @@ struct refocus_changed {
 /** Most strokes of a painting, and most points of all of them together. */
 enum { REFOCUS_MAX_STROKES = 4096, REFOCUS_MAX_STROKE_POINTS = 1 << 20 };
 
+/** Most work of the strokes of a file, in pixels that they look at, some 10 ns each; in photos of
+ * more than two megapixels 64 times their pixels. An object looks at all within its reach and a
+ * quarter more, and counts 1.3 million more where that is 12,000 pixels or more, less where it is
+ * less; a brush looks at all under it, and at a run in each row of each segment. */
+enum { REFOCUS_MAX_STROKE_WORK = 1 << 27 };
+
 /** Why a file was refused: one line, no full stop. The struct is complete. */
 struct refocus_strokes_reason {
     char text[256];
@@ -102,7 +108,7 @@ struct refocus_strokes_reason {
  * Memory: 3 bytes a pixel, and while a stroke is made up to 2 bytes a pixel that it
  * reaches and 120 bytes a pixel of its edge.
  *
- * @param photo  of a packed format. Its pixels are read until refocus_strokes_destroy()
+ * @param photo  of a packed format of 8 bits. Its pixels are read until refocus_strokes_destroy()
  *               and must not change
  * @param base   what is painted over, of the photo's size; copied; NULL: all 0
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_SIZE, REFOCUS_ERR_MEMORY; on an
@@ -190,9 +196,9 @@ REFOCUS_API int refocus_strokes_selection(const struct refocus_strokes *strokes,
  *
  * @param reason  receives words on an error; may be NULL
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_FORMAT, REFOCUS_ERR_SIZE (it is
- *         of a picture of another size, or has too many strokes or points, or more than
- *         64 MiB), REFOCUS_ERR_MEMORY, REFOCUS_ERR_UNSUPPORTED. On an error nothing has
- *         changed.
+ *         of a picture of another size, or has too many strokes or points, more work than
+ *         REFOCUS_MAX_STROKE_WORK, or more than 64 MiB), REFOCUS_ERR_MEMORY,
+ * REFOCUS_ERR_UNSUPPORTED. On an error nothing has changed.
  */
 REFOCUS_API int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes,
                                      size_t size, struct refocus_strokes_reason *reason);

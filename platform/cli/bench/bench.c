@@ -30,9 +30,11 @@ static const struct option options[] = {
      .least = 1,
      .greatest = REFOCUS_MAX_SIDE,
      .count = 2,
+     .brief = "of the made-up scene without PHOTO; default 720x540",
      .help = "size of the made-up scene that is taken without PHOTO, default 720x540"},
     DEPTH_FILE_OPTION(struct settings, depth),
     DEPTH_UNIT_OPTIONS(struct settings, depth),
+    LIMIT_OPTIONS(struct settings, depth.limits),
     FOCUS_OPTIONS(struct settings, lens),
     {.kind = OPTION_HEADING, .help = "How"},
     METHOD_OPTION(struct settings, engine),
@@ -40,17 +42,20 @@ static const struct option options[] = {
     {.kind = OPTION_FLAG,
      .name = "--rays",
      .offset = offsetof(struct settings, statistics),
+     .brief = "what the rays of the mask hit, in place of times",
      .help = "without a number: no times, but what the rays of the mask hit: how many "
              "find a true intersection after 1, 2, ... tests of the search"},
     {.kind = OPTION_FLAG,
      .name = "--frames",
      .offset = offsetof(struct settings, frames),
+     .brief = "a table over blur, quality, threads and sizes",
      .help = "a table over blur, quality, threads and, without PHOTO or --size, sizes; "
              "in turns with a memcpy of the frame and a plain box blur of the same "
              "radius"},
     {.kind = OPTION_FLAG,
      .name = "--kernels",
      .offset = offsetof(struct settings, kernels),
+     .brief = "the loops that frames are made of",
      .help = "no frames, but the loops that they are made of: nanoseconds for a pixel "
              "or a ray sample, and those of plain C"},
     RUN_OPTIONS(struct settings, engine),
@@ -236,6 +241,7 @@ static int run(int argc, char **argv)
     if (status == EXIT_DONE && files[0]) {
         engine.name = files[0];
         status = input_read(&input, files[0], &settings.depth);
+        input.most_blur = engine_most_blur(&settings.engine);
         if (status == EXIT_DONE) {
             scene.photo = *input.photo->image;
             scene.disparity = input.disparity;

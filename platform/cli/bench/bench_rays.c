@@ -6,7 +6,7 @@
 #include "bench/bench_rays.h"
 
 /* Pixels of the grid at the most, and rays of the full mask at K = 127 and less. */
-enum { MOST_PIXELS = 4000, MOST_RAYS = 255 * 255, SIDE = 2 * REFOCUS_MAX_BLUR_RADIUS + 5 };
+enum { MOST_PIXELS = 4000, MOST_RAYS = 255 * 255, SIDE = 2 * REFOCUS_PLAIN_BLUR_RADIUS + 5 };
 
 struct scene {
     const uint16_t *disparity;

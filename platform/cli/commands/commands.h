@@ -2,10 +2,12 @@
 #ifndef RF_CLI_COMMANDS_H
 #define RF_CLI_COMMANDS_H
 
+#include "line/list.h"
 #include "line/options.h"
 
 extern const struct command render_command;
 extern const struct command depth_command;
+extern const struct command stack_command;
 extern const struct command info_command;
 extern const struct command bench_command;
 extern const struct command pull_command;

@@ -7,9 +7,9 @@
 #include "inputs/inputs.h"
 #include "line/interrupt.h"
 #include "inputs/made.h"
-#include "inputs/upsample.h"
 #include "outputs/outputs.h"
 #include "inputs/painted.h"
+#include "commands/depth_stack.h"
 #include "line/report.h"
 
 enum view { VIEW_NONE, VIEW_DISPARITY, VIEW_CONFIDENCE };
@@ -21,6 +21,7 @@ struct settings {
     struct network_settings network;
     int view;
     struct stereo_settings stereo;
+    struct stack_settings stack;
     bool side_by_side;
     bool json;
 };
@@ -41,33 +42,20 @@ static const char *view_summary(uint32_t index)
     return index < sizeof words / sizeof *words ? words[index] : NULL;
 }
 
-static const char *match_name(uint32_t index)
-{
-    static const char *const names[] = {"checked", "plain", "wls"};
-
-    return index < sizeof names / sizeof *names ? names[index] : NULL;
-}
-
-static const char *match_summary(uint32_t index)
-{
-    static const char *const words[] = {
-        "both ways; what disagrees is filled", "OpenCV's semi-global matching as it is",
-        "filled by weighted least squares; needs the module refocus-ximgproc"};
-
-    return index < sizeof words / sizeof *words ? words[index] : NULL;
-}
-
 static const struct option options[] = {
     OUTPUT_OPTION(struct settings, output,
-                  "the disparities to write, 1 = nearest: .png or .pgm of 16 bits "
+                  "the disparities to write, 1 = nearest: .png, .tif or .pgm of 16 bits "
                   "(65535 = 1) or .pfm of 32-bit floats; or a .jpg: the JPEG photo, "
                   "every byte of it, with the depth inside as GDepth"),
     DEPTH_FILE_OPTION(struct settings, depth),
     DEPTH_UNIT_OPTIONS(struct settings, depth),
+    ORIENT_DEPTH_OPTION(struct settings, depth),
     REPAIR_OPTIONS(struct settings, depth),
+    LIMIT_OPTIONS(struct settings, depth.limits),
     {.kind = OPTION_FLAG,
      .name = "--full",
      .offset = offsetof(struct settings, depth.full),
+     .brief = "bring the depth to the photo's size, edge on edge",
      .help = "bring the depth to the photo's size, its edges on the photo's"},
     {.kind = OPTION_CHOICE,
      .name = "--depth-edges",
@@ -82,74 +70,24 @@ static const struct option options[] = {
      .argument = "HOW",
      .offset = offsetof(struct settings, depth.upsample),
      .choice = upsample_name,
-     .help = "how --full does it: the library's own way, or one of OpenCV's filters to "
-             "compare with; the last three need the module refocus-ximgproc",
+     .help = "how --full does it, before --depth-edges: by the library (default), or by filters "
+             "of OpenCV, the last three by its module refocus-ximgproc",
      .needs = "--full,--strokes"},
-    {.kind = OPTION_TEXT,
-     .name = "--estimate",
-     .argument = "MODEL.onnx",
-     .offset = offsetof(struct settings, model),
-     .help = "depth of the one photo, by a network"},
-    {.kind = OPTION_CHOICE,
-     .name = "--preset",
-     .argument = "NAME",
-     .offset = offsetof(struct settings, network.preset),
-     .choice = made_preset,
-     .help = "which network it is: range of its input, and its size where the file "
-             "leaves it open",
-     .needs = "--estimate"},
-    {.kind = OPTION_NUMBERS,
-     .name = "--input-size",
-     .argument = "W,H",
-     .offset = offsetof(struct settings, network.size),
-     .least = 32,
-     .greatest = 2048,
-     .count = 2,
-     .help = "of the picture that the network takes; default: what the file says, else "
-             "the preset",
-     .needs = "--estimate"},
-    {.kind = OPTION_NUMBERS,
-     .name = "--input-mean",
-     .argument = "R,G,B",
-     .offset = offsetof(struct settings, network.mean),
-     .least = -1000,
-     .greatest = 1000,
-     .count = 3,
-     .help = "codes that the network takes as 0; default: the preset's",
-     .needs = "--estimate"},
-    {.kind = OPTION_NUMBER,
-     .name = "--input-scale",
-     .argument = "S",
-     .offset = offsetof(struct settings, network.scale),
-     .least = -1000,
-     .greatest = 1000,
-     .help = "worth of a code: value = (code - mean) S; default: the preset's",
-     .needs = "--estimate"},
-    {.kind = OPTION_FLAG,
-     .name = "--far-is-large",
-     .offset = offsetof(struct settings, network.inverse),
-     .help = "the network gives distances: larger = farther",
-     .needs = "--estimate"},
+    ESTIMATE_OPTIONS(struct settings, model, network, "depth of the one photo, by a network"),
     {.kind = OPTION_TEXT,
      .name = "--strokes",
      .argument = "FILE.json",
      .offset = offsetof(struct settings, strokes),
+     .brief = "paint these strokes",
      .help = "paint these strokes: over nothing, or over the depth of --depth, "
              "--estimate or a stereo pair"},
-    {.kind = OPTION_FLAG,
-     .name = "--stereo-file",
-     .offset = offsetof(struct settings, stereo.within),
-     .help = "FILE holds both pictures of a stereo pair: an MPO or a stereo HEIC"},
-    {.kind = OPTION_CHOICE,
-     .name = "--match",
-     .argument = "HOW",
-     .offset = offsetof(struct settings, stereo.method),
-     .choice = match_name,
-     .summary = match_summary,
-     .help = "how a stereo pair is matched"},
+    STACK_OPTIONS(struct settings, stack),
+    STEREO_FILE_OPTION(struct settings, stereo, "FILE holds both pictures of a stereo pair"),
+    {MATCH_OPTION(struct settings, stereo, "how a stereo pair is matched")},
     {.kind = OPTION_FLAG,
      .name = "--side-by-side",
      .offset = offsetof(struct settings, side_by_side),
+     .brief = "FILE holds a stereo pair, the left picture left",
      .help = "FILE holds both pictures of a stereo pair, the left one left"},
     {.kind = OPTION_CHOICE,
      .name = "--view",
@@ -157,6 +95,7 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, view),
      .choice = view_name,
      .summary = view_summary,
+     .brief = "write a picture to look at instead",
      .help = "write an 8-bit picture to look at instead: " OUTPUT_PICTURES},
     {.kind = OPTION_NUMBERS,
      .name = "--focus-at",
@@ -178,6 +117,7 @@ static const struct option options[] = {
     {.kind = OPTION_FLAG,
      .name = "--json",
      .offset = offsetof(struct settings, json),
+     .brief = "print a report as one JSON object",
      .help = "print the report as one JSON object"},
     {.help = NULL},
 };
@@ -316,6 +256,7 @@ static int write_photo(const struct settings *settings, const struct input *inpu
 {
     struct refocus_depth_write depth = refocus_depth_write_default();
     struct refocus_reason reason = {""};
+    char *temporary = NULL;
     int status;
 
     depth.disparity = input->disparity;
@@ -325,13 +266,25 @@ static int write_photo(const struct settings *settings, const struct input *inpu
     depth.near_m = input->report.near_m;
     depth.far_m = input->report.far_m;
     status = settle_focus(settings, input, &depth);
-    if (status != EXIT_DONE)
-        return status;
+    if (status == EXIT_DONE && settings->stack.on) {
+        depth.confidence = input->confidence;
+        depth.confidence_stride = input->width;
+    }
     interrupt_hold(true);
-    status = interrupt_came()
-                 ? REFOCUS_ERR_CANCELLED
-                 : refocus_photo_write_depth(settings->output, input->photo_name, &depth, &reason);
+    if (status == EXIT_DONE && settings->stack.on)
+        status = stacked_write_temporary(input, settings->output, &temporary);
+    if (status == EXIT_DONE)
+        status = interrupt_came()
+                     ? REFOCUS_ERR_CANCELLED
+                     : refocus_photo_write_depth(settings->output,
+                                                 temporary ? temporary : input->photo_name, &depth,
+                                                 &reason);
+    if (temporary)
+        remove(temporary);
+    free(temporary);
     interrupt_hold(false);
+    if (status > 0) /* an exit code, told already */
+        return status;
     if (status == REFOCUS_ERR_CANCELLED)
         return report_failure(EXIT_FAILED, settings->output, "interrupted; nothing was written");
     if (status != REFOCUS_OK)
@@ -349,9 +302,12 @@ static int write_output(const struct settings *settings, const struct input *inp
     return output_write_gray16(settings->output, input->disparity, input->width, input->height);
 }
 
+static const char *const photo_endings[] = {".jpg", ".jpeg", NULL};
+
 static bool is_made(const struct settings *settings, const char *const *files)
 {
-    return files[1] || settings->side_by_side || settings->stereo.within || settings->model;
+    return files[1] || settings->stack.on || settings->side_by_side || settings->stereo.within ||
+           settings->model;
 }
 
 /* Options of depth that is read or matched, with depth that is not. */
@@ -360,7 +316,7 @@ static int check_ways(const struct settings *settings, const char *const *files,
 {
     static const char *const of_read[] = {"--depth-unit", "--invalid", "--speckle", "--upsample",
                                           NULL};
-    const bool pair = is_made(settings, files) && !settings->model;
+    const bool pair = is_made(settings, files) && !settings->model && !settings->stack.on;
     const bool nothing = settings->strokes && !settings->depth.file && !is_made(settings, files);
 
     if (!pair && options_given(&depth_command, argc, argv, "--match"))
@@ -381,19 +337,51 @@ static int check_ways(const struct settings *settings, const char *const *files,
                           "it out");
 }
 
+/* Options of a focus stack, and the number of its frames. */
+static int check_stack(const struct settings *settings, const char *const *files, int argc,
+                       char **argv)
+{
+    static const char *const of_others[] = {"--full",    "--upsample", "--depth-edges",
+                                            "--strokes", "--match",    NULL};
+    int count = 0, status = EXIT_DONE;
+
+    while (files[count])
+        count++;
+    if (!settings->stack.on)
+        return count <= 2 ? EXIT_DONE
+                          : report_failure(EXIT_WRONG, files[2],
+                                           "one file too many; give refocus depth FILE [RIGHT], "
+                                           "or --focal-stack");
+    if (count < REFOCUS_STACK_LEAST_FRAMES)
+        return report_failure(EXIT_WRONG, files[0],
+                              "one frame is no focus stack; give two at least");
+    if (settings->stack.reference > count)
+        return report_failure(EXIT_WRONG, "--reference", "there are %d frames; give 1 to %d", count,
+                              count);
+    status = options_refuse(&depth_command, argc, argv, of_others,
+                            "it is not for depth of a focus stack; leave it out");
+    if (status == EXIT_DONE && settings->stack.photo)
+        status = output_check(settings->stack.photo, OUTPUT_PICTURE, NULL, files, count);
+    if (status == EXIT_DONE)
+        status = output_check(settings->output, settings->view ? OUTPUT_PICTURE : OUTPUT_DEPTH,
+                              settings->view ? NULL : photo_endings, files, count);
+    return status;
+}
+
 static int check(const struct settings *settings, const char *const *files, int argc, char **argv)
 {
-    static const char *const photos[] = {".jpg", ".jpeg", NULL};
     const char *const inputs[] = {files[0], settings->depth.file, files[1], settings->model,
                                   settings->strokes};
     int status = input_check_depth(&settings->depth);
 
     if (status == EXIT_DONE)
         status = output_check(settings->output, settings->view ? OUTPUT_PICTURE : OUTPUT_DEPTH,
-                              settings->view ? NULL : photos, inputs, 5);
-    if (status == EXIT_DONE && (files[1] != NULL) + settings->side_by_side +
-                                       settings->stereo.within + (settings->model != NULL) +
-                                       (settings->depth.file != NULL) >
+                              settings->view ? NULL : photo_endings, inputs, 5);
+    if (status == EXIT_DONE)
+        status = check_stack(settings, files, argc, argv);
+    if (status == EXIT_DONE && (files[1] != NULL && !settings->stack.on) + settings->stack.on +
+                                       settings->side_by_side + settings->stereo.within +
+                                       (settings->model != NULL) + (settings->depth.file != NULL) >
                                    1)
         return report_failure(EXIT_WRONG, files[0],
                               "its depth is given twice; give one of RIGHT, "
@@ -421,6 +409,8 @@ static int check(const struct settings *settings, const char *const *files, int 
 static int read_input(const struct settings *settings, const char *const *files,
                       struct input *input)
 {
+    if (settings->stack.on)
+        return input_read_stack(input, files, &settings->stack, &settings->depth);
     if (settings->model)
         return input_read_estimate(input, files[0], settings->model, &settings->network,
                                    &settings->depth);
@@ -438,10 +428,11 @@ static int run(int argc, char **argv)
 {
     struct settings settings = {.network = NETWORK_SETTINGS_NONE,
                                 .depth = DEPTH_SETTINGS_NONE,
+                                .stack = STACK_SETTINGS_NONE,
                                 .focus_at = {NAN, NAN},
                                 .blur = NAN};
     struct input input = {0};
-    const char *files[3] = {NULL};
+    const char *files[REFOCUS_STACK_MOST_FRAMES + 1] = {NULL};
     int status;
 
     status = options_parse(&depth_command, argc, argv, &settings, files);
@@ -461,7 +452,10 @@ static int run(int argc, char **argv)
     }
     if (status == EXIT_DONE) {
         report_progress("writing", 0.7);
-        status = write_output(&settings, &input);
+        if (settings.stack.photo)
+            status = stacked_write_photo(&input, settings.stack.photo);
+        if (status == EXIT_DONE)
+            status = write_output(&settings, &input);
     }
     report_progress_end();
     if (status == EXIT_DONE)
@@ -476,10 +470,11 @@ const struct command depth_command = {
     .summary = "make, read, repair or upsample the depth of a photo, and write it",
     .notes = "FILE is a photo that carries depth, a photo with --depth, a depth map, "
              "the left picture of a stereo pair, or any photo with --estimate or "
-             "--strokes. Samples without a value are filled from those around them, "
+             "--strokes; with --focal-stack give all frames of a focus stack. Samples without a "
+             "value are filled from those around them, "
              "from the farther side where two surfaces meet, and counted.",
     .options = options,
     .files_least = 1,
-    .files_most = 2,
+    .files_most = REFOCUS_STACK_MOST_FRAMES,
     .run = run,
 };

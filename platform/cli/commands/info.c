@@ -6,10 +6,14 @@
 #include <refocus/refocus.h>
 #include "commands/commands.h"
 #include "inputs/edges.h"
+#include "inputs/lens.h"
+#include "inputs/limits.h"
+#include "inputs/standard.h"
 #include "line/report.h"
 
 struct settings {
     bool json;
+    struct limit_settings limits;
 };
 
 /* Findings from the pictures of a file. */
@@ -22,7 +26,9 @@ static const struct option options[] = {
     {.kind = OPTION_FLAG,
      .name = "--json",
      .offset = offsetof(struct settings, json),
+     .brief = "print it as one JSON object",
      .help = "print it as one JSON object; what is not known is null"},
+    LIMIT_OPTIONS(struct settings, limits),
     {.help = NULL},
 };
 
@@ -56,6 +62,10 @@ static const char *source_text(uint32_t source)
         return "Apple disparity image in MPF";
     case REFOCUS_DEPTH_SOURCE_HEIF:
         return "auxiliary depth image in HEIF";
+    case REFOCUS_DEPTH_SOURCE_DYNAMIC:
+        return "Dynamic Depth, a picture behind the main one";
+    case REFOCUS_DEPTH_SOURCE_TRAILER:
+        return "its maker's trailer behind the main picture";
     case REFOCUS_DEPTH_SOURCE_FILE:
         return "the file itself, as --depth reads it";
     }
@@ -76,7 +86,11 @@ static void print_depth(const struct refocus_photo *photo,
     const struct refocus_depth_map *map = photo->depth;
     char text[160];
 
-    printf("depth         %s\n", source_text(photo->info->depth_source));
+    printf("depth         %s%s\n", source_text(photo->info->depth_source),
+           map->samples || photo->info->views == 0
+               ? ""
+               : "; 'refocus depth FILE --stereo-file' makes it "
+                 "of the two views");
     if (!map->samples)
         return;
     describe_meaning(text, sizeof text, map);
@@ -87,6 +101,40 @@ static void print_depth(const struct refocus_photo *photo,
     print_metres("far", report->far_m);
     printf("without value %llu samples, %.1f %%\n", (unsigned long long)report->unknown,
            100.0 * (double)report->unknown / ((double)map->width * map->height));
+}
+
+static bool has_focus_point(const struct refocus_photo_info *info)
+{
+    return info->focus_x >= 0 && info->focus_y >= 0 && (info->focus_x > 0 || info->focus_y > 0);
+}
+
+/* The blur that `render` takes where no option says it; false where there is nothing to render. */
+static bool find_blur(const struct refocus_photo *photo, const struct findings *found, double *blur,
+                      char why[INPUT_WHY])
+{
+    struct input input = {.report = found->depth};
+
+    if (!photo->image->plane[0] || !photo->depth->samples)
+        return false;
+    input.photo = (struct refocus_photo *)photo;
+    input.depth_from = photo;
+    input_default_blur(&input, blur, why);
+    return true;
+}
+
+static void print_defaults(const struct refocus_photo *photo, const struct findings *found)
+{
+    const struct refocus_photo_info *info = photo->info;
+    char why[INPUT_WHY];
+    double blur;
+
+    if (!find_blur(photo, found, &blur, why))
+        return;
+    printf("render takes  %.1f pixels of blur: %s\n", blur, why);
+    printf("              focus on the %s\n", has_focus_point(info) ? "focus point"
+                                              : info->focus_distance > 0 && found->depth.near_m > 0
+                                                  ? "focus distance"
+                                                  : "centre, for the file names no point");
 }
 
 /* How the edges of the depth lie on the photo's, and what rendering does about it. */
@@ -138,6 +186,8 @@ static void print_text(const char *file, const struct refocus_photo *photo,
         printf("35 mm terms   %.4g mm\n", info->focal_length_35mm);
     if (info->f_number > 0)
         printf("f-number      f/%.3g\n", info->f_number);
+    if (info->subject_distance > 0)
+        printf("subject       %.3g m\n", info->subject_distance);
     if (info->simulated_f_number > 0)
         printf("simulated     f/%.3g, the blur that the phone shows\n", info->simulated_f_number);
     if (info->own_blur > 0 && photo->image->plane[0])
@@ -145,12 +195,15 @@ static void print_text(const char *file, const struct refocus_photo *photo,
                info->own_blur * (photo->image->width > photo->image->height
                                      ? photo->image->width
                                      : photo->image->height));
-    if (info->focus_x >= 0 && info->focus_y >= 0 && photo->image->plane[0] &&
-        (info->focus_x > 0 || info->focus_y > 0))
+    if (photo->image->plane[0] && has_focus_point(info))
         printf("focus point   %.0f,%.0f\n", info->focus_x * photo->image->width,
                info->focus_y * photo->image->height);
     print_depth(photo, &found->depth);
     print_edges(&found->edges);
+    if (photo->matte->samples)
+        printf("matte         %dx%d, the portrait's; render uses it unless told --matte none\n",
+               (int)photo->matte->width, (int)photo->matte->height);
+    print_defaults(photo, found);
     for (int i = 0; i < info->evidence_count && i < REFOCUS_INFO_LINES; i++) {
         report_clean(clean, sizeof clean, info->evidence[i]);
         printf("%s %s\n", i == 0 ? "because      " : "             ", clean);
@@ -180,20 +233,22 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
                          const struct findings *found)
 {
     const struct refocus_photo_info *info = photo->info;
-    const bool focus =
-        info->focus_x >= 0 && info->focus_y >= 0 && (info->focus_x > 0 || info->focus_y > 0);
     json_t *depth = photo->depth->samples ? report_depth_json(photo, &found->depth) : json_null();
-    char text[160];
+    char text[160], why[INPUT_WHY];
+    double blur = NAN;
 
     if (photo->depth->samples && depth) {
         describe_meaning(text, sizeof text, photo->depth);
         json_object_set_new(depth, "unit", report_text_json(text));
         json_object_set_new(depth, "sample", json_string(sample_name(photo->depth->sample)));
         json_object_set_new(depth, "edges", edges_json(&found->edges));
+        if (find_blur(photo, found, &blur, why))
+            json_object_set_new(depth, "blur_from", json_string(why));
+        json_object_set_new(depth, "blur", report_number_json(blur));
     }
     return json_pack(
         "{s:o, s:s, s:o, s:o, s:i, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, "
-        "s:o}",
+        "s:o, s:o, s:i, s:o}",
         "file", report_text_json(file), "container", info->container, "picture",
         photo->image->plane[0] ? size_json(photo->image->width, photo->image->height) : json_null(),
         "stored",
@@ -204,25 +259,18 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
         positive(info->focal_length_mm), "focal_length_35mm", positive(info->focal_length_35mm),
         "f_number", positive(info->f_number), "simulated_f_number",
         positive(info->simulated_f_number), "own_blur", positive(info->own_blur), "focus_point",
-        focus ? json_pack("[f, f]", info->focus_x, info->focus_y) : json_null(), "depth", depth,
-        "evidence", evidence_json(info));
+        has_focus_point(info) ? json_pack("[f, f]", info->focus_x, info->focus_y) : json_null(),
+        "depth", depth, "matte",
+        photo->matte->samples ? size_json(photo->matte->width, photo->matte->height) : json_null(),
+        "evidence", evidence_json(info), "views", (int)info->views, "subject_distance",
+        report_metres_json(info->subject_distance));
 }
 
-/* Read a photo, or a depth file that is none; a grey picture without depth may be
- * both. */
 static int read_any(struct refocus_photo **photo, const char *file)
 {
     struct refocus_reason reason = {""};
-    struct refocus_photo *map = NULL;
-    int status = refocus_photo_read(photo, file, NULL, &reason);
+    const int status = standard_photo_or_map(photo, file, &reason);
 
-    if (status == REFOCUS_OK ? !(*photo)->depth->samples
-                             : status == REFOCUS_ERR_FORMAT || status == REFOCUS_ERR_UNSUPPORTED)
-        if (refocus_depth_read(&map, file, NULL, 0, 0, NULL, NULL) == REFOCUS_OK) {
-            refocus_photo_free(photo);
-            *photo = map;
-            status = REFOCUS_OK;
-        }
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, file, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
@@ -270,7 +318,7 @@ static int measure_depth(const char *file, const struct refocus_photo *photo,
 
 static int run(int argc, char **argv)
 {
-    struct settings settings = {false};
+    struct settings settings = {.limits = LIMIT_SETTINGS_NONE};
     struct refocus_photo *photo = NULL;
     struct findings found = {.depth = refocus_depth_report_default()};
     const char *files[2];
@@ -279,6 +327,7 @@ static int run(int argc, char **argv)
     status = options_parse(&info_command, argc, argv, &settings, files);
     if (status != OPTIONS_PARSED)
         return status;
+    limits_take(&settings.limits);
     status = read_any(&photo, files[0]);
     if (status == EXIT_DONE && photo->depth->samples)
         status = measure_depth(files[0], photo, &found);
@@ -294,7 +343,7 @@ static int run(int argc, char **argv)
 
 const struct command info_command = {
     .name = "info",
-    .usage = "FILE [--json]",
+    .usage = "FILE|- [--json]",
     .summary = "what depth, lens and orientation data a file carries, and why it is "
                "believed",
     .options = options,

@@ -19,11 +19,11 @@ struct settings {
     bool back;
 };
 
-#define NUMBER(name_, argument_, field_, least_, greatest_, help_)                                 \
+#define NUMBER(name_, argument_, field_, least_, greatest_, brief_, help_)                         \
     {                                                                                              \
         .kind = OPTION_NUMBER, .name = name_, .argument = argument_,                               \
         .offset = offsetof(struct settings, field_), .least = least_, .greatest = greatest_,       \
-        .help = help_                                                                              \
+        .brief = brief_, .help = help_                                                             \
     }
 
 static const struct option options[] = {
@@ -33,19 +33,23 @@ static const struct option options[] = {
                   ".y4m, .apng, and by the ffmpeg program .mp4, .webm or .gif"),
     SHOT_DEPTH_OPTIONS(struct settings, shot),
     BEHIND_OPTIONS(struct settings, shot.behind),
+    LIGHT_OPTIONS(struct settings, shot.depth),
     {.kind = OPTION_HEADING, .help = "The pull"},
-    NUMBER("--from", "D", from, 0, 1, "disparity in focus at the beginning; default 1"),
-    NUMBER("--to", "D", to, 0, 1, "and at the end; default 0"),
-    NUMBER("--blur-from", "K", blur_from, 0, REFOCUS_MAX_BLUR_RADIUS,
+    NUMBER("--from", "D", from, 0, 1, "disparity in focus at the beginning; default 1",
+           "disparity in focus at the beginning; default 1"),
+    NUMBER("--to", "D", to, 0, 1, "and at the end; default 0", "and at the end; default 0"),
+    NUMBER("--blur-from", "K", blur_from, 0, REFOCUS_MAX_BLUR_RADIUS, NULL,
            "blur radius at the beginning; default --blur"),
-    NUMBER("--blur-to", "K", blur_to, 0, REFOCUS_MAX_BLUR_RADIUS, "and at the end; default --blur"),
+    NUMBER("--blur-to", "K", blur_to, 0, REFOCUS_MAX_BLUR_RADIUS, NULL,
+           "and at the end; default --blur"),
     {.kind = OPTION_TEXT,
      .name = "--keys",
      .argument = "FILE",
      .offset = offsetof(struct settings, keys),
      .help = "JSON list of key frames in place of these; see below"},
-    NUMBER("--seconds", "S", seconds, 0.01, 3600, "how long it takes; default 2"),
-    NUMBER("--fps", "N", fps, 1, 240, "frames a second; default 25"),
+    NUMBER("--seconds", "S", seconds, 0.01, 3600, "how long it takes; default 2",
+           "how long it takes; default 2"),
+    NUMBER("--fps", "N", fps, 1, 240, "frames a second; default 25", "frames a second; default 25"),
     {.kind = OPTION_CHOICE,
      .name = "--ease",
      .argument = "HOW",
@@ -56,12 +60,13 @@ static const struct option options[] = {
      .name = "--back",
      .offset = offsetof(struct settings, back),
      .help = "and the same way back, so that it can be repeated"},
-    NUMBER("--wiggle", "PIXELS", wiggle, 0, STEREO_MOST,
+    NUMBER("--wiggle", "PIXELS", wiggle, 0, STEREO_MOST, NULL,
            "in place of a pull: the eye swings sideways, and what is not in focus "
            "moves by so many pixels, at disparity 1 when 0 is in focus"),
     SHOT_LENS_OPTIONS(struct settings, shot),
     SHOT_METHOD_OPTIONS(struct settings, shot),
     {.kind = OPTION_HEADING, .help = "Running"},
+    CONFIG_OPTIONS(struct settings, shot.config, shot.preset, NULL),
     SETTINGS_OPTION(struct settings, shot.load),
     SAVE_SETTINGS_OPTION(struct settings, shot.save),
     RUN_OPTIONS(struct settings, shot.engine),
@@ -225,6 +230,7 @@ static int pull(struct shot *shot, const char *photo, struct keys **keys, const 
     if (isnan(s->wiggle) && !input_focus_is_given(&wanted.lens))
         /* each frame has its own: none is found */
         wanted.lens.focus = given(s->from, 1);
+    wanted.depth.light = isnan(s->wiggle);
     status = shot_open(shot, photo, &wanted, most_blur);
     if (status == EXIT_DONE && !isnan(s->wiggle))
         return wiggle(shot, s, frames);

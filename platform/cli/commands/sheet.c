@@ -18,10 +18,10 @@ struct settings {
     double region[4];
 };
 
-#define LIST(name_, argument_, field_, help_)                                                      \
+#define LIST(name_, argument_, field_, brief_, help_)                                              \
     {                                                                                              \
         .kind = OPTION_TEXT, .name = name_, .argument = argument_,                                 \
-        .offset = offsetof(struct settings, sheet.field_), .help = help_                           \
+        .offset = offsetof(struct settings, sheet.field_), .brief = brief_, .help = help_          \
     }
 
 static const struct option options[] = {
@@ -29,6 +29,7 @@ static const struct option options[] = {
     OUTPUT_OPTION(struct settings, output, "the picture to write: " OUTPUT_PICTURES),
     SHOT_DEPTH_OPTIONS(struct settings, shot),
     BEHIND_OPTIONS(struct settings, shot.behind),
+    LIGHT_OPTIONS(struct settings, shot.depth),
     {.kind = OPTION_HEADING, .help = "The sheet"},
     {.kind = OPTION_CHOICE,
      .name = "--kind",
@@ -36,16 +37,18 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, sheet.kind),
      .choice = sheet_kind_name,
      .summary = sheet_kind_summary,
+     .brief = "what differs from cell to cell",
      .help = "what differs from cell to cell; default focus"},
-    LIST("--focuses", "D,D...", focuses, "disparities in focus; default 0,0.25,0.5,0.75,1"),
-    LIST("--blurs", "K,K...", blurs,
+    LIST("--focuses", "D,D...", focuses, "disparities in focus",
+         "disparities in focus; default 0,0.25,0.5,0.75,1"),
+    LIST("--blurs", "K,K...", blurs, "blur radii, pixels of the photo",
          "blur radii in pixels of the photo; default a quarter of --blur, half, and "
          "all of it"),
-    LIST("--f-numbers", "N,N...", f_numbers, "in place of --blurs, as --f-number"),
-    LIST("--apertures", "A,A...", apertures,
+    LIST("--f-numbers", "N,N...", f_numbers, NULL, "in place of --blurs, as --f-number"),
+    LIST("--apertures", "A,A...", apertures, NULL,
          "shapes as --aperture takes them; default a disc, polygons, a heart and a "
          "star"),
-    LIST("--sigmas", "S,S...", sigmas, "as --sigma; default off,400,100,30"),
+    LIST("--sigmas", "S,S...", sigmas, NULL, "as --sigma; default off,400,100,30"),
     {.kind = OPTION_INTEGER,
      .name = "--cell-width",
      .argument = "PIXELS",
@@ -64,6 +67,7 @@ static const struct option options[] = {
     SHOT_LENS_OPTIONS(struct settings, shot),
     SHOT_METHOD_OPTIONS(struct settings, shot),
     {.kind = OPTION_HEADING, .help = "Running"},
+    CONFIG_OPTIONS(struct settings, shot.config, shot.preset, NULL),
     SETTINGS_OPTION(struct settings, shot.load),
     SAVE_SETTINGS_OPTION(struct settings, shot.save),
     RUN_OPTIONS(struct settings, shot.engine),
@@ -117,6 +121,7 @@ static int check(struct settings *settings, const char *photo, int argc, char **
         status = shot_check(&shot, false);
     if (!settings->sheet.f_numbers)
         settings->shot = shot;
+    settings->shot.depth = shot.depth;
     if (status == EXIT_DONE)
         status = output_check(settings->output, OUTPUT_PICTURE, NULL, inputs, count);
     if (status == EXIT_DONE && settings->shot.save)
@@ -180,7 +185,7 @@ static int make_cells(struct shot *shot, const struct sheet *sheet, const struct
     struct refocus_image full = {0};
     struct refocus_settings placed;
     const char *why = NULL;
-    int width, height, status = shot_output(shot, settings->region, &full);
+    int width, height, status = shot_output(shot, settings->region, REFOCUS_FORMAT_RGB8, &full);
 
     if (status != EXIT_DONE)
         return status;
@@ -213,6 +218,9 @@ static int make(struct shot *shot, struct sheet *sheet, const char *photo,
         wanted.lens.f_number = sheet->least_f_number;
     if (settings->sheet.kind == SHEET_FOCUS && !input_focus_is_given(&wanted.lens))
         wanted.lens.focus = 1; /* each cell has its own: none has to be found */
+    wanted.depth.light = settings->sheet.kind != SHEET_SIGMA;
+    for (int i = 0; i < sheet->looks; i++)
+        wanted.depth.light &= engine_takes_deep(&sheet->look[i].params);
     status = shot_open(shot, photo, &wanted, isnan(sheet->most_blur) ? 0 : sheet->most_blur);
     if (status == EXIT_DONE)
         status = sheet_fill(sheet, &settings->sheet, &wanted.lens, &shot->input,

@@ -34,11 +34,13 @@ static const struct option options[] = {
      .name = "--strokes",
      .argument = "FILE.json",
      .offset = offsetof(struct settings, strokes),
+     .brief = "paint these strokes to begin with",
      .help = "paint these strokes to begin with: over the depth, or over nothing",
      .elsewhere = true},
     SHOT_LENS_OPTIONS(struct settings, shot),
     SHOT_METHOD_OPTIONS(struct settings, shot),
     {.kind = OPTION_HEADING, .help = "Running"},
+    CONFIG_OPTIONS(struct settings, shot.config, shot.preset, "a look"),
     SETTINGS_OPTION(struct settings, shot.load),
     RUN_OPTIONS(struct settings, shot.engine),
     {.kind = OPTION_HEADING, .help = "Window"},
@@ -49,11 +51,13 @@ static const struct option options[] = {
      .least = 64,
      .greatest = 16384,
      .count = 2,
+     .brief = "of the window",
      .help = "of the window; default: as large as the photo and the screen allow",
      .elsewhere = true},
     {.kind = OPTION_FLAG,
      .name = "--fullscreen",
      .offset = offsetof(struct settings, fullscreen),
+     .brief = "the whole screen",
      .help = "the whole screen",
      .elsewhere = true},
     {.kind = OPTION_NUMBER,
@@ -278,6 +282,7 @@ static int read_input(struct viewing *v, const char *photo)
     struct input *input = &v->input;
     int status = input_read(input, photo, depth);
 
+    input->most_blur = REFOCUS_PLAIN_BLUR_RADIUS; /* keys change the method */
     if (status == EXIT_DONE && !input->disparity) {
         painted_begin(input, depth);
         input->disparity =

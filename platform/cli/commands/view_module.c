@@ -4,46 +4,20 @@
 #include "commands/view_module.h"
 
 #ifdef RF_HAVE_VIEW
-#include <dlfcn.h>
-#include <unistd.h>
-
-static void *open_beside(const char *folder, const char *path)
-{
-    char name[4096];
-
-    if (snprintf(name, sizeof name, "%s%s", folder, path) >= (int)sizeof name)
-        return NULL;
-    return access(name, R_OK) == 0 ? dlopen(name, RTLD_NOW | RTLD_LOCAL) : NULL;
-}
+#include "line/module.h"
 
 view_run_fn *view_module(char *why)
 {
-    char folder[2048] = "";
-    const ssize_t length = readlink("/proc/self/exe", folder, sizeof folder - 1);
-    char *slash;
-    void *module = NULL, *symbol = NULL;
+    char reason[MODULE_WHY] = "it is of another version";
+    void *module = module_open("../view/refocus-view.so", "refocus/refocus-view.so", reason);
+    void *const symbol = module ? module_symbol(module, "rf_view_run") : NULL;
     view_run_fn *run;
 
-    folder[length > 0 ? length : 0] = '\0';
-    slash = strrchr(folder, '/');
-    if (slash) {
-        slash[1] = '\0';
-        module = open_beside(folder, "../view/refocus-view.so"); /* as it is built */
-        if (!module)
-            module = open_beside(folder, "../" RF_LIBDIR "/refocus/refocus-view.so");
-    }
-    if (!module)
-        module = open_beside(RF_MODULES, "refocus/refocus-view.so");
-    if (module)
-        symbol = dlsym(module, "rf_view_run");
     if (!symbol) {
-        const char *const error = dlerror();
-
-        snprintf(why, 256, "the part with the window cannot be loaded: %.180s",
-                 error ? error : "it is not installed");
+        snprintf(why, 256, "the part with the window cannot be loaded: %.180s", reason);
         return NULL;
     }
-    memcpy(&run, &symbol, sizeof run); /* ISO C has no conversion between the two */
+    memcpy(&run, &symbol, sizeof run);
     return run;
 }
 #else

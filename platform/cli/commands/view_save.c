@@ -57,10 +57,10 @@ void view_save(void *user, const struct rf_view_result *result)
     struct view_saving *const saving = user;
     const struct view_names *const names = &saving->names;
     const struct refocus_image *const picture = result->picture;
+    const struct refocus_write_options keeps = output_keeps(saving->input->photo);
 
     if (result->what & RF_SAVE_PICTURE)
-        count(saving, output_write_image(names->picture, picture, saving->input->photo),
-              names->picture);
+        count(saving, output_write_image(names->picture, picture, &keeps), names->picture);
     if (result->what & RF_SAVE_SETTINGS)
         count(saving, saving->settings(saving->of, result, names->settings), names->settings);
     if (result->what & RF_SAVE_DEPTH) {

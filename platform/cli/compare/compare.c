@@ -8,6 +8,7 @@
 #include "compare/compare_list.h"
 #include "shot/engine.h"
 #include "inputs/inputs.h"
+#include "inputs/matte.h"
 #include "inputs/lens.h"
 #include "outputs/outputs.h"
 
@@ -25,18 +26,24 @@ static const struct option options[] = {
      .name = "--reference",
      .argument = "GT",
      .offset = offsetof(struct settings, reference),
+     .brief = "the picture as it should be, of the photo's size",
      .help = "the picture as it should be, of the photo's size"},
     OUTPUT_OPTION(struct settings, output,
                   "a picture of labelled crops where depth jumps: " OUTPUT_PICTURES),
     DEPTH_FILE_OPTION(struct settings, depth),
     DEPTH_UNIT_OPTIONS(struct settings, depth),
+    UPSAMPLE_OPTION(struct settings, depth),
+    LIMIT_OPTIONS(struct settings, depth.limits),
     DEPTH_EDGES_OPTION(struct settings, depth),
+    ORIENT_DEPTH_OPTION(struct settings, depth),
     MATTE_OPTION(struct settings, depth),
+    LIGHT_OPTIONS(struct settings, depth),
     {.kind = OPTION_HEADING, .help = "What is compared"},
     {.kind = OPTION_TEXT,
      .name = "--methods",
      .argument = "NAME[:OPTION[=VALUE]...],...",
      .offset = offsetof(struct settings, methods),
+     .brief = "such as sweep,search:rays=full:iterations=1",
      .help = "methods of 'refocus render', with commas, each with options of its own "
              "such as search:rays=full:iterations=1 or jittered:cell=4; default: all "
              "that know the aperture"},
@@ -61,8 +68,9 @@ static const struct option options[] = {
 
 static int check(const struct settings *settings, const char *photo)
 {
-    const char *const inputs[] = {photo, settings->depth.file, settings->reference,
-                                  settings->engine.aperture, settings->depth.matte};
+    const char *const inputs[] = {
+        photo, settings->depth.file, settings->reference, settings->engine.aperture,
+        matte_is_none(settings->depth.matte) ? NULL : settings->depth.matte};
     int status = input_check_depth(&settings->depth);
 
     if (status == EXIT_DONE)
@@ -80,7 +88,7 @@ static int read_reference(struct refocus_photo **reference, const char *file,
                           const struct refocus_image *photo)
 {
     struct refocus_reason reason = {""};
-    const int status = refocus_photo_read(reference, file, NULL, &reason);
+    const int status = refocus_photo_read(reference, file, limits_taken(), &reason);
 
     if (status != REFOCUS_OK || !(*reference)->image->plane[0])
         return report_failure(EXIT_FAILED, file, "%s",
@@ -116,6 +124,7 @@ static uint64_t memory_of(const struct engine *engine, const struct refocus_imag
     params.papers = refocus_papers();
     params.methods = REFOCUS_METHOD_BIT(method);
     params.thin = engine->params.thin.enabled || engine->has_matte;
+    params.deep = engine->deep;
     return refocus_renderer_memory(&params);
 }
 
@@ -259,6 +268,8 @@ static int compare(struct engine *engine, struct input *input, struct comparison
     engine->places_edges = input_has_edges_placed(input, &settings->depth);
     scene.depth_edges = engine->places_edges;
     engine->has_matte = input->matte.samples != NULL;
+    engine->deep = input->deep.plane[0] != NULL;
+    engine->light = input->light;
     status = prepared && mask ? input_blur(input, &settings->lens, &blur)
                               : report_failure(EXIT_FAILED, "compare", "not enough memory");
     if (status == EXIT_DONE)
@@ -310,6 +321,7 @@ static int run(int argc, char **argv)
     struct input input = {0};
     struct variants variants = {0};
     const char *files[2];
+    double most_blur = REFOCUS_MAX_BLUR_RADIUS;
     int status;
 
     settings.engine.method = -1; /* several: options of any may be given */
@@ -326,8 +338,20 @@ static int run(int argc, char **argv)
         status = variants_begin(&variants, settings.methods, &settings.engine);
     for (int i = 0; i < variants.count; i++)
         engine.methods |= variants.variant[i].engine.methods;
+    /* All methods are compared on the same photo. */
+    settings.depth.light = true;
+    for (int i = 0; i < variants.count; i++) {
+        struct refocus_settings *params = &variants.variant[i].engine.params;
+
+        settings.depth.light &= engine_takes_deep(params);
+        params->render.dither =
+            settings.depth.no_dither ? REFOCUS_DITHER_OFF : REFOCUS_DITHER_ORDERED;
+    }
     if (status == EXIT_DONE)
         status = input_read(&input, files[0], &settings.depth);
+    for (int i = 0; i < variants.count; i++)
+        most_blur = fmin(most_blur, engine_most_blur(&variants.variant[i].settings));
+    input.most_blur = most_blur;
     if (status == EXIT_DONE)
         status = read_reference(&reference, settings.reference, input.photo->image);
     if (status == EXIT_DONE) {

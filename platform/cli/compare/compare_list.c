@@ -30,7 +30,7 @@ static int find_method(const char *name, int *method)
             return EXIT_DONE;
     nearest = options_nearest(name, method_word, NULL);
     return report_failure(EXIT_WRONG, "--methods", "'%s' is no method%s%s%s", name,
-                          nearest ? "; did you mean '" : "; 'refocus render --help' lists them",
+                          nearest ? "; did you mean '" : "; 'refocus render --help-all' lists them",
                           nearest ? nearest : "", nearest ? "'?" : "");
 }
 

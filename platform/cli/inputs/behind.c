@@ -15,7 +15,7 @@ static int check_size(const char *name, int width, int height, const struct refo
 static int read_image(struct behind *behind, const char *name, const struct refocus_image *photo)
 {
     struct refocus_reason reason = {""};
-    const int status = refocus_photo_read(&behind->photo, name, NULL, &reason);
+    const int status = refocus_photo_read(&behind->photo, name, limits_taken(), &reason);
 
     if (status != REFOCUS_OK)
         return report_failure(input_exit_code(status), name, "%s",
@@ -38,7 +38,7 @@ static int read_depth(struct behind *behind, const char *name,
     struct input *input = &behind->depth;
     struct refocus_depth_map *map;
     int status = refocus_depth_read(&input->side, name, settings.unit, report->near_m,
-                                    report->far_m, NULL, &reason);
+                                    report->far_m, limits_taken(), &reason);
 
     input->photo_name = input->depth_name = name;
     if (status != REFOCUS_OK)

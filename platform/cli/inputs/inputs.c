@@ -2,8 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include "inputs/inputs.h"
-#include "inputs/edges.h"
-#include "inputs/upsample.h"
+#include "inputs/matte.h"
+#include "inputs/shape.h"
+#include "inputs/standard.h"
 #include "line/report.h"
 
 static bool given(double value)
@@ -44,11 +45,17 @@ static bool find_codes(const char *names, uint32_t *flags)
     return true;
 }
 
+bool input_depth_is_made(const struct depth_settings *settings)
+{
+    return settings->model || settings->right || settings->stereo.within;
+}
+
 int input_check_depth(const struct depth_settings *settings)
 {
     struct refocus_depth_map map = refocus_depth_map_default();
     uint32_t flags;
 
+    limits_take(&settings->limits);
     if (!find_codes(settings->invalid, &flags))
         return report_failure(EXIT_WRONG, "--invalid",
                               "'%s' is not known; give zero, max or 2047, or several "
@@ -61,12 +68,21 @@ int input_check_depth(const struct depth_settings *settings)
                               "'%s' is not known; give disparity, inverse, mm, m or a "
                               "number per metre such as 5000/m",
                               settings->unit);
+    if ((settings->file != NULL) + input_depth_is_made(settings) > 1 ||
+        (settings->model && (settings->right || settings->stereo.within)) ||
+        (settings->right && settings->stereo.within))
+        return report_failure(EXIT_WRONG, settings->model ? "--estimate" : "--stereo",
+                              "depth is given twice; give one of --depth, --estimate, --stereo and "
+                              "--stereo-file");
+    if (input_depth_is_made(settings) && (settings->unit || settings->orient != ORIENT_AUTO))
+        return report_failure(EXIT_WRONG, settings->unit ? "--depth-unit" : "--orient-depth",
+                              "it is for depth that is read from a file; leave it out");
     if (settings->near_m >= settings->far_m)
         return report_failure(EXIT_WRONG, "--near",
                               "%g m is not nearer than --far %g m; give the smaller "
                               "number to --near",
                               settings->near_m, settings->far_m);
-    return EXIT_DONE;
+    return upsample_check(settings->upsample);
 }
 
 /* Put --near, --far and --depth-unit over what the photo says about its own depth. */
@@ -97,21 +113,19 @@ static int enlarge(struct input *input, const struct depth_settings *settings)
     struct refocus_upsample_params params = refocus_upsample_params_default();
     const uint64_t bytes = (uint64_t)photo->width * (uint64_t)photo->height * 2;
     uint16_t *full = bytes <= SIZE_MAX ? malloc((size_t)bytes) : NULL;
+    struct refocus_reason reason = {""};
     int status = REFOCUS_ERR_MEMORY;
 
     params.confidence = input->confidence;
     params.confidence_stride = input->width;
-    if (full && settings->upsample > 0) {
-        status = upsample_by_filter((uint32_t)settings->upsample - 1, photo, &map, full,
-                                    input->depth_name);
-        if (status != EXIT_DONE) {
-            free(full);
-            return status;
-        }
-    } else if (full)
+    if (full && settings->upsample > 0)
+        status = upsample_by_filter(settings->upsample, photo, &map, full, &reason);
+    else if (full)
         status = refocus_upsample(photo, &map, &params, full, (ptrdiff_t)photo->width * 2);
     if (status != REFOCUS_OK) {
         free(full);
+        if (reason.text[0])
+            return report_failure(EXIT_FAILED, "--upsample", "%s", reason.text);
         return report_failure(EXIT_FAILED, input->depth_name, "the depth map: %s",
                               refocus_strerror(status));
     }
@@ -122,11 +136,9 @@ static int enlarge(struct input *input, const struct depth_settings *settings)
     return EXIT_DONE;
 }
 
-/* An explicit filter says how edges are to be. */
 bool input_has_edges_placed(const struct input *input, const struct depth_settings *settings)
 {
-    return settings->edges == EDGES_AUTO && settings->upsample == 0 && input->photo &&
-           input->photo->image->plane[0];
+    return settings->edges == EDGES_AUTO && input->photo && input->photo->image->plane[0];
 }
 
 static bool has_other_size(const struct input *input)
@@ -138,13 +150,15 @@ static bool has_other_size(const struct input *input)
 
 static bool has_guesses(const struct input *input)
 {
-    return input->report.unknown + input->report.specks > 0;
+    return input->report.unknown + input->report.specks > 0 ||
+           (input->depth_from && input->depth_from->confidence);
 }
 
 static bool worth_enlarging(const struct input *input, const struct depth_settings *settings)
 {
-    return settings->full && has_other_size(input) &&
-           (!input_has_edges_placed(input, settings) || has_guesses(input));
+    return has_other_size(input) &&
+           (settings->upsample > 0 ||
+            (settings->full && (!input_has_edges_placed(input, settings) || has_guesses(input))));
 }
 
 /* Put the edges of the disparities on the photo's. */
@@ -165,8 +179,8 @@ static int place(struct input *input)
     return EXIT_DONE;
 }
 
-/* Filled samples count least when the map is enlarged, which the edges are then looked for in:
- * here where disparities of the photo's size are asked for, else by the renderer. */
+/* Edges are looked for in the enlarged map: here where disparities of the photo's size or a filter
+ * of OpenCV are asked for, else by the renderer. */
 static int fit(struct input *input, const struct depth_settings *settings)
 {
     const int status = worth_enlarging(input, settings) ? enlarge(input, settings) : EXIT_DONE;
@@ -174,6 +188,37 @@ static int fit(struct input *input, const struct depth_settings *settings)
     return status == EXIT_DONE && settings->full && input_has_edges_placed(input, settings)
                ? place(input)
                : status;
+}
+
+/* A sample is no surer than the file says; those that were filled stay guesses. */
+static void weigh(struct input *input)
+{
+    const uint8_t *const said = input->depth_from->confidence;
+    const size_t samples = (size_t)input->width * (size_t)input->height;
+
+    for (size_t i = 0; said && i < samples; i++)
+        if (said[i] < input->confidence[i])
+            input->confidence[i] = said[i];
+}
+
+/* Turn the disparities and their confidence by input->orientation. */
+static bool turn(struct input *input)
+{
+    const int width = input->width, height = input->height;
+    void *disparity = input->disparity, *confidence = input->confidence;
+    bool turned;
+
+    if (input->orientation <= 1)
+        return true;
+    turned = orient_turn(&disparity, sizeof *input->disparity, width, height, input->orientation);
+    input->disparity = disparity;
+    turned = turned && orient_turn(&confidence, 1, width, height, input->orientation);
+    input->confidence = confidence;
+    if (turned && input->orientation >= 5) {
+        input->width = height;
+        input->height = width;
+    }
+    return turned;
 }
 
 int input_convert(struct input *input, const struct depth_settings *settings)
@@ -212,15 +257,22 @@ int input_convert(struct input *input, const struct depth_settings *settings)
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, input->depth_name, "the depth map: %s",
                               refocus_strerror(status));
+    weigh(input);
+    if (!turn(input))
+        return report_failure(EXIT_FAILED, input->depth_name, "not enough memory to turn the map");
     return fit(input, settings);
 }
 
-static int report_no_depth(const char *photo)
+static int report_no_depth(const char *photo, const struct refocus_photo *read)
 {
+    if (read && read->info->views > 0)
+        return report_failure(EXIT_FAILED, photo,
+                              "it carries no depth but another view; give --stereo-file, which "
+                              "makes depth of the two");
     return report_failure(EXIT_FAILED, photo,
-                          "it carries no depth; give a depth map to --depth, or make "
-                          "one by 'refocus depth PHOTO -o MAP.png' with --estimate "
-                          "MODEL.onnx or --strokes FILE.json");
+                          "it carries no depth; give a depth map to --depth or MODEL.onnx to "
+                          "--estimate, or make a map by 'refocus depth PHOTO -o MAP.png' of a "
+                          "stereo pair or --strokes FILE.json");
 }
 
 /* The file may be the photo itself. */
@@ -230,11 +282,11 @@ static int read_side(struct input *input, const char *file, const struct depth_s
     int status;
 
     input->depth_name = file;
-    status = refocus_depth_read(&input->side, file, settings->unit,
-                                given(settings->near_m) ? settings->near_m : 0,
-                                given(settings->far_m) ? settings->far_m : 0, NULL, &reason);
+    status = refocus_depth_read(
+        &input->side, file, settings->unit, given(settings->near_m) ? settings->near_m : 0,
+        given(settings->far_m) ? settings->far_m : 0, limits_taken(), &reason);
     if (status == REFOCUS_ERR_NO_DEPTH && file == input->photo_name)
-        return report_no_depth(file);
+        return report_no_depth(file, input->photo);
     if (status != REFOCUS_OK)
         return report_failure(input_exit_code(status), file, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
@@ -250,14 +302,14 @@ void input_tell_bits(const struct refocus_photo *photo, const char *name)
                        strcmp(photo->info->container, "HEIC") == 0 ? "rounded" : "dithered");
 }
 
-int input_read_photo(struct input *input, const char *photo, const char *instead)
+static int read_photo(struct input *input, const char *photo, const char *instead)
 {
     struct refocus_reason reason = {""};
     int status;
 
     memset(input, 0, sizeof *input);
     input->photo_name = input->depth_name = photo;
-    status = refocus_photo_read(&input->photo, photo, NULL, &reason);
+    status = standard_photo(&input->photo, photo, &reason);
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, photo, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
@@ -266,121 +318,163 @@ int input_read_photo(struct input *input, const char *photo, const char *instead
                               "it is a depth map, not a photo; "
                               "give %s",
                               instead);
-    input_tell_bits(input->photo, photo);
     return EXIT_DONE;
 }
 
-/* A map of another picture, or one that lies on its side: neither is stretched to fit.
- * Cameras' 4:3 and 16:9 go together, and a square is what networks make of any picture;
- * of a few samples the shape says nothing. */
-static bool has_another_shape(const struct refocus_depth_map *map,
-                              const struct refocus_image *photo)
+int input_read_photo(struct input *input, const char *photo, const char *instead)
 {
-    enum { FEWEST = 16 };
-    const int64_t wide = (int64_t)map->width * photo->height;
-    const int64_t high = (int64_t)map->height * photo->width;
+    const int status = read_photo(input, photo, instead);
 
-    return map->width >= FEWEST && map->height >= FEWEST && map->width != map->height &&
-           (2 * wide > 3 * high || 2 * high > 3 * wide);
+    if (status == EXIT_DONE)
+        input_tell_bits(input->photo, photo);
+    return status;
 }
 
-static int check_shape(const struct input *input, const char *file,
-                       const struct refocus_depth_map *map, const char *what)
+static const struct {
+    const char *name, *summary;
+} gain_maps[] = {
+    [GAIN_MAP_USE] = {"use", "highlights have the light that it says they have; tones stay"},
+    [GAIN_MAP_IGNORE] = {"ignore", "the photo is taken for what its 8 bits show"},
+};
+
+const char *gain_map_name(uint32_t index)
+{
+    return index < sizeof gain_maps / sizeof *gain_maps ? gain_maps[index].name : NULL;
+}
+
+const char *gain_map_summary(uint32_t index)
+{
+    return index < sizeof gain_maps / sizeof *gain_maps ? gain_maps[index].summary : NULL;
+}
+
+static int take_light(struct input *input)
+{
+    if (refocus_light_create(&input->light, input->photo) != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, input->photo_name,
+                              "not enough memory for its gain map; give --gain-map ignore");
+    input->deep = *refocus_light_image(input->light);
+    return EXIT_DONE;
+}
+
+/* Choose what of the photo is rendered. */
+static int choose_bits(struct input *input, const struct depth_settings *settings)
+{
+    const struct refocus_image *deep = input->photo->deep;
+    const bool asked = settings->transfer || !isnan(settings->white);
+
+    if (input->photo->info->gain_map_stops > 0 && settings->gain_map == GAIN_MAP_USE &&
+        settings->light)
+        return take_light(input);
+    if (asked && (!deep->plane[0] || settings->deep == DEEP_NONE))
+        return report_failure(
+            EXIT_FAILED, settings->transfer ? "--transfer" : "--white",
+            "the option is for photos of more than 8 bits, rendered by the sweep in linear "
+            "light without --sigma, --grain, --star and --view; leave it out");
+    if (!deep->plane[0] || settings->deep == DEEP_NONE ||
+        (settings->deep == DEEP_LIGHT && deep->format != REFOCUS_FORMAT_RGB_FLOAT)) {
+        input_tell_bits(input->photo, input->photo_name);
+        return EXIT_DONE;
+    }
+    input->deep = *deep;
+    input->deep.transfer = (uint32_t)settings->transfer;
+    input->deep.white = isnan(settings->white) ? 0 : (float)settings->white;
+    return EXIT_DONE;
+}
+
+/* Find out how the map is to be turned; one that has the shape of another picture then is refused,
+ * one of the photo's own only where it lies on its side. */
+static int settle_shape(struct input *input, const struct depth_settings *settings)
 {
     const struct refocus_image *photo = input->photo->image;
+    const struct refocus_depth_map *map = input->depth_from->depth;
+    const int photo_orientation = input->photo->info->orientation;
+    const bool own = input->depth_from == input->photo;
+    const bool on_its_side = shape_lies_on_its_side(map->width, map->height, photo);
+    int width = map->width, height = map->height;
 
-    if (!has_another_shape(map, photo))
-        return EXIT_DONE;
-    return report_failure(EXIT_FAILED, file,
-                          "its %dx%d samples have another shape than the photo of %dx%d pixels; "
-                          "give the %s of this photo, as upright as the photo is",
-                          (int)map->width, (int)map->height, (int)photo->width, (int)photo->height,
-                          what);
+    input->orientation =
+        orient_choose((enum orient)settings->orient, on_its_side, photo_orientation, own);
+    if (settings->orient == ORIENT_AUTO && input->orientation > 1)
+        report_warning(input->depth_name,
+                       "its %dx%d samples lie on their side; they are turned %s EXIF orientation "
+                       "%d of the photo; --orient-depth says otherwise",
+                       width, height, own ? "back by" : "by", photo_orientation);
+    if (input->orientation >= 5) {
+        width = map->height;
+        height = map->width;
+    }
+    if (shape_lies_on_its_side(width, height, photo))
+        return report_failure(EXIT_FAILED, input->depth_name,
+                              "its %dx%d samples lie on their side beside the photo of %dx%d "
+                              "pixels; turn them by --orient-depth 90 or 270, or give the map of "
+                              "this photo",
+                              (int)map->width, (int)map->height, (int)photo->width,
+                              (int)photo->height);
+    return own ? EXIT_DONE : shape_check(input->depth_name, width, height, photo, "map");
 }
 
-/* Read the matte with the codes that the file has: white is all subject. */
-static int read_matte(struct input *input, const char *file)
+/* The matte that is asked for, else the photo's own, where it has the photo's shape. */
+static int settle_matte(struct input *input, const char *asked)
 {
-    struct refocus_photo *read = NULL;
-    struct refocus_reason reason = {""};
-    struct refocus_depth_map map;
-    uint64_t bytes;
-    int status = refocus_depth_read(&read, file, NULL, 0, 0, NULL, &reason);
+    const struct refocus_image *photo = input->photo->image;
+    const struct refocus_depth_map *own = input->photo->matte;
 
-    if (status != REFOCUS_OK)
-        return report_failure(input_exit_code(status), file, "%s",
-                              reason.text[0] ? reason.text : refocus_strerror(status));
-    map = *read->depth;
-    bytes = (uint64_t)map.width * (uint64_t)map.height * 2;
-    map.meaning = REFOCUS_DEPTH_DISPARITY;
-    map.flags = 0;
-    map.near_m = map.far_m = map.value_far = 0;
-    map.value_near = map.sample == REFOCUS_SAMPLE_U8    ? 255
-                     : map.sample == REFOCUS_SAMPLE_U16 ? 65535
-                                                        : 1;
-    input->matte_name = file;
-    input->matte_samples = bytes <= SIZE_MAX ? malloc((size_t)bytes) : NULL;
-    input->matte =
-        refocus_disparity16(input->matte_samples, map.width, map.height, (ptrdiff_t)map.width * 2);
-    status = check_shape(input, file, &map, "matte");
-    if (status == EXIT_DONE &&
-        (!input->matte_samples ||
-         refocus_depth_to_disparity(&map, input->matte_samples, input->matte.stride, NULL)))
-        status = report_failure(EXIT_FAILED, file, "not enough memory for the matte");
-    refocus_photo_free(&read);
-    return status;
+    input->matte_name = asked ? asked : input->photo_name;
+    if (asked)
+        return matte_is_none(asked)
+                   ? EXIT_DONE
+                   : matte_read(asked, photo, &input->matte_samples, &input->matte);
+    if (!own->samples || shape_is_another(own->width, own->height, photo))
+        return EXIT_DONE;
+    return matte_take(own, input->photo_name, photo, &input->matte_samples, &input->matte);
 }
 
 json_t *input_matte_json(const struct input *input)
 {
-    const int64_t samples = (int64_t)input->matte.width * input->matte.height;
-    int64_t subject = 0, mixed = 0;
+    return matte_json(input->matte_name, &input->matte);
+}
 
-    if (!input->matte_samples)
-        return json_null();
-    for (int64_t i = 0; i < samples; i++) {
-        subject += input->matte_samples[i] == 65535;
-        mixed += input->matte_samples[i] > 0 && input->matte_samples[i] < 65535;
-    }
-    return json_pack("{s:o, s:i, s:i, s:f, s:f}", "file", report_text_json(input->matte_name),
-                     "width", (int)input->matte.width, "height", (int)input->matte.height,
-                     "subject", (double)subject / (double)samples, "mixed",
-                     (double)mixed / (double)samples);
+const uint8_t *input_confidence(const struct input *input)
+{
+    return has_other_size(input) && has_guesses(input) ? input->confidence : NULL;
 }
 
 struct refocus_scene input_scene(const struct input *input, const struct refocus_disparity *map)
 {
-    struct refocus_scene scene = refocus_scene_default(input->photo->image, map);
+    struct refocus_scene scene =
+        refocus_scene_default(input->deep.plane[0] ? &input->deep : input->photo->image, map);
 
     scene.matte = input->matte.samples ? &input->matte : NULL;
-    if (has_other_size(input) && has_guesses(input)) {
-        scene.confidence = input->confidence;
-        scene.confidence_stride = input->width;
-    }
+    scene.confidence = input_confidence(input);
+    scene.confidence_stride = scene.confidence ? input->width : 0;
     return scene;
 }
 
 int input_read(struct input *input, const char *photo, const struct depth_settings *settings)
 {
-    int status = input_read_photo(input, photo, "the photo, and this file to --depth");
+    int status = read_photo(input, photo, "the photo, and this file to --depth");
 
     if (status != EXIT_DONE)
         return status;
-    if (settings->file) {
+    if ((status = choose_bits(input, settings)) != EXIT_DONE)
+        return status;
+    if (settings->make) {
+        status = settings->make(input, settings);
+    } else if (settings->file) {
         status = read_side(input, settings->file, settings);
-        if (status == EXIT_DONE)
-            status = check_shape(input, settings->file, input->side->depth, "map");
     } else {
         if (!input->photo->depth->samples && settings->optional)
             return EXIT_DONE;
         if (!input->photo->depth->samples)
-            return report_no_depth(photo);
+            return report_no_depth(photo, input->photo);
         input->depth_name = photo;
         input->depth_from = input->photo;
         status = settle_embedded(input, settings);
     }
-    if (status == EXIT_DONE && settings->matte)
-        status = read_matte(input, settings->matte);
+    if (status == EXIT_DONE && !settings->make)
+        status = settle_shape(input, settings);
+    if (status == EXIT_DONE)
+        status = settle_matte(input, settings->matte);
     return status == EXIT_DONE ? input_convert(input, settings) : status;
 }
 
@@ -391,6 +485,7 @@ int input_read_depth(struct input *input, const char *file, const struct depth_s
     memset(input, 0, sizeof *input);
     input->photo_name = file;
     status = read_side(input, file, settings);
+    input->orientation = orient_choose((enum orient)settings->orient, false, 1, false);
     return status == EXIT_DONE ? input_convert(input, settings) : status;
 }
 
@@ -400,6 +495,7 @@ void input_free(struct input *input)
     free(input->confidence);
     free(input->matte_samples);
     free(input->made_samples);
+    refocus_light_destroy(&input->light);
     refocus_photo_free(&input->side);
     refocus_photo_free(&input->photo);
 }

@@ -1,5 +1,6 @@
 /* lens.c: focus and blur are found by the options, the photo's own facts and its depth. */
 #include <stdio.h>
+#include <string.h>
 #include "inputs/lens.h"
 #include "line/report.h"
 
@@ -48,6 +49,17 @@ static double larger_side(const struct refocus_image *image)
     return image->width > image->height ? image->width : image->height;
 }
 
+struct refocus_lens input_given_lens(const struct lens_settings *settings, int width, int height)
+{
+    const double larger = width > height ? width : height;
+
+    return (struct refocus_lens){.focal_length_mm = settings->focal_length,
+                                 .f_number = settings->f_number,
+                                 .sensor_width_mm = given(settings->sensor_width)
+                                                        ? settings->sensor_width
+                                                        : 36 * width / larger};
+}
+
 /* The lens of --f-number; see the help of LENS_OPTIONS for what stands in for what. */
 static bool choose_lens(const struct input *input, const struct lens_settings *settings,
                         struct refocus_lens *lens)
@@ -56,10 +68,7 @@ static bool choose_lens(const struct input *input, const struct lens_settings *s
 
     lens->f_number = settings->f_number;
     if (given(settings->focal_length)) {
-        lens->focal_length_mm = settings->focal_length;
-        lens->sensor_width_mm = given(settings->sensor_width)
-                                    ? settings->sensor_width
-                                    : 36 * width / larger_side(input->photo->image);
+        *lens = input_given_lens(settings, input->photo->image->width, input->photo->image->height);
         return true;
     }
     /* 35 mm terms compare diagonals: that of 36 x 24 mm with the picture's. */
@@ -73,14 +82,20 @@ static bool choose_lens(const struct input *input, const struct lens_settings *s
 struct blur_choice {
     double radius, asked;   /* pixels: that is taken, and that of the f-number */
     double f_number;        /* the one that gives `radius`; NAN: none does */
-    double own, own_number; /* without metres: what stands for which f-number */
+    double own, own_number; /* without metres or lens: what stands for which f-number */
     const char *from;       /* "pixels", "lens", "file" or "default" */
 };
 
 /* The blur of 50 mm at f/2 on full frame, from 0.87 m to far away. */
-static double default_blur(const struct input *input)
+static double usual_blur(const struct input *input)
 {
-    return fmin(larger_side(input->photo->image) / 50, REFOCUS_MAX_BLUR_RADIUS);
+    return fmin(larger_side(input->photo->image) / 50, REFOCUS_PLAIN_BLUR_RADIUS);
+}
+
+/* The largest blur radius that the renderer will be made for at most. */
+static double most_blur(const struct input *input)
+{
+    return input->most_blur > 0 ? input->most_blur : REFOCUS_MAX_BLUR_RADIUS;
 }
 
 /* f-numbers of files may be anything. */
@@ -89,11 +104,11 @@ static bool is_f_number(double number)
     return number >= 0.5 && number <= 64;
 }
 
-/* Without metres a lens has no blur. A file's own blur, or the default, stands for the
- * f-number that the file names, else for f/2 as most phones have it, and others are more
- * or less of it: K is as 1/N. */
-static void blur_without_metres(const struct input *input, double f_number,
-                                struct blur_choice *choice)
+/* Without metres, or a focal length, a lens has no blur. A file's own blur, or the default, stands
+ * for the f-number that the file names, else for f/2 as most phones have it, and others are more or
+ * less of it: K is as 1/N. */
+static void blur_without_lens(const struct input *input, double f_number,
+                              struct blur_choice *choice)
 {
     static const double usual = 2;
     const struct refocus_photo_info *info = input->depth_from->info;
@@ -104,12 +119,52 @@ static void blur_without_metres(const struct input *input, double f_number,
         choice->own_number = info->f_number;
     } else {
         choice->from = "default";
-        choice->own = default_blur(input);
+        choice->own = usual_blur(input);
         choice->own_number = info->simulated_f_number;
     }
     if (!is_f_number(choice->own_number))
         choice->own_number = usual;
     choice->asked = choice->own * choice->own_number / f_number;
+}
+
+/* Without an option: the blur that the file names, or that of the f-number which its phone
+ * simulates, else the usual one. */
+static void choose_default(const struct input *input, struct blur_choice *choice)
+{
+    const struct refocus_depth_range range = {input->report.near_m, input->report.far_m};
+    const struct refocus_photo_info *info = input->depth_from ? input->depth_from->info : NULL;
+    struct lens_settings simulated = LENS_SETTINGS_NONE;
+    struct refocus_lens lens;
+
+    simulated.f_number = info ? info->simulated_f_number : 0;
+    choice->from = "file";
+    if (info && info->own_blur > 0) {
+        choice->asked = info->own_blur * larger_side(input->photo->image);
+    } else if (is_f_number(simulated.f_number) && range_is_known(input) &&
+               choose_lens(input, &simulated, &lens)) {
+        choice->f_number = simulated.f_number;
+        choice->asked = refocus_max_blur_radius(&lens, &range, input->photo->image->width);
+    } else {
+        choice->from = "default";
+        choice->asked = usual_blur(input);
+    }
+    choice->radius = fmin(choice->asked, REFOCUS_PLAIN_BLUR_RADIUS);
+    if (choice->radius < choice->asked)
+        choice->f_number *= choice->asked / choice->radius;
+}
+
+void input_default_blur(const struct input *input, double *blur, char why[INPUT_WHY])
+{
+    struct blur_choice choice = {.f_number = NAN};
+
+    choose_default(input, &choice);
+    *blur = choice.radius;
+    if (strcmp(choice.from, "default") == 0)
+        snprintf(why, INPUT_WHY, "1/50 of the larger side, for the file names no blur");
+    else if (given(choice.f_number))
+        snprintf(why, INPUT_WHY, "the f/%.3g that its phone simulates", choice.f_number);
+    else
+        snprintf(why, INPUT_WHY, "the blur that the file names");
 }
 
 static int choose_blur(const struct input *input, const struct lens_settings *settings,
@@ -119,49 +174,62 @@ static int choose_blur(const struct input *input, const struct lens_settings *se
     struct refocus_lens lens;
 
     *choice = (struct blur_choice){.f_number = NAN};
+    if (given(settings->blur) && settings->blur > most_blur(input))
+        return report_failure(EXIT_WRONG, "--blur",
+                              "%g pixels are more than %g, the most of view and of all methods but "
+                              "sweep",
+                              settings->blur, most_blur(input));
+    if (given(settings->blur)) {
+        choice->from = "pixels";
+        choice->radius = choice->asked = settings->blur;
+        return EXIT_DONE;
+    }
     if (!given(settings->f_number)) {
-        choice->from = given(settings->blur) ? "pixels" : "default";
-        choice->radius = choice->asked =
-            given(settings->blur) ? settings->blur : default_blur(input);
+        choose_default(input, choice);
         return EXIT_DONE;
     }
     if (range_is_known(input)) {
         choice->from = "lens";
-        if (!choose_lens(input, settings, &lens))
-            return report_failure(EXIT_FAILED, input->photo_name,
-                                  "--f-number needs a focal length, which it does not say; give "
-                                  "--focal-length and --sensor-width, or --blur");
-        choice->asked = refocus_max_blur_radius(&lens, &range, input->photo->image->width);
+        if (choose_lens(input, settings, &lens))
+            choice->asked = refocus_max_blur_radius(&lens, &range, input->photo->image->width);
+        else
+            blur_without_lens(input, settings->f_number, choice);
     } else if (given(settings->focal_length)) {
         return report_failure(EXIT_FAILED, input->depth_name,
                               "--focal-length needs distances in metres, which it does "
                               "not say; give --near and --far, or leave it out");
     } else {
-        blur_without_metres(input, settings->f_number, choice);
+        blur_without_lens(input, settings->f_number, choice);
     }
-    choice->radius = fmin(choice->asked, REFOCUS_MAX_BLUR_RADIUS);
+    choice->radius = fmin(choice->asked, most_blur(input));
     choice->f_number = choice->asked > choice->radius
                            ? settings->f_number * choice->asked / choice->radius
                            : settings->f_number;
     return EXIT_DONE;
 }
 
-/* Print one line, whether metres are missing, the blur is too large, or both. */
+/* Print one line about an f-number that was asked for, whether metres are missing, the blur is too
+ * large, or both. */
 static void warn_of_blur(const struct input *input, const struct lens_settings *settings,
                          const struct blur_choice *choice)
 {
+    const bool metres = range_is_known(input);
     char limited[96] = "";
 
     if (choice->asked > choice->radius)
         snprintf(limited, sizeof limited, ", limited to %d, the most, which f/%.3g has",
-                 (int)REFOCUS_MAX_BLUR_RADIUS, choice->f_number);
+                 (int)most_blur(input), choice->f_number);
+    if (!given(settings->f_number))
+        return;
     if (choice->own > 0)
-        report_warning("--f-number",
-                       "%s says no distances in metres; f/%g gives %.1f pixels of blur%s, "
-                       "by the %s of %.1f at f/%g; --near and --far give that of a lens",
-                       input->depth_name, settings->f_number, choice->asked, limited,
-                       strcmp(choice->from, "file") == 0 ? "file's own" : "default", choice->own,
-                       choice->own_number);
+        report_warning(
+            "--f-number",
+            "%s says no %s; f/%g gives %.1f pixels of blur%s, by the %s of %.1f at "
+            "f/%g; %s that of a lens",
+            metres ? input->photo_name : input->depth_name,
+            metres ? "focal length" : "distances in metres", settings->f_number, choice->asked,
+            limited, strcmp(choice->from, "file") == 0 ? "file's own" : "default", choice->own,
+            choice->own_number, metres ? "--focal-length gives" : "--near and --far give");
     else if (limited[0])
         report_warning("--f-number", "f/%g gives %.0f pixels of blur%s", settings->f_number,
                        choice->asked, limited);
@@ -271,6 +339,12 @@ int input_focus(const struct input *input, const struct lens_settings *settings,
                info->focus_y <= 1 && (info->focus_x > 0 || info->focus_y > 0)) {
         x = fmin(info->focus_x * width, width - 1);
         y = fmin(info->focus_y * height, height - 1);
+    } else if (info->focus_distance > 0 && input->depth_from == input->photo &&
+               range_is_known(input)) {
+        const struct refocus_depth_range range = {input->report.near_m, input->report.far_m};
+
+        *focus = fmin(fmax(refocus_disparity_of_depth(&range, info->focus_distance), 0), 1);
+        return EXIT_DONE;
     }
     *focus = input_surface_at(prepared, width, height, (int)x, (int)y);
     return EXIT_DONE;

@@ -25,22 +25,27 @@ struct lens_settings {
 #define FOCUS_OPTIONS(type, member)                                                                \
     {.kind = OPTION_NUMBER,                                                                        \
      .name = "--focus",                                                                            \
+     .group = "focus",                                                                             \
      .argument = "D",                                                                              \
      .offset = offsetof(type, member.focus),                                                       \
      .least = 0,                                                                                   \
      .greatest = 1,                                                                                \
+     .brief = "disparity in focus: 1 nearest, 0 farthest",                                         \
      .help = "disparity in focus: 1 nearest, 0 farthest"},                                         \
         {.kind = OPTION_NUMBERS,                                                                   \
          .name = "--focus-at",                                                                     \
+         .group = "focus",                                                                         \
          .argument = "X,Y",                                                                        \
          .offset = offsetof(type, member.focus_at),                                                \
          .least = -INFINITY,                                                                       \
          .greatest = INFINITY,                                                                     \
          .count = 2,                                                                               \
+         .brief = "focus on the surface at that pixel",                                            \
          .help = "focus on the surface at that pixel: the nearer one at an edge; without "         \
-                 "any --focus...: the point that the file names, else the centre"},                \
+                 "any --focus...: the point or distance that the file names, else the centre"},    \
         {.kind = OPTION_NUMBERS,                                                                   \
          .name = "--focus-rectangle",                                                              \
+         .group = "focus",                                                                         \
          .argument = "X,Y,W,H",                                                                    \
          .offset = offsetof(type, member.focus_rectangle),                                         \
          .least = 0,                                                                               \
@@ -50,6 +55,7 @@ struct lens_settings {
                  "pixels"},                                                                        \
         {.kind = OPTION_NUMBER,                                                                    \
          .name = "--focus-distance",                                                               \
+         .group = "focus",                                                                         \
          .argument = "M",                                                                          \
          .offset = offsetof(type, member.focus_distance),                                          \
          .least = 0,                                                                               \
@@ -57,21 +63,26 @@ struct lens_settings {
          .greatest = INFINITY,                                                                     \
          .help = "metres in focus, also 'inf'; near and far must be known"},                       \
     {                                                                                              \
-        .kind = OPTION_NUMBER, .name = "--blur", .argument = "K",                                  \
+        .kind = OPTION_NUMBER, .name = "--blur", .group = "blur", .argument = "K",                 \
         .offset = offsetof(type, member.blur), .least = 0, .greatest = REFOCUS_MAX_BLUR_RADIUS,    \
+        .brief = "largest blur radius, pixels",                                                    \
         .help = "blur radius in pixels of disparity 0 when 1 is in focus; without it "             \
-                "and --f-number: 1/50 of the larger side, at most 127"                             \
+                "and --f-number: the blur that the file names, or of the lens that its "           \
+                "phone simulates, else 1/50 of the larger side, at most 127"                       \
     }
 #define LENS_OPTIONS(type, member)                                                                 \
     {.kind = OPTION_NUMBER,                                                                        \
      .name = "--f-number",                                                                         \
+     .group = "blur",                                                                              \
      .argument = "N",                                                                              \
      .offset = offsetof(type, member.f_number),                                                    \
      .least = 0,                                                                                   \
      .above = true,                                                                                \
      .greatest = 1000,                                                                             \
-     .help = "blur of a lens of this f-number, at most 127 pixels; where the depth "               \
-             "has no metres, the blur that the file names, or the default, which "                 \
+     .brief = "the blur of such a lens instead",                                                   \
+     .help = "blur of a lens of this f-number, at most 944 pixels; without "                       \
+             "a focal length, or metres of the depth, the blur that the file names, or the "       \
+             "default, which "                                                                     \
              "stands for the f-number of the file, or f/2, made more or less"},                    \
         {.kind = OPTION_NUMBER,                                                                    \
          .name = "--focal-length",                                                                 \
@@ -94,6 +105,9 @@ struct lens_settings {
 
 int input_check_lens(const struct lens_settings *settings);
 
+/* The lens of --f-number and --focal-length, for pictures of this size. */
+struct refocus_lens input_given_lens(const struct lens_settings *settings, int width, int height);
+
 /* Whether the settings say what is in focus. */
 bool input_focus_is_given(const struct lens_settings *settings);
 
@@ -103,6 +117,10 @@ int input_blur(const struct input *input, const struct lens_settings *settings, 
 /* K without a warning, and the f-number that has that blur; NAN: none was given. */
 int input_blur_and_f_number(const struct input *input, const struct lens_settings *settings,
                             double *blur, double *f_number);
+
+/* K without any option, and where it is from, in words. */
+enum { INPUT_WHY = 80 };
+void input_default_blur(const struct input *input, double *blur, char why[INPUT_WHY]);
 
 /* How input_blur() came by K, for reports: "blur_from", and the "f_number" that has that blur. */
 json_t *input_blur_json(const struct input *input, const struct lens_settings *settings);

@@ -3,17 +3,15 @@
 #include <stdlib.h>
 #include <string.h>
 #include "inputs/made.h"
+#include "inputs/opencv.h"
 #include "line/report.h"
-
-#ifdef RF_HAVE_OPENCV
-#include <refocus/platform/opencv.h>
 
 /* Read the other picture of a pair: a file of its own, or the second one in the left file. */
 static int read_right(struct refocus_photo **photo, const char *name, bool second)
 {
     struct refocus_reason reason = {""};
-    const int status = second ? refocus_photo_read_second(photo, name, NULL, &reason)
-                              : refocus_photo_read(photo, name, NULL, &reason);
+    const int status = second ? refocus_photo_read_second(photo, name, limits_taken(), &reason)
+                              : refocus_photo_read(photo, name, limits_taken(), &reason);
 
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, name, "%s",
@@ -26,8 +24,8 @@ static int read_right(struct refocus_photo **photo, const char *name, bool secon
 }
 
 /* Take floats that grow towards the camera as the depth of the photo. */
-static int take(struct input *input, float *samples, int width, int height,
-                const struct depth_settings *settings)
+static void take(struct input *input, float *samples, int width, int height,
+                 const struct depth_settings *settings)
 {
     struct refocus_depth_map *map = &input->made_map;
 
@@ -45,7 +43,6 @@ static int take(struct input *input, float *samples, int width, int height,
     if (!isnan(settings->far_m))
         map->far_m = settings->far_m;
     input->depth_from = &input->made;
-    return input_convert(input, settings);
 }
 
 /* Take the halves of a picture that holds two side by side. */
@@ -56,15 +53,25 @@ static void halve(struct refocus_image *left, struct refocus_image *right)
     right->plane[0] += 3 * (ptrdiff_t)left->width;
 }
 
-int input_read_stereo(struct input *input, const char *left, const char *right,
-                      const struct stereo_settings *how, const struct depth_settings *settings)
+static int load(const struct opencv **cv, const char *what)
+{
+    char why[OPENCV_WHY];
+
+    *cv = opencv_load(why);
+    return *cv ? EXIT_DONE : report_failure(EXIT_FAILED, what, "%s", why);
+}
+
+static int match(struct input *input, const char *right, const struct stereo_settings *how,
+                 const struct depth_settings *settings)
 {
     struct refocus_stereo_params params = refocus_stereo_params_default();
     struct refocus_stereo_report report = refocus_stereo_report_default();
     struct refocus_cv_reason reason = {""};
+    const char *const left = input->photo_name;
     struct refocus_image other;
+    const struct opencv *cv;
     float *samples = NULL;
-    int status = input_read_photo(input, left, "a photo");
+    int status = load(&cv, right ? right : left);
 
     params.method = (uint32_t)how->method;
     if (status == EXIT_DONE && (right || how->within))
@@ -83,7 +90,7 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
     if (!samples)
         return report_failure(EXIT_FAILED, left, "not enough memory");
     report_progress("matching", 0.2);
-    status = refocus_cv_stereo(input->photo->image, &other, &params, samples, &report, &reason);
+    status = cv->stereo(input->photo->image, &other, &params, samples, &report, &reason);
     if (status != REFOCUS_OK) {
         free(samples);
         return report_failure(EXIT_FAILED, right ? right : left, "%s",
@@ -95,7 +102,18 @@ int input_read_stereo(struct input *input, const char *left, const char *right,
              (double)report.least, (double)report.greatest, (double)report.vertical_offset,
              100.0 * (double)report.matched);
     input->made_info.evidence_count = 1;
-    return take(input, samples, input->photo->image->width, input->photo->image->height, settings);
+    take(input, samples, input->photo->image->width, input->photo->image->height, settings);
+    return EXIT_DONE;
+}
+
+int input_read_stereo(struct input *input, const char *left, const char *right,
+                      const struct stereo_settings *how, const struct depth_settings *settings)
+{
+    int status = input_read_photo(input, left, "a photo");
+
+    if (status == EXIT_DONE)
+        status = match(input, right, how, settings);
+    return status == EXIT_DONE ? input_convert(input, settings) : status;
 }
 
 static void adjust(struct refocus_network *network, const struct network_settings *how)
@@ -113,62 +131,66 @@ static void adjust(struct refocus_network *network, const struct network_setting
         network->inverse = !network->inverse;
 }
 
-int input_read_estimate(struct input *input, const char *photo, const char *model,
-                        const struct network_settings *how, const struct depth_settings *settings)
+static int estimate_depth(struct input *input, const char *model,
+                          const struct network_settings *how, const struct depth_settings *settings)
 {
     struct refocus_estimate estimate = refocus_estimate_default();
     struct refocus_network network = refocus_network_default();
     struct refocus_cv_reason reason = {""};
-    int status = input_read_photo(input, photo, "a photo");
+    const struct opencv *cv;
+    int status = load(&cv, model);
 
     if (status != EXIT_DONE)
         return status;
-    refocus_cv_network((uint32_t)how->preset, &network);
-    status = refocus_cv_network_fit(&network, model, &reason);
+    cv->network((uint32_t)how->preset, &network);
+    status = cv->network_fit(&network, model, &reason);
     adjust(&network, how);
     report_progress("estimating", 0.2);
     if (status == REFOCUS_OK)
-        status = refocus_cv_estimate(input->photo->image, model, &network, &estimate, &reason);
+        status = cv->estimate(input->photo->image, model, &network, &estimate, &reason);
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, model, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
-    return take(input, estimate.samples, estimate.width, estimate.height, settings);
-}
-
-const char *made_preset(uint32_t index)
-{
-    return refocus_cv_network_name(index);
-}
-#else
-static int absent(const char *what)
-{
-    return report_failure(EXIT_FAILED, what,
-                          "this build has no OpenCV; build it with "
-                          "OpenCV");
-}
-
-int input_read_stereo(struct input *input, const char *left, const char *right,
-                      const struct stereo_settings *how, const struct depth_settings *settings)
-{
-    (void)settings;
-    (void)how;
-    memset(input, 0, sizeof *input);
-    return absent(right ? right : left);
+    take(input, estimate.samples, estimate.width, estimate.height, settings);
+    return EXIT_DONE;
 }
 
 int input_read_estimate(struct input *input, const char *photo, const char *model,
                         const struct network_settings *how, const struct depth_settings *settings)
 {
-    (void)photo;
-    (void)how;
-    (void)settings;
-    memset(input, 0, sizeof *input);
-    return absent(model);
+    int status = input_read_photo(input, photo, "a photo");
+
+    if (status == EXIT_DONE)
+        status = estimate_depth(input, model, how, settings);
+    return status == EXIT_DONE ? input_convert(input, settings) : status;
 }
 
-const char *made_preset(uint32_t index)
+int made_depth(struct input *input, const struct depth_settings *settings)
 {
-    return index == 0 ? "none" : NULL;
+    snprintf(input->made_info.container, sizeof input->made_info.container, "%s",
+             settings->model ? "network" : "stereo pair");
+    input->depth_name = settings->model ? settings->model : input->photo_name;
+    return settings->model ? estimate_depth(input, settings->model, &settings->network, settings)
+                           : match(input, settings->right, &settings->stereo, settings);
 }
 
-#endif
+const char *ways_network(uint32_t index)
+{
+    return opencv_network_name(index);
+}
+
+const char *ways_match(uint32_t index)
+{
+    static const char *const names[] = {"checked", "plain", "wls"};
+
+    return index < sizeof names / sizeof *names ? names[index] : NULL;
+}
+
+const char *ways_match_summary(uint32_t index)
+{
+    static const char *const words[] = {
+        "both ways; what disagrees is filled", "OpenCV's semi-global matching as it is",
+        "filled by weighted least squares; needs the module refocus-ximgproc"};
+
+    return index < sizeof words / sizeof *words ? words[index] : NULL;
+}

@@ -1,39 +1,49 @@
 /* upsample.c: a small depth map is brought to the photo's size by a filter of OpenCV. */
+#include <stdio.h>
+#include "inputs/opencv.h"
 #include "inputs/upsample.h"
 #include "line/report.h"
 
+const char *upsample_name(uint32_t index)
+{
+    /* After "core" in the order of enum refocus_cv_filter, in builds without OpenCV as well. */
+    static const char *const names[] = {"core",   "bilinear",    "joint-bilateral",
+                                        "guided", "fast-global", "joint-bilateral-full"};
+
+    return index < sizeof names / sizeof *names ? names[index] : NULL;
+}
+
+int upsample_check(int way)
+{
 #ifdef RF_HAVE_OPENCV
-#include <refocus/platform/opencv.h>
-
-const char *upsample_name(uint32_t index)
-{
-    return index ? refocus_cv_filter_name(index - 1) : "core";
-}
-
-int upsample_by_filter(uint32_t filter, const struct refocus_image *photo,
-                       const struct refocus_disparity *map, uint16_t *out, const char *name)
-{
-    struct refocus_cv_reason reason = {""};
-    const int status = refocus_cv_upsample_by(filter, photo, map, out, &reason);
-
-    if (status == REFOCUS_OK)
-        return EXIT_DONE;
-    return report_failure(EXIT_FAILED, name, "--upsample %s: %s", refocus_cv_filter_name(filter),
-                          reason.text[0] ? reason.text : refocus_strerror(status));
-}
+    (void)way;
+    return EXIT_DONE;
 #else
-const char *upsample_name(uint32_t index)
-{
-    return index ? NULL : "core";
+    if (way == 0)
+        return EXIT_DONE;
+    return report_failure(EXIT_WRONG, "--upsample",
+                          "this build has no OpenCV, which '%s' is of; give core",
+                          upsample_name((uint32_t)way));
+#endif
 }
 
-int upsample_by_filter(uint32_t filter, const struct refocus_image *photo,
-                       const struct refocus_disparity *map, uint16_t *out, const char *name)
+int upsample_by_filter(int way, const struct refocus_image *photo,
+                       const struct refocus_disparity *map, uint16_t *out,
+                       struct refocus_reason *reason)
 {
-    (void)filter;
-    (void)photo;
-    (void)map;
-    (void)out;
-    return report_failure(EXIT_FAILED, name, "this build has no OpenCV; build it with OpenCV");
+    struct refocus_cv_reason why = {""};
+    char absent[OPENCV_WHY];
+    const struct opencv *cv = opencv_load(absent);
+    int status;
+
+    if (!cv) {
+        snprintf(reason->text, sizeof reason->text, "%.250s", absent);
+        return REFOCUS_ERR_UNSUPPORTED;
+    }
+    status = cv->upsample_by((uint32_t)way - 1, photo, map, out, &why);
+    if (status != REFOCUS_OK)
+        snprintf(reason->text, sizeof reason->text, "%s: %.200s",
+                 cv->filter_name((uint32_t)way - 1),
+                 why.text[0] ? why.text : refocus_strerror(status));
+    return status;
 }
-#endif

@@ -4,12 +4,18 @@
 
 #include <stdint.h>
 #include <refocus/refocus.h>
+#include <refocus/platform/file.h>
 
 /* Words of --upsample: "core" and the filters of OpenCV; NULL ends them. */
 const char *upsample_name(uint32_t index);
-/* Enlarge the map by one of OpenCV's filters to the width and height of the photo; an exit code,
- * and prints why. */
-int upsample_by_filter(uint32_t filter, const struct refocus_image *photo,
-                       const struct refocus_disparity *map, uint16_t *out, const char *name);
+
+/* Whether this build has that way; an exit code, and prints why not. */
+int upsample_check(int way);
+
+/* Enlarge the map to packed disparities of the photo's size by a way other than the core's, which
+ * is 0. Returns REFOCUS_OK or an error with the reason. */
+int upsample_by_filter(int way, const struct refocus_image *photo,
+                       const struct refocus_disparity *map, uint16_t *out,
+                       struct refocus_reason *reason);
 
 #endif

@@ -30,17 +30,32 @@ static void print_wrapped(const char *text, int column, int indent)
     putchar('\n');
 }
 
-static void print_option(const struct option *option)
+/* Add ": a, b, c" with the words of a choice. */
+static void add_words(const struct option *option, char *text, size_t size)
 {
-    char text[1024], range[OPTION_RANGE_LENGTH];
-    int n;
+    for (uint32_t i = 0; option->choice(i); i++)
+        snprintf(text + strlen(text), size - strlen(text), "%s%s", i == 0 ? ": " : ", ",
+                 option->choice(i));
+}
 
-    if (option->kind == OPTION_HEADING) {
-        printf("\n%s\n", option->help);
-        return;
-    }
-    n = option->letter ? printf("  -%c, %s", option->letter, option->name)
-                       : printf("  %s", option->name);
+void help_text(const struct option *option, char *text, size_t size)
+{
+    char range[OPTION_RANGE_LENGTH];
+
+    if (option->kind == OPTION_NUMBER || option->kind == OPTION_INTEGER)
+        snprintf(text, size, "%s (%s)", option->help, options_range(option, range));
+    else
+        snprintf(text, size, "%s", option->help);
+    if (option->kind == OPTION_CHOICE && !option->summary)
+        add_words(option, text, size);
+}
+
+/* "  -o, --output OUT", and blanks or a line's end up to the column of the text. */
+static void print_name(const struct option *option)
+{
+    int n = option->letter ? printf("  -%c, %s", option->letter, option->name)
+                           : printf("  %s", option->name);
+
     if (option->argument)
         n += printf(" %s", option->argument);
     if (n > HELP_COLUMN - 2) {
@@ -48,14 +63,18 @@ static void print_option(const struct option *option)
         n = 0;
     }
     printf("%*s", HELP_COLUMN - n, "");
-    if (option->kind == OPTION_NUMBER || option->kind == OPTION_INTEGER)
-        snprintf(text, sizeof text, "%s (%s)", option->help, options_range(option, range));
-    else
-        snprintf(text, sizeof text, "%s", option->help);
-    if (option->kind == OPTION_CHOICE && !option->summary)
-        for (uint32_t i = 0; option->choice(i); i++)
-            snprintf(text + strlen(text), sizeof text - strlen(text), "%s%s", i == 0 ? ": " : ", ",
-                     option->choice(i));
+}
+
+static void print_option(const struct option *option)
+{
+    char text[HELP_LENGTH];
+
+    if (option->kind == OPTION_HEADING) {
+        printf("\n%s\n", option->help);
+        return;
+    }
+    print_name(option);
+    help_text(option, text, sizeof text);
     print_wrapped(text, HELP_COLUMN, HELP_COLUMN);
     if (option->summary)
         for (uint32_t i = 0; option->choice(i); i++) {
@@ -64,17 +83,43 @@ static void print_option(const struct option *option)
         }
 }
 
-void options_print_help(const struct command *command)
+static void print_brief(const struct option *option)
+{
+    char text[HELP_LENGTH];
+
+    print_name(option);
+    snprintf(text, sizeof text, "%s", option->brief);
+    if (option->kind == OPTION_CHOICE)
+        add_words(option, text, sizeof text);
+    print_wrapped(text, HELP_COLUMN, HELP_COLUMN);
+}
+
+static void print_usage(const struct command *command)
 {
     printf("usage: refocus %s %s\n\n", command->name, command->usage);
     print_wrapped(command->summary, 0, 0);
+}
+
+void options_print_help(const struct command *command)
+{
+    print_usage(command);
+    putchar('\n');
+    for (const struct option *option = command->options; option->help; option++)
+        if (option->brief)
+            print_brief(option);
+    printf("All options, with ranges and defaults: refocus %s --help-all\n", command->name);
+}
+
+void options_print_all_help(const struct command *command)
+{
+    print_usage(command);
     for (const struct option *option = command->options; option->help; option++)
         print_option(option);
-    printf("  -h, --help%*sthis text\n", HELP_COLUMN - 12, "");
+    printf("  -h, --help%*sthe options that most need\n", HELP_COLUMN - 12, "");
+    printf("  --help-all%*sthis text\n", HELP_COLUMN - 12, "");
     if (command->notes) {
         putchar('\n');
         print_wrapped(command->notes, 0, 0);
     }
-    printf("\nexit status: 0 done, 1 it could not be done, 2 the command line is "
-           "wrong\n");
+    printf("\nexit status: " HELP_EXIT_STATUS "\n");
 }

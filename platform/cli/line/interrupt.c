@@ -9,10 +9,10 @@
 #include "line/interrupt.h"
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-static struct refocus_renderer *watched; /* these five under the lock */
+static struct refocus_renderer *watched; /* these seven under the lock */
 static bool came, held;
-static void (*clean_up)(void *);
-static void *clean_up_of;
+static void (*clean_up)(void *), (*end_work)(void *);
+static void *clean_up_of, *end_work_of;
 static pthread_t thread;
 static bool started;
 static atomic_int ending; /* the signal that is to end the process, or 0 */
@@ -79,6 +79,8 @@ static void cancel(void)
     came = true;
     if (watched)
         refocus_cancel(watched);
+    if (end_work)
+        end_work(end_work_of);
     pthread_mutex_unlock(&lock);
 }
 
@@ -104,6 +106,16 @@ static void end_process(int number)
     pthread_mutex_unlock(&lock);
 }
 
+static bool ends_its_own_work(void)
+{
+    bool result;
+
+    pthread_mutex_lock(&lock);
+    result = end_work != NULL;
+    pthread_mutex_unlock(&lock);
+    return result;
+}
+
 static void *wait_for_signals(void *argument)
 {
     enum { PATIENCE = 200 };
@@ -119,14 +131,14 @@ static void *wait_for_signals(void *argument)
         atomic_store(&ending, first);
     /* A cancel has no effect on calls that have not begun: repeat it until the renderer
      * is given up. A second signal ends the process when nothing is being written; so
-     * does the first one, of those that are not asked to wait, after two seconds in which
-     * the work has not ended, as it waits for a pipe. */
+     * does the first one after two seconds in which the work has not ended, as it waits for a
+     * pipe: of a command that ends its own work, or of signals that are not asked to wait. */
     for (int waited = 0;; waited++) {
         cancel();
         number = sigtimedwait(&set, NULL, &pause);
         if (number > 0)
             end_process(number);
-        else if (waited >= PATIENCE && atomic_load(&ending) != 0)
+        else if (waited >= PATIENCE && (atomic_load(&ending) != 0 || ends_its_own_work()))
             end_process(first);
     }
 }
@@ -157,6 +169,40 @@ void interrupt_stop(void)
         die_of(number);
 }
 
+static void choose_wait(sigset_t *set)
+{
+    choose_signals(set);
+    sigaddset(set, SIGCHLD);
+}
+
+void interrupt_wait_begin(void)
+{
+    sigset_t set;
+
+    interrupt_stop();
+    signal(SIGCHLD, SIG_DFL);
+    choose_wait(&set);
+    pthread_sigmask(SIG_BLOCK, &set, NULL);
+}
+
+bool interrupt_wait_child(bool *all_know)
+{
+    sigset_t set;
+    siginfo_t about;
+    int number;
+
+    choose_wait(&set);
+    do
+        number = sigwaitinfo(&set, &about);
+    while (number < 0);
+    if (number == SIGCHLD)
+        return false;
+    if (number != SIGINT && number != SIGTERM)
+        atomic_store(&ending, number);
+    *all_know = about.si_code > 0; /* by the kernel: of the terminal */
+    return true;
+}
+
 bool interrupt_ends(void)
 {
     return atomic_load(&ending) != 0;
@@ -166,6 +212,14 @@ void interrupt_watch(struct refocus_renderer *renderer)
 {
     pthread_mutex_lock(&lock);
     watched = renderer;
+    pthread_mutex_unlock(&lock);
+}
+
+void interrupt_call(void (*function)(void *), void *of)
+{
+    pthread_mutex_lock(&lock);
+    end_work = function;
+    end_work_of = of;
     pthread_mutex_unlock(&lock);
 }
 

@@ -16,6 +16,18 @@ void interrupt_stop(void);
 /* The renderer that a signal cancels, or NULL for none any more. */
 void interrupt_watch(struct refocus_renderer *renderer);
 
+/* Set a function that ends other work. It is called in another thread, again and again once a
+ * signal has come, and for the last time before this returns. Where the work has not ended two
+ * seconds after SIGINT or SIGTERM, they end the process, as the other signals do. NULL: nothing. */
+void interrupt_call(void (*function)(void *), void *of);
+
+/* In place of the thread, for a process that only waits for others that it has started:
+ * interrupt_wait_begin() ends the thread and holds signals back, in the processes to come too until
+ * each calls interrupt_start(). interrupt_wait_child() returns when one of them may have ended, or
+ * true for a signal; *all_know: the whole group has got it, as by Ctrl-C. */
+void interrupt_wait_begin(void);
+bool interrupt_wait_child(bool *all_know);
+
 /* Whether a signal has come. */
 bool interrupt_came(void);
 

@@ -36,12 +36,18 @@ struct option {
     const char *(*choice)(uint32_t index);  /* words of OPTION_CHOICE, some of OPTION_TEXT;
                                                NULL ends them */
     const char *(*summary)(uint32_t index); /* a line on each word, or NULL */
+    const char *brief; /* A line of --help, to which the words of a choice are added; NULL: it is
+                          in --help-all alone */
     const char *help;
     bool elsewhere; /* the option is about this run, not about the picture: not in files of
                        settings */
     /* OPTION_TEXT that names a file with values of other options, which is read before the rest of
      * the command line, or NULL. Returns OPTIONS_PARSED or an exit code. */
     int (*load)(const struct command *command, const char *file, void *settings);
+    const char
+        *unless; /* parse() is called with NULL where neither this option nor that one is given */
+    const char *group; /* options of one group say the same thing in other words: one of the command
+                          line takes those of files away; numbers alone; or NULL */
 
     /* An option may change nothing without another option that has a value, or without one of some
      * words of a choice; a command line that gives it alone is told so. Where both are named either

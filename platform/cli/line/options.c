@@ -1,4 +1,5 @@
 /* options.c: a command line is parsed by a table of options. */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include "line/help.h"
@@ -7,23 +8,23 @@
 
 enum { LONGEST_WORD = 63 };
 
-static const struct option *find_loader(const struct command *command)
+static bool asks_help(int argc, char **argv)
 {
-    for (const struct option *option = command->options; option->help; option++)
-        if (option->load)
-            return option;
-    return NULL;
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+        if (strcmp(argv[i], "-h") == 0 || strncmp(argv[i], "--help", 6) == 0)
+            return true;
+    return false;
 }
 
-/* Files with values of options come before all else on the command line, which overrules them. */
-static int load_files(const struct command *command, int argc, char **argv, void *settings)
+static int load(const struct command *command, const struct option *row, int argc, char **argv,
+                void *settings)
 {
-    const struct option *row = find_loader(command);
-    const size_t length = row ? strlen(row->name) : 0;
+    const size_t length = strlen(row->name);
+    int status = OPTIONS_PARSED;
+    bool given = false;
 
-    for (int i = 1; row && i < argc && strcmp(argv[i], "--") != 0; i++) {
+    for (int i = 1; status == OPTIONS_PARSED && i < argc && strcmp(argv[i], "--") != 0; i++) {
         const char *file = NULL;
-        int status;
 
         if (strcmp(argv[i], row->name) == 0 && i + 1 < argc)
             file = argv[i + 1];
@@ -31,11 +32,39 @@ static int load_files(const struct command *command, int argc, char **argv, void
             file = argv[i] + length + 1;
         if (!file)
             continue;
+        given = true;
         status = row->load(command, file, settings);
-        if (status != OPTIONS_PARSED)
-            return status;
     }
-    return OPTIONS_PARSED;
+    if (given || !row->unless || options_given(command, argc, argv, row->unless) ||
+        asks_help(argc, argv))
+        return status;
+    return row->load(command, NULL, settings);
+}
+
+void options_clear_rivals(const struct command *command, const struct option *option,
+                          void *settings)
+{
+    for (const struct option *rival = command->options; rival->help && option->group; rival++) {
+        double *value = (double *)(void *)((char *)settings + rival->offset);
+
+        if (rival != option && rival->group && strcmp(rival->group, option->group) == 0)
+            for (int i = 0; i < (rival->kind == OPTION_NUMBERS ? rival->count : 1); i++)
+                value[i] = NAN;
+    }
+}
+
+/* Files with values of options come before all else on the command line, which overrules them. */
+static int load_files(const struct command *command, int argc, char **argv, void *settings)
+{
+    int status = OPTIONS_PARSED;
+
+    for (const struct option *row = command->options; row->help && status == OPTIONS_PARSED; row++)
+        if (row->load)
+            status = load(command, row, argc, argv, settings);
+    for (const struct option *row = command->options; row->help && status == OPTIONS_PARSED; row++)
+        if (row->group && options_given(command, argc, argv, row->name))
+            options_clear_rivals(command, row, settings);
+    return status;
 }
 
 static int unknown_option(const struct command *command, const char *argument)
@@ -47,9 +76,7 @@ static int unknown_option(const struct command *command, const char *argument)
     nearest = options_nearest_name(command, name);
     if (nearest)
         return report_failure(EXIT_WRONG, name, "unknown option; did you mean %s?", nearest);
-    return report_failure(EXIT_WRONG, name,
-                          "unknown option; 'refocus %s --help' lists "
-                          "them",
+    return report_failure(EXIT_WRONG, name, "unknown option; 'refocus %s --help-all' lists them",
                           command->name);
 }
 
@@ -77,6 +104,18 @@ static int parse_option(const struct command *command, int argc, char **argv, in
     return options_set(option, option->name, value, settings);
 }
 
+/* Print the help that an argument asks for; false when it asks for none. */
+static bool print_help(const struct command *command, const char *argument)
+{
+    if (strcmp(argument, "--help") == 0 || strcmp(argument, "-h") == 0)
+        options_print_help(command);
+    else if (strcmp(argument, "--help-all") == 0)
+        options_print_all_help(command);
+    else
+        return false;
+    return true;
+}
+
 int options_parse(const struct command *command, int argc, char **argv, void *settings,
                   const char **files)
 {
@@ -92,10 +131,8 @@ int options_parse(const struct command *command, int argc, char **argv, void *se
                 names_only = true;
                 continue;
             }
-            if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
-                options_print_help(command);
+            if (print_help(command, argv[i]))
                 return report_end_output();
-            }
             const int status = parse_option(command, argc, argv, &i, settings);
             if (status != OPTIONS_PARSED)
                 return status;

@@ -12,4 +12,8 @@
 int options_parse(const struct command *command, int argc, char **argv, void *settings,
                   const char **files);
 
+/* Take away what other options of its group say. */
+void options_clear_rivals(const struct command *command, const struct option *option,
+                          void *settings);
+
 #endif

@@ -14,6 +14,7 @@
 enum { LINE_LENGTH = 1024, BAR_WIDTH = 30 };
 
 static bool bar_shown;
+static const char *about; /* the photo of several that this process is for, or NULL */
 
 void report_clean(char *clean, size_t size, const char *text)
 {
@@ -32,7 +33,17 @@ static void print_line(const char *what, const char *why, va_list list)
     report_clean(line, sizeof line, text);
     report_clean(name, sizeof name, what);
     report_progress_end();
-    fprintf(stderr, "refocus: %s: %s\n", name, line);
+    if (about && strcmp(about, what) != 0) {
+        report_clean(text, sizeof text, about);
+        fprintf(stderr, "refocus: %s: %s: %s\n", text, name, line);
+    } else {
+        fprintf(stderr, "refocus: %s: %s\n", name, line);
+    }
+}
+
+void report_about(const char *name)
+{
+    about = name;
 }
 
 int report_failure(int exit_code, const char *what, const char *why, ...)
@@ -72,7 +83,7 @@ void report_progress(const char *doing, double done)
 {
     const int full = (int)(done * BAR_WIDTH + 0.5);
 
-    if (!report_is_watched())
+    if (about || !report_is_watched())
         return;
     fprintf(stderr, "\r[");
     for (int i = 0; i < BAR_WIDTH; i++)
@@ -84,7 +95,7 @@ void report_progress(const char *doing, double done)
 
 void report_progress_end(void)
 {
-    if (bar_shown)
+    if (bar_shown || (about && report_is_watched()))
         fprintf(stderr, "\r\033[K");
     bar_shown = false;
 }
@@ -182,6 +193,10 @@ const char *report_depth_source(uint32_t source)
         return "heif";
     case REFOCUS_DEPTH_SOURCE_FILE:
         return "file";
+    case REFOCUS_DEPTH_SOURCE_DYNAMIC:
+        return "dynamic-depth";
+    case REFOCUS_DEPTH_SOURCE_TRAILER:
+        return "trailer";
     }
     return "none";
 }

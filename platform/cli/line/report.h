@@ -31,6 +31,10 @@ void report_progress(const char *doing, double done);
 void report_progress_end(void);
 bool report_is_watched(void); /* whether there is such a terminal */
 
+/* Called in a process that works on one photo of several: lines on standard error begin with its
+ * name, and the bar, which another process shows, is wiped before each. */
+void report_about(const char *name);
+
 /* Milliseconds of a clock that only moves forwards. */
 double report_clock_ms(void);
 

@@ -4,11 +4,13 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 #include "commands/commands.h"
+#include "line/interrupt.h"
 #include "live/live_calibration.h"
 #include "live/live_colour.h"
 #include "live/live_commands.h"
 #include "live/live_depth_camera.h"
 #include "live/live_estimate.h"
+#include "live/live_look.h"
 #include "live/live_options.h"
 #include "live/live_output.h"
 #include "live/live_render.h"
@@ -25,6 +27,7 @@ static int print_modes(const char *name)
 {
     struct refocus_reason reason = {""};
     struct refocus_source_mode mode = refocus_source_mode_default();
+    struct refocus_source_lens lens = refocus_source_lens_default();
     struct refocus_source *source;
     const int status = refocus_source_open(&source, name, &reason);
 
@@ -33,6 +36,9 @@ static int print_modes(const char *name)
     for (int i = 0; refocus_source_get_mode(source, i, &mode) == REFOCUS_OK; i++)
         printf("%-6s %5dx%-5d %g fps\n", refocus_frame_format_name(mode.format), (int)mode.width,
                (int)mode.height, mode.fps);
+    if (refocus_source_get_lens(source, &lens, NULL) == REFOCUS_OK && lens.modes)
+        printf("lens%s %g to %g%s\n", lens.modes & 1 ? ", autofocus," : "", lens.least,
+               lens.greatest, lens.dioptres ? " dioptres" : "");
     refocus_source_close(&source);
     return report_end_output();
 }
@@ -49,9 +55,11 @@ static int list(const struct live_settings *settings)
     return report_end_output();
 }
 
+/* A signal ends the wait for a camera, too: all that follows is then over before it begins. */
 static int open_camera(struct live *live, const char *name, bool depth,
                        struct refocus_source **source, struct refocus_source_mode *mode)
 {
+    struct refocus_source *opened;
     const struct live_settings *settings = live->settings;
     struct refocus_source_config config = refocus_source_config_default();
     struct refocus_reason reason = {""};
@@ -67,10 +75,13 @@ static int open_camera(struct live *live, const char *name, bool depth,
     config.flags =
         (settings->fast ? REFOCUS_SOURCE_FAST : 0) | (settings->loop ? REFOCUS_SOURCE_LOOP : 0) |
         (settings->dmabuf ? REFOCUS_SOURCE_DMABUF : 0) | (depth ? REFOCUS_SOURCE_DEPTH : 0);
-    status = refocus_source_open(source, name, &reason);
+    status = refocus_source_open(&opened, name, &reason);
+    pthread_mutex_lock(&live->lock);
+    *source = opened;
+    pthread_mutex_unlock(&live->lock);
     if (status == REFOCUS_OK)
-        status = refocus_source_start(*source, &config, mode, &reason);
-    if (status != REFOCUS_OK)
+        status = refocus_source_start(opened, &config, mode, &reason);
+    if (status != REFOCUS_OK && !(status == REFOCUS_ERR_CANCELLED && live_is_over(live)))
         return report_failure(input_exit_code(status), name, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
     return EXIT_DONE;
@@ -84,15 +95,18 @@ static int open_all(struct live *live)
 
     if (status == EXIT_DONE && settings->calibration)
         status = live_read_calibration(&live->calibration, settings->calibration);
+    /* A network takes a while to load, in which a camera that runs would lose frames. */
+    if (status == EXIT_DONE && settings->estimate.model[0])
+        status = live_estimate_open(live);
     if (status == EXIT_DONE)
         status = open_camera(live, settings->camera, false, &live->camera, &live->mode);
     if (status == EXIT_DONE && refocus_source_kind(settings->depth.file))
         status =
             open_camera(live, settings->depth.file, true, &live->depth_camera, &live->depth_mode);
-    else if (status == EXIT_DONE && settings->estimate.model[0])
-        status = live_estimate_open(live);
-    else if (status == EXIT_DONE)
+    else if (status == EXIT_DONE && !live->estimator)
         status = live_read_fixed_depth(live);
+    if (status == EXIT_DONE && live->mode.width > 0 && live->mode.height > 0)
+        status = live_look_place(live, live->mode.width, live->mode.height);
     if (status != EXIT_DONE)
         return status;
     status = refocus_sink_open(&live->sink, settings->out, &reason);
@@ -101,12 +115,13 @@ static int open_all(struct live *live)
     return EXIT_DONE;
 }
 
-/* Formats that the method and the sink take without a detour by way of RGB. */
+/* Formats that the method, the look, the filter of the depth and the sink take without a detour by
+ * RGB. */
 static uint32_t find_yuv_formats(struct live *live)
 {
     uint32_t formats = 0;
 
-    if (live->engine->params.render.method != REFOCUS_METHOD_SWEEP)
+    if (!live_look_takes_yuv(live->engine) || live->settings->depth.upsample > 0)
         return 0;
     for (uint32_t format = 0; format < 32; format++)
         if (refocus_format_is_yuv(format) && refocus_sink_takes(live->sink, format))
@@ -145,7 +160,8 @@ static void run_threads(struct live *live)
            !live_is_over(live))
         continue;
     live_render(live);
-    /* Pictures that are rendered already are still written, unless something failed. */
+    /* Pictures that are rendered already are still written, unless something failed or a signal
+     * came. */
     if (running[OUTPUT])
         pthread_join(thread[OUTPUT], NULL);
     live_end(live);
@@ -158,21 +174,30 @@ static void run_threads(struct live *live)
             pthread_join(thread[i], NULL);
 }
 
+static void end_live(void *live)
+{
+    live_end(live);
+}
+
 static int run_live(struct live *live)
 {
     struct refocus_reason reason = {""};
-    int status = open_all(live);
+    int status;
 
+    interrupt_call(end_live, live);
+    status = open_all(live);
     if (status == EXIT_DONE) {
         live->yuv_formats = find_yuv_formats(live);
         run_threads(live);
-        if (live->exit_code != EXIT_DONE)
-            status = report_failure(live->exit_code, live->what, "%s", live->why);
+        status = live->exit_code;
+        if (status != EXIT_DONE && live->what[0])
+            status = report_failure(status, live->what, "%s", live->why);
     }
     if (refocus_sink_close(&live->sink, &reason) != REFOCUS_OK && status == EXIT_DONE)
         status = report_failure(EXIT_FAILED, live->settings->out, "%s", reason.text);
     if (status == EXIT_DONE)
         status = live_report(live);
+    interrupt_call(NULL, NULL);
     refocus_source_close(&live->camera);
     refocus_source_close(&live->depth_camera);
     live_commands_close(live);
@@ -217,6 +242,8 @@ static int run(int argc, char **argv)
     live->focus.blur = settings.lens.blur;
     live->focus.blur_most = settings.blur_most;
     status = engine_begin(&engine, &settings.engine);
+    if (status == EXIT_DONE)
+        status = live_look_check_method(live);
     if (status == EXIT_DONE)
         status = run_live(live);
     engine_end(&engine);

@@ -15,9 +15,11 @@ static int64_t taken_at(const struct refocus_frame *frame, int64_t now_ns)
 }
 
 /* A frame is rendered in its own Y, U and V if nobody needs anything else. */
-static uint32_t format_for(const struct live *live, const struct refocus_frame *frame)
+static uint32_t format_for(const struct live_lane *lane, const struct refocus_frame *frame)
 {
-    const uint32_t own = refocus_frame_image_format(frame->format);
+    const struct live *live = lane->live;
+    const uint32_t own =
+        live->yuv_formats ? refocus_convert_image_format(lane->converter, frame) : 0;
 
     return own && live->yuv_formats >> own & 1 ? own : (uint32_t)REFOCUS_FORMAT_RGB8;
 }
@@ -30,7 +32,7 @@ static int deliver_colour(struct live_lane *lane, const struct refocus_frame *fr
     bool memory;
     int status;
 
-    const uint32_t format = format_for(live, frame);
+    const uint32_t format = format_for(lane, frame);
     picture = live_queue_fill(&live->captured, format, frame->width, frame->height, &memory);
     if (!picture)
         return REFOCUS_OK;

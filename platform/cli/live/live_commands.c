@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
+#include "line/interrupt.h"
 #include "line/report.h"
 #include "live/live_commands.h"
 #include "live/live_lines.h"
@@ -146,6 +147,11 @@ static bool is_left_over(const struct sockaddr_un *address)
     return dead;
 }
 
+static void remove_socket(void *live)
+{
+    unlink(((struct live *)live)->settings->socket);
+}
+
 int live_commands_open(struct live *live)
 {
     const char *path = live->settings->socket;
@@ -169,6 +175,8 @@ int live_commands_open(struct live *live)
         bind(live->command_fd, (const struct sockaddr *)&address, sizeof address) != 0 ? errno : 0;
     umask(before);
     live->socket_is_ours = error == 0;
+    if (live->socket_is_ours)
+        interrupt_clean_up(remove_socket, live);
     if (error == 0 && listen(live->command_fd, MOST_CLIENTS) != 0)
         error = errno;
     if (error == EADDRINUSE)
@@ -180,8 +188,9 @@ int live_commands_open(struct live *live)
 
 void live_commands_close(struct live *live)
 {
+    interrupt_clean_up(NULL, NULL);
     if (live->socket_is_ours)
-        unlink(live->settings->socket);
+        remove_socket(live);
     if (live->command_fd >= 0)
         close(live->command_fd);
 }

@@ -37,6 +37,20 @@ void live_depths_end(struct live_depths *depths)
     pthread_mutex_unlock(&depths->lock);
 }
 
+bool live_depth_reserve(struct live_depth_map *map, int width, int height)
+{
+    const uint64_t bytes = (uint64_t)width * (uint64_t)height * 2;
+
+    if (bytes > map->capacity) {
+        free(map->disparity);
+        map->disparity = bytes <= SIZE_MAX ? malloc((size_t)bytes) : NULL;
+        map->capacity = map->disparity ? (size_t)bytes : 0;
+    }
+    map->width = width;
+    map->height = height;
+    return map->disparity != NULL;
+}
+
 /* The last map from before the present frame, or NULL. */
 static const struct live_depth_map *last_before(const struct live_depths *depths)
 {
@@ -74,7 +88,6 @@ static struct live_depth_map *oldest(struct live_depths *depths)
 
 struct live_depth_map *live_depths_fill(struct live_depths *depths, int width, int height)
 {
-    const uint64_t bytes = (uint64_t)width * (uint64_t)height * 2;
     struct live_depth_map *map = NULL;
 
     pthread_mutex_lock(&depths->lock);
@@ -83,16 +96,7 @@ struct live_depth_map *live_depths_fill(struct live_depths *depths, int width, i
     if (map)
         map->number = 0;
     pthread_mutex_unlock(&depths->lock);
-    if (!map)
-        return NULL;
-    if (bytes > map->capacity) {
-        free(map->disparity);
-        map->disparity = bytes <= SIZE_MAX ? malloc((size_t)bytes) : NULL;
-        map->capacity = map->disparity ? (size_t)bytes : 0;
-    }
-    map->width = width;
-    map->height = height;
-    return map->disparity ? map : NULL;
+    return map && live_depth_reserve(map, width, height) ? map : NULL;
 }
 
 void live_depths_put(struct live_depths *depths, struct live_depth_map *map, int64_t timestamp_ns,
@@ -178,17 +182,10 @@ int live_depth_widen(struct live_depth_map *wide, const struct live_depth_map **
     if (!live_range_is_known(&from->range) ||
         (range->near == from->range.near && range->far == from->range.far))
         return REFOCUS_OK;
-    if (samples * 2 > wide->capacity) {
-        free(wide->disparity);
-        wide->disparity = malloc(samples * 2);
-        wide->capacity = wide->disparity ? samples * 2 : 0;
-    }
-    if (!wide->disparity)
+    if (!live_depth_reserve(wide, from->width, from->height))
         return REFOCUS_ERR_MEMORY;
     for (size_t i = 0; i < samples; i++)
         wide->disparity[i] = (uint16_t)(from->disparity[i] * scale + offset);
-    wide->width = from->width;
-    wide->height = from->height;
     wide->timestamp_ns = from->timestamp_ns;
     wide->number = from->number;
     wide->range = *range;

@@ -43,6 +43,8 @@ void live_depths_put(struct live_depths *depths, struct live_depth_map *map, int
  */
 const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_t timestamp_ns,
                                               int64_t half_ns, bool *paired);
+/* Memory for a map of that size, which the map then owns; false: there is none. */
+bool live_depth_reserve(struct live_depth_map *map, int width, int height);
 /* Put a map of a wider range in place of a map, in memory that `wide` owns. */
 int live_depth_widen(struct live_depth_map *wide, const struct live_depth_map **map,
                      const struct live_range *range);

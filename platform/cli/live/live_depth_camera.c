@@ -7,12 +7,15 @@
 #include "line/report.h"
 #include "live/live_depth_camera.h"
 #include "live/live_lane.h"
+#include "live/live_look.h"
 
 /* The samples of a map on their way to disparities. */
 struct samples {
     uint16_t *own,
         *registered; /* samples as the camera gives them, and as the colour camera sees them */
     size_t capacity; /* number of samples in each */
+    void *work;      /* memory of the repair */
+    size_t work_bytes;
 };
 
 static bool reserve(struct samples *samples, const struct refocus_calibration *c,
@@ -30,6 +33,19 @@ static bool reserve(struct samples *samples, const struct refocus_calibration *c
     samples->registered = malloc(count * 2);
     samples->capacity = samples->own && samples->registered ? count : 0;
     return samples->capacity > 0;
+}
+
+/* As large as the largest map needs that has come. */
+static bool reserve_work(struct samples *samples, const struct refocus_depth_map *map)
+{
+    const uint64_t bytes = refocus_repair_memory(map->width, map->height, 0);
+
+    if (bytes <= samples->work_bytes)
+        return true;
+    free(samples->work);
+    samples->work = bytes <= SIZE_MAX ? malloc((size_t)bytes) : NULL;
+    samples->work_bytes = samples->work ? (size_t)bytes : 0;
+    return samples->work != NULL;
 }
 
 /* The samples mean what the option says, else millimetres for depth cameras and disparities for
@@ -55,6 +71,11 @@ static int describe(struct live_lane *lane, const struct refocus_frame *frame,
     }
     map->near_m = isnan(settings->near_m) ? 0 : settings->near_m;
     map->far_m = isnan(settings->far_m) ? 0 : settings->far_m;
+    if (live_look_needs_metres(lane->live->settings) && map->meaning != REFOCUS_DEPTH_DISTANCE &&
+        !(map->near_m > 0 && map->far_m > map->near_m)) {
+        snprintf(reason->text, sizeof reason->text, "%s", live_look_no_metres);
+        return REFOCUS_ERR_ARGUMENT;
+    }
     return REFOCUS_OK;
 }
 
@@ -114,6 +135,7 @@ static int deliver_depth(struct live_lane *lane, const struct refocus_frame *fra
     struct refocus_depth_map map;
     struct live_range range;
     struct live_depth_map *to;
+    struct refocus_repair_params repair = refocus_repair_params_default();
     int status = reserve(samples, live->calibration, frame) ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
     double ms;
 
@@ -123,6 +145,8 @@ static int deliver_depth(struct live_lane *lane, const struct refocus_frame *fra
         status = describe(lane, frame, &map, reason);
     if (status == REFOCUS_OK && live->calibration)
         status = register_map(lane, &map, reason);
+    if (status == REFOCUS_OK && !reserve_work(samples, &map))
+        status = REFOCUS_ERR_MEMORY;
     if (status != REFOCUS_OK)
         return status;
     range = follow_range(live, &map, frame->timestamp_ns);
@@ -131,7 +155,9 @@ static int deliver_depth(struct live_lane *lane, const struct refocus_frame *fra
     if (!to)
         return live_is_over(live) ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
     now_ns = live_now_ns();
-    status = refocus_depth_to_disparity(&map, to->disparity, (ptrdiff_t)map.width * 2, NULL);
+    repair.memory = samples->work;
+    repair.memory_bytes = samples->work_bytes;
+    status = refocus_depth_repair(&map, &repair, to->disparity, (ptrdiff_t)map.width * 2, NULL);
     if (status != REFOCUS_OK)
         return status;
     to->range = range;
@@ -144,7 +170,7 @@ static int deliver_depth(struct live_lane *lane, const struct refocus_frame *fra
 void *live_depth_thread(void *argument)
 {
     struct live *live = argument;
-    struct samples samples = {NULL, NULL, 0};
+    struct samples samples = {0};
     struct live_lane lane = live_lane_of(live, live->depth_camera, live->settings->depth.file,
                                          &live->depth_mode, &live->depth);
     const struct depth_settings *depth = &live->settings->depth;
@@ -164,6 +190,7 @@ void *live_depth_thread(void *argument)
     refocus_converter_destroy(&lane.converter);
     free(samples.own);
     free(samples.registered);
+    free(samples.work);
     live_range_end(&live->ranger);
     live_depths_end(&live->depths);
     return NULL;
@@ -175,6 +202,9 @@ int live_read_fixed_depth(struct live *live)
     struct live_depth_map *to;
     int status = input_read_depth(&input, live->settings->depth.file, &live->settings->depth);
 
+    if (status == EXIT_DONE && live_look_needs_metres(live->settings) &&
+        !(input.report.near_m > 0 && input.report.far_m > input.report.near_m))
+        status = report_failure(EXIT_FAILED, live->settings->depth.file, "%s", live_look_no_metres);
     if (status == EXIT_DONE) {
         const int width = input.depth_from->depth->width;
         const int height = input.depth_from->depth->height;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "inputs/made.h"
+#include "inputs/opencv.h"
 #include "line/report.h"
 #include "live/live_estimate.h"
 
@@ -15,8 +16,8 @@ bool live_estimate_is_meant(const char *depth)
 
 static int find_preset(const char *name)
 {
-    for (uint32_t i = 0; made_preset(i); i++)
-        if (strcmp(made_preset(i), name) == 0)
+    for (uint32_t i = 0; ways_network(i); i++)
+        if (strcmp(ways_network(i), name) == 0)
             return (int)i;
     return -1;
 }
@@ -46,7 +47,7 @@ int live_estimate_parse(struct live_estimate_settings *settings, const char *dep
             if (settings->preset < 0)
                 return report_failure(EXIT_WRONG, "--depth",
                                       "there is no preset '%.40s'; "
-                                      "refocus depth --help lists those that there are",
+                                      "refocus depth --help-all lists those that there are",
                                       comma + 8);
         } else {
             break;
@@ -58,14 +59,12 @@ int live_estimate_parse(struct live_estimate_settings *settings, const char *dep
     return EXIT_DONE;
 }
 
-#ifdef RF_HAVE_OPENCV
-#include <refocus/platform/opencv.h>
-
 /* A network's values have no unit and drift from picture to picture: the range that
  * becomes 0 to 1 follows them slowly, so that nothing pumps. */
 static const double tail = 0.01, follow = 0.1;
 
 struct live_estimator {
+    const struct opencv *cv;
     struct refocus_estimator *network;
     float *sorted;
     size_t capacity;
@@ -78,17 +77,22 @@ int live_estimate_open(struct live *live)
     const struct live_estimate_settings *settings = &live->settings->estimate;
     struct refocus_network network = refocus_network_default();
     struct refocus_cv_reason reason = {""};
-    struct live_estimator *estimator = calloc(1, sizeof *estimator);
+    char why[OPENCV_WHY];
+    const struct opencv *cv = opencv_load(why);
+    struct live_estimator *estimator = cv ? calloc(1, sizeof *estimator) : NULL;
     int status = REFOCUS_ERR_MEMORY;
 
     live->estimator = estimator;
-    if (estimator)
-        status = refocus_cv_network((uint32_t)settings->preset, &network);
+    if (!cv)
+        return report_failure(EXIT_FAILED, settings->model, "%s", why);
+    if (estimator) {
+        estimator->cv = cv;
+        status = cv->network((uint32_t)settings->preset, &network);
+    }
     if (status == REFOCUS_OK)
-        status = refocus_cv_network_fit(&network, settings->model, &reason);
+        status = cv->network_fit(&network, settings->model, &reason);
     if (status == REFOCUS_OK)
-        status =
-            refocus_cv_estimator_create(&estimator->network, settings->model, &network, &reason);
+        status = cv->estimator_create(&estimator->network, settings->model, &network, &reason);
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, settings->model, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
@@ -99,7 +103,7 @@ void live_estimate_close(struct live *live)
 {
     if (!live->estimator)
         return;
-    refocus_cv_estimator_destroy(&live->estimator->network);
+    live->estimator->cv->estimator_destroy(&live->estimator->network);
     free(live->estimator->sorted);
     free(live->estimator);
 }
@@ -164,8 +168,8 @@ static int estimate_one(struct live *live, const struct live_picture *picture,
     const int64_t begin = live_now_ns();
     struct refocus_estimate estimate = refocus_estimate_default();
     struct live_depth_map *to = NULL;
-    int status =
-        refocus_cv_estimator_run(live->estimator->network, &picture->image, &estimate, reason);
+    int status = live->estimator->cv->estimator_run(live->estimator->network, &picture->image,
+                                                    &estimate, reason);
     double ms;
 
     if (status == REFOCUS_OK)
@@ -182,7 +186,7 @@ static int estimate_one(struct live *live, const struct live_picture *picture,
         live->depth.frames++;
         live_depths_put(&live->depths, to, picture->key, false);
     }
-    refocus_cv_estimate_free(&estimate);
+    live->estimator->cv->estimate_free(&estimate);
     return status;
 }
 
@@ -207,23 +211,6 @@ void *live_estimate_thread(void *argument)
     live_depths_end(&live->depths);
     return NULL;
 }
-#else
-int live_estimate_open(struct live *live)
-{
-    return report_failure(EXIT_FAILED, live->settings->estimate.model,
-                          "this build has no OpenCV; build it with OpenCV");
-}
-
-void live_estimate_close(struct live *live)
-{
-    (void)live;
-}
-
-void *live_estimate_thread(void *live)
-{
-    return live;
-}
-#endif
 
 /* The picture itself, or what the frame that it was copied from comes to in R, G and B: by way of
  * the copy, as camera memory is slow to read. */
@@ -238,8 +225,14 @@ static int copy_rgb(const struct live_picture *picture, const struct refocus_fra
         memcpy(out->plane[0], from->plane[0], (size_t)from->stride[0] * (size_t)from->height);
         return REFOCUS_OK;
     }
-    if (own.format == REFOCUS_FRAME_UYVY)
-        own.format = REFOCUS_FRAME_YUYV;
+    /* The copy of a JPEG picture is decoded already, and that of UYVY has another order. */
+    if (own.format == REFOCUS_FRAME_MJPEG) {
+        own.flags |= REFOCUS_FRAME_FULL_RANGE;
+        own.matrix = from->matrix;
+    }
+    for (own.format = REFOCUS_FRAME_YUYV; own.format < REFOCUS_FRAME_FORMAT_COUNT; own.format++)
+        if (refocus_frame_image_format(own.format) == from->format)
+            break;
     for (int i = 0; i < refocus_format_planes(from->format); i++) {
         own.plane[i] = from->plane[i];
         own.stride[i] = from->stride[i];

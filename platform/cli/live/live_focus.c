@@ -14,6 +14,11 @@ void live_focus_init(struct live_focus *focus, const struct lens_settings *lens)
     focus->to.value = lens->focus;
     focus->to.point[0] = lens->focus_at[0]; /* NAN: the centre */
     focus->to.point[1] = lens->focus_at[1];
+    if (!isnan(lens->focus_distance)) {
+        focus->to.known = focus->to.dioptres = true;
+        focus->to.follows_lens = false;
+        focus->to.value = 1 / lens->focus_distance;
+    }
     focus->from = focus->to;
     focus->stretch = 1;
 }
@@ -184,7 +189,17 @@ void live_focus_get(struct live_focus *focus, double *disparity, double *blur)
 {
     pthread_mutex_lock(&focus->lock);
     *disparity = present(focus);
-    *blur = fmin(focus->blur * focus->stretch, focus->blur_most);
+    *blur = focus->per_dioptre > 0 ? focus->per_dioptre * (focus->range.near - focus->range.far)
+                                   : focus->blur * focus->stretch;
+    *blur = fmin(*blur, focus->blur_most);
+    pthread_mutex_unlock(&focus->lock);
+}
+
+void live_focus_lens(struct live_focus *focus, double per_dioptre)
+{
+    pthread_mutex_lock(&focus->lock);
+    if (!focus->blur_asked)
+        focus->per_dioptre = per_dioptre;
     pthread_mutex_unlock(&focus->lock);
 }
 
@@ -243,6 +258,8 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest, 
             return false;
         }
         focus->blur = values[0];
+        focus->blur_asked = true;
+        focus->per_dioptre = 0;
         focus->stretch = 1;
     } else if (point && !is_inside(focus, values)) {
         snprintf(why, size, "%g,%g is outside of pictures of %dx%d", values[0], values[1],

@@ -25,9 +25,11 @@ struct live_focus {
     int64_t now_ns;
     struct live_range range; /* time and range of the present frame */
     double blur, blur_most;
-    double stretch;    /* K as a multiple of --blur, after the range has moved; 1 once it has stood
-                          still for long */
-    int width, height; /* size of the pictures; 0: none has come */
+    double stretch;     /* K as a multiple of --blur, after the range has moved; 1 once it has stood
+                           still for long */
+    bool blur_asked;    /* by a command */
+    double per_dioptre; /* 0, or K of a lens for a scene 1/m deep, which holds in place of blur */
+    int width, height;  /* size of the pictures; 0: none has come */
 };
 
 void live_focus_init(struct live_focus *focus, const struct lens_settings *lens);
@@ -45,6 +47,9 @@ bool live_focus_point(struct live_focus *focus, double point[2]);
 void live_focus_found(struct live_focus *focus, const double point[2], double disparity);
 /* The disparity in focus and the blur that hold for that frame. */
 void live_focus_get(struct live_focus *focus, double *disparity, double *blur);
+/* From now on the blur is that of a lens whose K is so much for a scene 1/m deep, until the command
+ * "blur" says another; without a range of distances nothing is blurred. */
+void live_focus_lens(struct live_focus *focus, double per_dioptre);
 /* The size of the pictures, beyond which points are refused. */
 void live_focus_size(struct live_focus *focus, int width, int height);
 

@@ -85,23 +85,37 @@ static bool has_sound_time(struct live_lane *lane, const struct refocus_frame *f
     return sound;
 }
 
+/* The time of a frame whose own is not sound: as many frames after the last sound one as their
+ * numbers say, if that is not long ago. */
+static int64_t expected_time(const struct live_lane *lane, const struct refocus_frame *frame,
+                             int64_t now_ns)
+{
+    const int32_t steps = (int32_t)(frame->sequence - lane->sure.sequence);
+    const bool near = steps > 0 && steps * (double)lane->period_ns <= doubt_ns;
+
+    return lane->sure.known ? lane->sure.ns + (near ? steps : 1) * lane->period_ns : now_ns;
+}
+
 /* Handle one frame that came; an exit code. */
-static int handle(struct live_lane *lane, const struct refocus_frame *frame)
+static int handle(struct live_lane *lane, const struct refocus_frame *given)
 {
     struct live_stage *stage = lane->stage;
     struct refocus_reason reason = {""};
+    struct refocus_frame frame = refocus_frame_copy(given);
     const int64_t begin = live_now_ns();
     int status = EXIT_DONE;
 
     stage->frames++;
-    if (frame->flags & REFOCUS_FRAME_CORRUPT) {
+    if (frame.flags & REFOCUS_FRAME_CORRUPT) {
         stage->corrupt++;
-    } else if (!has_sound_time(lane, frame, begin)) {
-        stage->damaged++;
     } else {
-        stage->reordered += lane->last_ns > frame->timestamp_ns;
-        lane->last_ns = frame->timestamp_ns;
-        status = lane->deliver(lane, frame, begin, &reason);
+        if (!has_sound_time(lane, given, begin)) {
+            frame.timestamp_ns = expected_time(lane, given, begin);
+            stage->retimed++;
+        }
+        stage->reordered += lane->last_ns > frame.timestamp_ns;
+        lane->last_ns = frame.timestamp_ns;
+        status = lane->deliver(lane, &frame, begin, &reason);
     }
     if (status == REFOCUS_ERR_FORMAT || status == REFOCUS_ERR_NO_DEPTH) {
         stage->damaged++; /* a picture cut short: the next one may be whole */

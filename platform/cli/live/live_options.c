@@ -3,6 +3,7 @@
 #include <refocus/platform/source.h>
 #include "line/report.h"
 #include "live/live_estimate.h"
+#include "live/live_look.h"
 #include "live/live_options.h"
 
 static const char *policy_name(uint32_t index)
@@ -29,12 +30,14 @@ const struct option live_options[] = {
      .name = "--camera",
      .argument = "SOURCE",
      .offset = offsetof(struct live_settings, camera),
+     .brief = "v4l2:/dev/video0, libcamera:0, file:f-%04d.png, ...",
      .help = "v4l2:/dev/video0, libcamera:0, file:frames-%04d.png, y4m:FILE, "
              "raw:FILE,NV12,640x480,30 or replay:SCRIPT"},
     {.kind = OPTION_TEXT,
      .name = "--depth",
      .argument = "SOURCE",
      .offset = offsetof(struct live_settings, depth.file),
+     .brief = "such a source, a depth map, or estimate:MODEL.onnx",
      .help = "depth beside it: such a source of Y16, Z16 or GREY, the file of one fixed depth "
              "map, or estimate:MODEL.onnx[,every=N][,preset=NAME], a network that sees every "
              "N-th picture"},
@@ -45,8 +48,10 @@ const struct option live_options[] = {
      .offset = offsetof(struct live_settings, steady),
      .least = 0,
      .greatest = 0.95,
+     .brief = "calm the flicker of depth: 0 to 0.95",
      .help = "calm the flicker of depth: share of the past where nothing moves, 0 (default) "
              "to 0.95"},
+    UPSAMPLE_OPTION(struct live_settings, depth),
     {.kind = OPTION_CHOICE,
      .name = "--depth-edges",
      .argument = "HOW",
@@ -65,12 +70,14 @@ const struct option live_options[] = {
      .name = "--out",
      .argument = "SINK",
      .offset = offsetof(struct live_settings, out),
+     .brief = "window, y4m:FILE, v4l2:/dev/video9, f-%04d.png, ...",
      .help = "window, v4l2:/dev/video9, y4m:FILE, raw:FILE[,FORMAT], frames-%04d.png or null "
              "(default); FILE may be - for standard output, FORMAT own (as frames come), NV12, "
              "NV21, YUV420, YUYV, UYVY, RGB24 (default), BGR24, RGBX or BGRX"},
     {.kind = OPTION_FLAG,
      .name = "--list",
      .offset = offsetof(struct live_settings, list),
+     .brief = "list the cameras, or the modes of --camera, and end",
      .help = "list the cameras, or the modes of --camera, and end"},
     {.kind = OPTION_CHOICE,
      .name = "--format",
@@ -101,6 +108,7 @@ const struct option live_options[] = {
      .offset = offsetof(struct live_settings, lens.focus),
      .least = 0,
      .greatest = 1,
+     .brief = "disparity in focus: 1 nearest, 0 farthest",
      .help = "disparity in focus: 1 nearest, 0 farthest"},
     {.kind = OPTION_NUMBERS,
      .name = "--focus-at",
@@ -109,15 +117,25 @@ const struct option live_options[] = {
      .least = -INFINITY,
      .greatest = INFINITY,
      .count = 2,
+     .brief = "focus on the surface at that pixel, and stay there",
      .help = "focus on the surface at that pixel of the first frame, and stay at its distance; "
              "without any --focus...: where the camera's lens is, if it says so, else the "
              "centre"},
+    {.kind = OPTION_NUMBER,
+     .name = "--focus-distance",
+     .argument = "M",
+     .offset = offsetof(struct live_settings, lens.focus_distance),
+     .least = 0,
+     .above = true,
+     .greatest = INFINITY,
+     .help = "metres in focus, also 'inf'; the depth must be in metres"},
     {.kind = OPTION_NUMBER,
      .name = "--blur",
      .argument = "K",
      .offset = offsetof(struct live_settings, lens.blur),
      .least = 0,
      .greatest = REFOCUS_MAX_BLUR_RADIUS,
+     .brief = "largest blur radius, pixels; default 20",
      .help = "blur radius in pixels of what lies farthest from the focus, default 20; when the "
              "range of distances moves, the lens stays, and goes back to K within some ten "
              "seconds"},
@@ -128,7 +146,35 @@ const struct option live_options[] = {
      .least = 0,
      .greatest = REFOCUS_MAX_BLUR_RADIUS,
      .help = "the most that the command 'blur' may ask for, and a range that widens; default "
-             "twice --blur"},
+             "twice --blur, but no more than 127 if --blur is not, and 127 for --f-number"},
+    {.kind = OPTION_NUMBER,
+     .name = "--f-number",
+     .argument = "N",
+     .offset = offsetof(struct live_settings, lens.f_number),
+     .least = 0,
+     .above = true,
+     .greatest = 1000,
+     .help = "blur of a lens of this f-number and --focal-length instead, up to --blur-most; the "
+             "depth must be in metres"},
+    {.kind = OPTION_NUMBER,
+     .name = "--focal-length",
+     .argument = "MM",
+     .offset = offsetof(struct live_settings, lens.focal_length),
+     .least = 0,
+     .above = true,
+     .greatest = 100000,
+     .help = "focal length for --f-number"},
+    {.kind = OPTION_NUMBER,
+     .name = "--sensor-width",
+     .argument = "MM",
+     .offset = offsetof(struct live_settings, lens.sensor_width),
+     .least = 0,
+     .above = true,
+     .greatest = 10000,
+     .help = "width of the sensor area that the picture shows, with --focal-length; default: "
+             "36 mm for the larger side of the picture"},
+    CONTROL_OPTIONS(struct live_settings, engine.controls),
+    BOKEH_OPTIONS(struct live_settings, engine.bokeh, engine.method),
     {.kind = OPTION_HEADING, .help = "Rendering"},
     METHOD_OPTION(struct live_settings, engine),
     METHOD_OPTIONS(struct live_settings, engine),
@@ -159,6 +205,7 @@ const struct option live_options[] = {
      .offset = offsetof(struct live_settings, frames),
      .least = 1,
      .greatest = 1e15,
+     .brief = "end after so many frames",
      .help = "end after so many frames are written"},
     {.kind = OPTION_NUMBER,
      .name = "--duration",
@@ -167,6 +214,7 @@ const struct option live_options[] = {
      .least = 0,
      .above = true,
      .greatest = 1e9,
+     .brief = "end after so many seconds",
      .help = "end after so many seconds; from files to files those of the frames"},
     {.kind = OPTION_NUMBER,
      .name = "--patience",
@@ -200,7 +248,9 @@ const struct option live_options[] = {
     {.kind = OPTION_FLAG,
      .name = "--json",
      .offset = offsetof(struct live_settings, engine.json),
+     .brief = "print a report as one JSON object",
      .help = "print a report as one JSON object; times in milliseconds"},
+    PAPER_OPTIONS(struct live_settings, engine.papers, engine.method),
     {.help = NULL},
 };
 
@@ -285,22 +335,24 @@ int live_check_settings(struct live_settings *settings)
         if (status != EXIT_DONE)
             return status;
     }
-    if (!isnan(settings->lens.focus) && !isnan(settings->lens.focus_at[0]))
-        return report_failure(EXIT_WRONG, "--focus-at",
-                              "the focus is given twice; give --focus or --focus-at");
-    if (settings->engine.fill == FILL_TEXTURED)
-        return report_failure(EXIT_WRONG, "--fill",
-                              "texture takes too long for live; give smooth, or leave it out");
-    status = check_sources(settings);
+    status = live_look_check(settings);
+    if (status == EXIT_DONE)
+        status = check_sources(settings);
     if (status != EXIT_DONE)
         return status;
     if (settings->calibration && !refocus_source_kind(settings->depth.file))
         return report_failure(EXIT_WRONG, "--calibration",
                               "it goes with a depth camera, not with a fixed map");
+    if (!isnan(settings->lens.f_number)) {
+        if (isnan(settings->blur_most))
+            settings->blur_most = REFOCUS_PLAIN_BLUR_RADIUS;
+        settings->lens.blur = fmin(20, settings->blur_most); /* until the lens is known */
+    }
     if (isnan(settings->lens.blur))
         settings->lens.blur = 20;
     if (isnan(settings->blur_most))
-        settings->blur_most = fmin(settings->lens.blur * 2, REFOCUS_MAX_BLUR_RADIUS);
+        settings->blur_most =
+            fmax(settings->lens.blur, fmin(settings->lens.blur * 2, REFOCUS_PLAIN_BLUR_RADIUS));
     if (settings->blur_most < settings->lens.blur)
         return report_failure(EXIT_WRONG, "--blur-most", "it is less than --blur %g",
                               settings->lens.blur);

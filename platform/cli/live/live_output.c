@@ -1,6 +1,7 @@
 /* live_output.c: the thread that writes what is rendered. */
 #include <string.h>
 #include <time.h>
+#include "line/interrupt.h"
 #include "live/live_output.h"
 
 /* A device that went away is opened again until patience ends. */
@@ -28,6 +29,13 @@ static bool reopen(struct live *live, const struct refocus_image *image,
 static bool is_device(const struct live *live)
 {
     return strncmp(live->settings->out, "v4l2:", 5) == 0;
+}
+
+/* Whether a write may wait for whoever reads: then a signal may cut it short. */
+static bool is_stream(const struct live *live)
+{
+    return strncmp(live->settings->out, "y4m:", 4) == 0 ||
+           strncmp(live->settings->out, "raw:", 4) == 0;
 }
 
 /* False when it is over. */
@@ -85,7 +93,14 @@ void *live_output_thread(void *argument)
 
         if (!picture)
             continue;
+        if (interrupt_came()) {
+            live->sink_dropped++;
+            live_queue_return(&live->rendered, picture);
+            continue;
+        }
+        interrupt_hold(!is_stream(live));
         go_on = write_picture(live, picture, &last);
+        interrupt_hold(false);
         live_times_add(&live->output.times, (double)(live_now_ns() - begin) / 1e6);
         live_queue_return(&live->rendered, picture);
         if (most > 0 && (double)atomic_load(&live->frames_out) >= most)

@@ -2,7 +2,12 @@
 #include <stdlib.h>
 #include "inputs/lens.h"
 #include "line/interrupt.h"
+#include "live/live_look.h"
 #include "live/live_render.h"
+#include "live/live_upsample.h"
+
+/* Small changes of the light of highlights from frame to frame are reduced by this part. */
+#define STEADY_LIGHT 0.8f
 
 /* A renderer for pictures of this size; the old one goes. */
 static bool fit_renderer(struct live *live, int width, int height)
@@ -70,7 +75,8 @@ static void advance(struct live *live, const struct live_picture *picture)
 }
 
 static int refocus(struct live *live, const struct live_picture *picture,
-                   const struct live_depth_map *map, const struct refocus_image *out)
+                   const struct live_depth_map *map, const struct refocus_image *out,
+                   struct refocus_reason *reason)
 {
     struct refocus_settings params = live->engine->params;
     struct refocus_disparity disparity;
@@ -82,6 +88,9 @@ static int refocus(struct live *live, const struct live_picture *picture,
     live->range = map->range;
     live_focus_frame(&live->focus, live->clock_ns, live->lens_dioptres, &live->range);
     status = live_depth_widen(&live->wide, &map, &live->range);
+    if (status == REFOCUS_OK)
+        status = live_upsample(&live->full, &map, &picture->image, live->settings->depth.upsample,
+                               reason);
     if (status != REFOCUS_OK)
         return status;
     disparity =
@@ -98,6 +107,9 @@ static int refocus(struct live *live, const struct live_picture *picture,
     begin = live_now_ns();
     params.render.focus_disparity = (float)live->focus_disparity;
     params.render.max_blur_radius = (float)live->blur;
+    params.highlights.steady = STEADY_LIGHT;
+    if (live_look_aim(live, &picture->image, &params) != EXIT_DONE)
+        return REFOCUS_ERR_ARGUMENT;
     status = refocus_render_settings(live->engine->renderer, &params, out);
     live_times_add(&live->render.times, (double)(live_now_ns() - begin) / 1e6);
     return status;
@@ -127,10 +139,11 @@ static const struct live_depth_map *pair(struct live *live, const struct live_pi
 }
 
 /* False when it is over. */
-static bool process(struct live *live, struct live_picture *picture, int size[2])
+static bool process(struct live *live, struct live_picture *picture, int size[2], int placed[2])
 {
     const int width = picture->image.width, height = picture->image.height;
     const struct live_depth_map *map = pair(live, picture);
+    struct refocus_reason reason = {""};
     struct live_picture *out;
     bool memory;
     int status;
@@ -150,16 +163,27 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
         size[0] = width;
         size[1] = height;
     }
+    if (width != placed[0] || height != placed[1]) {
+        const int placing = live_look_place(live, width, height);
+
+        if (placing != EXIT_DONE) {
+            live_fail(live, placing, "", "");
+            return false;
+        }
+        placed[0] = width;
+        placed[1] = height;
+    }
     out = live_queue_fill(&live->rendered, picture->image.format, width, height, &memory);
     if (!out)
         return false;
     out->image.matrix = picture->image.matrix;
     out->image.range = picture->image.range;
-    status = memory ? refocus(live, picture, map, &out->image) : REFOCUS_ERR_MEMORY;
+    status = memory ? refocus(live, picture, map, &out->image, &reason) : REFOCUS_ERR_MEMORY;
     if (status != REFOCUS_OK) {
         live_queue_return(&live->rendered, out);
         if (status != REFOCUS_ERR_CANCELLED)
-            live_fail(live, EXIT_FAILED, live->settings->camera, refocus_strerror(status));
+            live_fail(live, EXIT_FAILED, reason.text[0] ? "--upsample" : live->settings->camera,
+                      reason.text[0] ? reason.text : refocus_strerror(status));
         return false;
     }
     out->timestamp_ns = picture->timestamp_ns;
@@ -173,7 +197,7 @@ void live_render(struct live *live)
     const int64_t begin = live_now_ns();
     const double duration = live->settings->duration;
     const bool offline = live->settings->offline;
-    int size[2] = {0, 0};
+    int size[2] = {0, 0}, placed[2] = {0, 0}; /* Sizes of the renderer and of the last picture. */
     bool ended = false;
 
     while (!ended && !live_is_over(live)) {
@@ -185,7 +209,7 @@ void live_render(struct live *live)
             if (offline && duration > 0 && (double)live->clock_ns / 1e9 >= duration)
                 go_on = false;
             else
-                go_on = process(live, picture, size);
+                go_on = process(live, picture, size, placed);
             live_queue_return(&live->captured, picture);
         }
         if (!offline && duration > 0 && (double)(live_now_ns() - begin) / 1e9 >= duration)
@@ -196,5 +220,6 @@ void live_render(struct live *live)
     interrupt_watch(NULL);
     live_steady_end(&live->steady);
     free(live->wide.disparity);
+    free(live->full.disparity);
     live_queue_close(&live->rendered);
 }

@@ -5,11 +5,12 @@
 
 static json_t *stage_json(const struct live_stage *stage)
 {
-    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:f}", "frames", (json_int_t)stage->frames,
-                     "corrupt", (json_int_t)stage->corrupt, "damaged", (json_int_t)stage->damaged,
-                     "reordered", (json_int_t)stage->reordered, "timeouts",
-                     (json_int_t)stage->timeouts, "recoveries", (json_int_t)stage->recoveries,
-                     "worst_recovery_ms", stage->worst_recovery_ms);
+    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:f}", "frames",
+                     (json_int_t)stage->frames, "corrupt", (json_int_t)stage->corrupt, "damaged",
+                     (json_int_t)stage->damaged, "reordered", (json_int_t)stage->reordered,
+                     "retimed", (json_int_t)stage->retimed, "timeouts", (json_int_t)stage->timeouts,
+                     "recoveries", (json_int_t)stage->recoveries, "worst_recovery_ms",
+                     stage->worst_recovery_ms);
 }
 
 static double mean(const struct live_stage *stage)
@@ -65,7 +66,7 @@ int live_report(struct live *live)
         return EXIT_DONE;
     }
     json = json_pack(
-        "{s:o, s:s, s:i, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:o, "
+        "{s:o, s:s?, s:i, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:o, "
         "s:f, s:f}",
         "camera", report_text_json(settings->camera), "format",
         refocus_frame_format_name(live->mode.format), "width", (int)live->mode.width, "height",

@@ -17,8 +17,10 @@ void live_end(struct live *live)
     atomic_store(&live->quit, true);
     if (write(live->wake_fd, &one, sizeof one) < 0)
         return;
+    pthread_mutex_lock(&live->lock);
     refocus_source_interrupt(live->camera);
     refocus_source_interrupt(live->depth_camera);
+    pthread_mutex_unlock(&live->lock);
 }
 
 void live_fail(struct live *live, int exit_code, const char *what, const char *why)

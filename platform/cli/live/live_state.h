@@ -23,7 +23,7 @@ struct live_estimator;
 /* Counts and times of one thread each; read when all have ended. */
 struct live_stage {
     struct live_times times;
-    uint64_t frames, corrupt, damaged, reordered, timeouts, recoveries, skipped;
+    uint64_t frames, corrupt, damaged, reordered, retimed, timeouts, recoveries, skipped;
     double worst_recovery_ms;
 };
 
@@ -31,7 +31,7 @@ struct live_stage {
  * two. */
 struct live {
     const struct live_settings *settings;
-    struct refocus_source *camera, *depth_camera;
+    struct refocus_source *camera, *depth_camera; /* set and interrupted under the lock */
     struct refocus_source_mode mode, depth_mode;
     struct refocus_sink *sink;
     struct refocus_calibration *calibration;
@@ -41,8 +41,8 @@ struct live {
     int64_t offered, key;             /* belongs to the thread that captures */
     struct live_depths depths;
     struct live_focus focus;
-    struct live_ranger ranger;  /* belongs to the thread of depth */
-    struct live_depth_map wide; /* belongs to the thread that renders */
+    struct live_ranger ranger;        /* belongs to the thread of depth */
+    struct live_depth_map wide, full; /* belong to the thread that renders */
 
     atomic_bool quit;
     int wake_fd;          /* eventfd: readable when it is over; for the thread of the commands */
@@ -71,7 +71,7 @@ struct live {
     uint64_t frames_rendered;
 };
 
-/* Remember the first failure, and let all come to an end. */
+/* Remember the first failure, and let all come to an end; what "": it has been printed. */
 void live_fail(struct live *live, int exit_code, const char *what, const char *why);
 void live_end(struct live *live);
 bool live_is_over(struct live *live);

@@ -20,9 +20,10 @@ enum kind { KIND_NONE, KIND_PICTURES, KIND_Y4M, KIND_APNG, KIND_ENCODER };
 
 struct animation {
     enum kind kind;
-    char path[PATH_MAX], temporary[PATH_MAX];
-    int frames;   /* written */
-    long process; /* process number of the encoder, or -1 */
+    char path[PATH_MAX];
+    char *temporary; /* NULL: none yet */
+    int frames;      /* written */
+    long process;    /* process number of the encoder, or -1 */
     struct refocus_sink *sink;
     struct apng *apng;
     struct encoder *encoder;
@@ -92,19 +93,6 @@ int animation_check(const char *path, const char *const *inputs, int input_count
     return output_check(path, OUTPUT_PICTURE, films, inputs, input_count);
 }
 
-/* A name beside the place, where a link points, with the same ending. */
-static void name_temporary(struct animation *a)
-{
-    char *real = refocus_file_place(a->path);
-    const char *place = real && strlen(real) + 64 <= PATH_MAX ? real : a->path;
-    const char *slash = strrchr(place, '/'), *dot = strrchr(a->path, '.');
-    const int folder = slash ? (int)(slash + 1 - place) : 0;
-
-    snprintf(a->temporary, sizeof a->temporary, "%.*s.refocus-%ld.tmp%.8s", folder, place,
-             (long)getpid(), dot);
-    free(real);
-}
-
 static int lost(const struct animation *a, const struct refocus_reason *reason)
 {
     return report_failure(EXIT_FAILED, a->path, "%s", reason->text);
@@ -115,12 +103,42 @@ static void take_away(const struct animation *a)
     char name[PATH_MAX];
 
     if (a->kind != KIND_PICTURES) {
-        unlink(a->temporary);
+        if (a->temporary)
+            unlink(a->temporary);
         return;
     }
     for (int i = 0; i < a->frames; i++)
         if (frame_name(a, i, name))
             unlink(name);
+}
+
+static int begin(struct animation *a, int width, int height, double fps, int frames,
+                 struct refocus_reason *reason)
+{
+    char *name;
+    int status;
+
+    if (a->kind == KIND_PICTURES)
+        return REFOCUS_OK;
+    status = refocus_file_temporary(a->path, &a->temporary, reason);
+    if (status != REFOCUS_OK)
+        return status;
+    if (a->kind == KIND_APNG)
+        return apng_open(&a->apng, a->temporary, width, height, fps, frames, reason);
+    if (a->kind == KIND_ENCODER) {
+        status = encoder_open(&a->encoder, a->temporary, width, height, fps, reason);
+        a->process = encoder_process(a->encoder);
+        return status;
+    }
+    name = malloc(strlen(a->temporary) + 8);
+    if (!name) {
+        snprintf(reason->text, sizeof reason->text, "not enough memory");
+        return REFOCUS_ERR_MEMORY;
+    }
+    sprintf(name, "y4m:%s", a->temporary);
+    status = refocus_sink_open(&a->sink, name, reason);
+    free(name);
+    return status == REFOCUS_OK ? refocus_sink_start(a->sink, width, height, fps, reason) : status;
 }
 
 /* A signal does not wait for animation_close(). */
@@ -138,7 +156,7 @@ int animation_open(struct animation **animation, const char *path, int width, in
 {
     struct animation *a = calloc(1, sizeof *a);
     struct refocus_reason reason = {{0}};
-    int status = REFOCUS_OK;
+    int status;
 
     *animation = a;
     if (!a)
@@ -146,22 +164,9 @@ int animation_open(struct animation **animation, const char *path, int width, in
     snprintf(a->path, sizeof a->path, "%s", path);
     a->kind = kind_of(path);
     a->process = -1;
-    name_temporary(a);
     interrupt_hold(true);
     interrupt_clean_up(abandon, a);
-    if (a->kind == KIND_Y4M) {
-        char name[PATH_MAX + 8];
-
-        snprintf(name, sizeof name, "y4m:%s", a->temporary);
-        status = refocus_sink_open(&a->sink, name, &reason);
-        if (status == REFOCUS_OK)
-            status = refocus_sink_start(a->sink, width, height, fps, &reason);
-    } else if (a->kind == KIND_APNG) {
-        status = apng_open(&a->apng, a->temporary, width, height, fps, frames, &reason);
-    } else if (a->kind == KIND_ENCODER) {
-        status = encoder_open(&a->encoder, a->temporary, width, height, fps, &reason);
-        a->process = encoder_process(a->encoder);
-    }
+    status = begin(a, width, height, fps, frames, &reason);
     interrupt_hold(false);
     return status == REFOCUS_OK ? EXIT_DONE : lost(a, &reason);
 }
@@ -234,6 +239,7 @@ int animation_close(struct animation *a, bool keep)
         take_away(a);
     }
     interrupt_hold(false);
+    free(a->temporary);
     free(a);
     return result;
 }

@@ -13,7 +13,7 @@ enum { SIGNATURE = 8, HEADER = 25, CHUNK_REST = 12 };
 
 struct apng {
     FILE *file;
-    char picture[PATH_MAX]; /* a frame on its way */
+    char beside[PATH_MAX]; /* where frames lie on their way, as a picture's name */
     int width, height, frames, written;
     uint16_t milliseconds;
     uint32_t sequence;
@@ -85,7 +85,7 @@ int apng_open(struct apng **apng, const char *path, int width, int height, doubl
     a->height = height;
     a->frames = frames;
     a->milliseconds = (uint16_t)(ms < 1 ? 1 : ms > 65535 ? 65535 : ms);
-    if (snprintf(a->picture, sizeof a->picture, "%s.png", path) >= (int)sizeof a->picture) {
+    if (snprintf(a->beside, sizeof a->beside, "%s.png", path) >= (int)sizeof a->beside) {
         snprintf(reason->text, sizeof reason->text, "the name is too long");
         return REFOCUS_ERR_ARGUMENT;
     }
@@ -147,11 +147,16 @@ int apng_write(struct apng *a, const struct refocus_image *image, struct refocus
     struct refocus_blob png = {NULL, 0};
     const struct refocus_write_options options = {
         .struct_size = sizeof(struct refocus_write_options), .unsynced = 1};
-    int status = refocus_image_write(a->picture, image, &options, reason);
+    char *picture;
+    int status = refocus_file_temporary(a->beside, &picture, reason);
 
+    if (status != REFOCUS_OK)
+        return status;
+    status = refocus_image_write(picture, image, &options, reason);
     if (status == REFOCUS_OK)
-        status = refocus_file_read(a->picture, UINT32_MAX, &png, reason);
-    unlink(a->picture);
+        status = refocus_file_read(picture, UINT32_MAX, &png, reason);
+    unlink(picture);
+    free(picture);
     if (status != REFOCUS_OK)
         return status;
     errno = 0;

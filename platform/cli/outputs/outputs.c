@@ -19,6 +19,23 @@ static bool ends_in(const char *path, const char *ending)
     return length > n && strcasecmp(path + length - n, ending) == 0;
 }
 
+uint32_t output_deep_format(const char *path)
+{
+    static const struct {
+        const char *ending;
+        uint32_t format;
+    } deep[] = {{".png", REFOCUS_FORMAT_RGB16},
+                {".tif", REFOCUS_FORMAT_RGB16},
+                {".tiff", REFOCUS_FORMAT_RGB16},
+                {".exr", REFOCUS_FORMAT_RGB_FLOAT},
+                {".pfm", REFOCUS_FORMAT_RGB_FLOAT}};
+
+    for (size_t i = 0; i < sizeof deep / sizeof *deep; i++)
+        if (ends_in(path, deep[i].ending))
+            return deep[i].format;
+    return REFOCUS_FORMAT_NONE;
+}
+
 bool output_is_picture(const char *path)
 {
     for (int i = 0; refocus_file_ending(0, i); i++)
@@ -113,26 +130,36 @@ int output_check(const char *path, unsigned kinds, const char *const *others,
 
 static int written(int status, const char *path, const struct refocus_reason *reason)
 {
-    if (status == REFOCUS_OK)
+    if (status == REFOCUS_OK) {
+        if (reason->text[0])
+            report_warning(path, "%s", reason->text);
         return EXIT_DONE;
+    }
     return report_failure(EXIT_FAILED, path, "%s",
                           reason->text[0] ? reason->text : refocus_strerror(status));
 }
 
-int output_write_image(const char *path, const struct refocus_image *image,
-                       const struct refocus_photo *of)
+struct refocus_write_options output_keeps(const struct refocus_photo *of)
 {
-    struct refocus_reason reason = {""};
     struct refocus_write_options options = refocus_write_options_default();
-    int status;
 
     if (of) {
         options.exif = of->exif.data ? &of->exif : NULL;
         options.icc = of->icc.data ? &of->icc : NULL;
+        options.keep = of;
     }
+    return options;
+}
+
+int output_write_image(const char *path, const struct refocus_image *image,
+                       const struct refocus_write_options *options)
+{
+    struct refocus_reason reason = {""};
+    int status;
+
     interrupt_hold(true);
     status = interrupt_came() ? REFOCUS_ERR_CANCELLED
-                              : refocus_image_write(path, image, &options, &reason);
+                              : refocus_image_write(path, image, options, &reason);
     interrupt_hold(false);
     if (status == REFOCUS_ERR_CANCELLED)
         return report_failure(EXIT_FAILED, path, "interrupted; nothing was written");

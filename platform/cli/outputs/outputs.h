@@ -11,7 +11,8 @@
 #define OUTPUT_OPTION(type, member, text)                                                          \
     {                                                                                              \
         .kind = OPTION_TEXT, .letter = 'o', .elsewhere = true, .name = "--output",                 \
-        .argument = "OUT", .offset = offsetof(type, member), .help = text                          \
+        .argument = "OUT", .offset = offsetof(type, member),                                       \
+        .brief = "the file to write; its ending says the format", .help = text                     \
     }
 
 /* These return exit codes and print why it is not EXIT_DONE. */
@@ -19,18 +20,22 @@
 /* Kinds of files by their endings, to be or-ed. */
 enum { OUTPUT_PICTURE = 1, OUTPUT_DEPTH = 2 };
 /* The endings of pictures as the help lists them. */
-#define OUTPUT_PICTURES ".jpg, .png or .ppm"
+#define OUTPUT_PICTURES ".jpg, .png, .tif, .exr, .ppm or .pfm"
 
 /* Check before the work that there is a name, that it ends as these kinds or as one of the other
  * endings (which end with NULL, or are NULL), that its folder can be written to, and that it is
  * none of the inputs, some of which may be NULL. */
 int output_check(const char *path, unsigned kinds, const char *const *others,
                  const char *const *inputs, int input_count);
+/* The deep format that a picture of that name holds: of PNG, TIFF, OpenEXR and PFM; of others 0. */
+uint32_t output_deep_format(const char *path);
 /* Whether the name ends as that of a picture. */
 bool output_is_picture(const char *path);
 
+/* Options for a picture that keeps what the file of a photo says; NULL: keeps nothing. */
+struct refocus_write_options output_keeps(const struct refocus_photo *of);
 int output_write_image(const char *path, const struct refocus_image *image,
-                       const struct refocus_photo *of);
+                       const struct refocus_write_options *options);
 int output_write_file(const char *path, const void *bytes, size_t size);
 int output_write_gray16(const char *path, const uint16_t *samples, int width, int height);
 

@@ -44,6 +44,7 @@ const char *bokeh_figure_summary(uint32_t index);
          .offset = offsetof(type, member.preset),                                                  \
          .choice = bokeh_preset_name,                                                              \
          .summary = bokeh_preset_summary,                                                          \
+         .brief = "the look of a lens",                                                            \
          .help = "presets; what else is given overrules them"},                                    \
         BOKEH_NUMBER(type, member, "--curvature", "C", curvature, 0, 1,                            \
                      "of the blades of a polygon: 0 = straight, the default, 1 = arcs of "         \
@@ -78,9 +79,9 @@ const char *bokeh_figure_summary(uint32_t index);
     {                                                                                              \
         .kind = OPTION_NUMBER, .name = "--highlight-stops", .argument = "S",                       \
         .offset = offsetof(type, member.highlight_stops), .least = 0, .greatest = 4,               \
-        .help = "sweep: light given back to small clipped highlights, in stops, for "              \
+        .help = "sweep, search: light given back to small clipped highlights, in stops, for "      \
                 "--highlights 2^S",                                                                \
-        OF_METHODS(type, method, OF_SWEEP)                                                         \
+        OF_METHODS(type, method, OF_SWEEP | OF_SEARCH)                                             \
     }
 
 /* These return exit codes and print why it is not EXIT_DONE. */

@@ -83,7 +83,7 @@ struct controls {
                        "disparity before which nothing is blurred more; default 1"),               \
         CONTROL_NUMBER(type, member, "--blur-limit", "R", blur_limit, 0, REFOCUS_MAX_BLUR_RADIUS,  \
                        "largest blur radius, pixels; default "                                     \
-                       "127")
+                       "944")
 #define CONTROL_OPTIONS(type, member) FOCUS_CONTROL_OPTIONS(type, member)
 
 /* These return exit codes and print why it is not EXIT_DONE. */

@@ -89,7 +89,9 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
         params->search.iterations = (int32_t)settings->iterations;
     if (!isnan(settings->sigma))
         params->render.sigma = (float)settings->sigma;
-    if (isnan(settings->highlights) || settings->highlights == HIGHLIGHTS_ESTIMATED)
+    if (!(refocus_method_traits(params->render.method) & REFOCUS_METHOD_HIGHLIGHTS))
+        params->highlights.gain = 1; /* so that it is not reported */
+    else if (isnan(settings->highlights) || settings->highlights == HIGHLIGHTS_ESTIMATED)
         params->highlights.estimate = 1;
     else
         params->highlights.gain = (float)settings->highlights;
@@ -122,6 +124,13 @@ static int interrupted(const struct engine *engine)
                           "written");
 }
 
+double engine_most_blur(const struct engine_settings *settings)
+{
+    const uint32_t traits = refocus_method_traits((uint32_t)settings->method);
+
+    return traits & REFOCUS_METHOD_ANY_RADIUS ? REFOCUS_MAX_BLUR_RADIUS : REFOCUS_PLAIN_BLUR_RADIUS;
+}
+
 int engine_create(struct engine *engine, const struct engine_settings *settings, int width,
                   int height, double blur)
 {
@@ -134,9 +143,12 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
     params.cpu = (uint32_t)settings->cpu;
     params.papers = refocus_papers();
     params.methods = engine->methods;
+    params.in_place = settings->in_strips;
+    params.highlights = settings->in_strips;
     params.thin = engine->params.thin.enabled || engine->has_matte;
-    params.depth_edges = engine->places_edges;
+    params.depth_edges = engine->places_edges && !settings->in_strips;
     params.behind = engine->behind;
+    params.deep = engine->deep;
     params.textured = engine->params.render.inpaint == REFOCUS_INPAINT_TEXTURED;
     engine->params.render.max_blur_radius = (float)blur;
     status = refocus_renderer_create(&engine->renderer, &params);
@@ -149,9 +161,10 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, engine->name,
                               "%s: %dx%d pixels with blur %.4g need %.0f MiB; give a "
-                              "smaller picture or less blur",
+                              "smaller picture or less blur%s",
                               refocus_strerror(status), width, height, blur,
-                              (double)refocus_renderer_memory(&params) / (1 << 20));
+                              (double)refocus_renderer_memory(&params) / (1 << 20),
+                              settings->in_strips ? "" : ", or --low-memory where there is that");
     interrupt_watch(engine->renderer);
     engine->info = refocus_renderer_info_default();
     refocus_renderer_get_info(engine->renderer, &engine->info);
@@ -177,10 +190,17 @@ int engine_prepare(struct engine *engine, const struct refocus_scene *scene)
     return EXIT_DONE;
 }
 
+bool engine_takes_deep(const struct refocus_settings *params)
+{
+    return params->render.method == REFOCUS_METHOD_SWEEP &&
+           params->render.blend == REFOCUS_BLEND_LINEAR && params->render.sigma >= 1e6f &&
+           params->look.grain == 0 && params->look.star_spikes == 0;
+}
+
 /* Render whole, or, where that is slow and somebody watches, in strips of rows. The
  * progress goes from begin by share. */
-static int render_once(struct engine *engine, const struct refocus_image *out, double begin,
-                       double share)
+static int render_strips(struct engine *engine, const struct refocus_image *out, double begin,
+                         double share)
 {
     enum { STRIPS = 20 };
     const bool strips = report_is_watched() && out->height >= STRIPS &&
@@ -203,6 +223,32 @@ static int render_once(struct engine *engine, const struct refocus_image *out, d
         strip.plane[0] += y0 * strip.stride[0];
         status = refocus_render_settings(engine->renderer, &params, &strip);
     }
+    return status;
+}
+
+/* Light by a gain map goes back into the tones of the photo where 8 bits are asked for. */
+static int render_once(struct engine *engine, const struct refocus_image *out, double begin,
+                       double share)
+{
+    const size_t stride = 6 * (size_t)out->width;
+    struct refocus_image light;
+    int status;
+
+    if (!engine->light || out->format != REFOCUS_FORMAT_RGB8)
+        return render_strips(engine, out, begin, share);
+    light = refocus_image_packed(REFOCUS_FORMAT_RGB_HALF, malloc(stride * (size_t)out->height),
+                                 out->width, out->height, (ptrdiff_t)stride);
+    status = light.plane[0] ? render_strips(engine, &light, begin, share) : REFOCUS_ERR_MEMORY;
+    if (status == REFOCUS_OK)
+        status = refocus_light_to_base(engine->light, &light, engine->params.render.region_x,
+                                       engine->params.render.region_y, engine->params.render.dither,
+                                       out);
+    free(engine->rendered.plane[0]);
+    engine->rendered.plane[0] = NULL;
+    if (status == REFOCUS_OK && engine->keeps_light)
+        engine->rendered = light;
+    else
+        free(light.plane[0]);
     return status;
 }
 
@@ -252,6 +298,7 @@ void engine_end(struct engine *engine)
     interrupt_watch(NULL);
     refocus_renderer_destroy(&engine->renderer);
     refocus_aperture_destroy(&engine->aperture);
+    free(engine->rendered.plane[0]);
     free((void *)engine->field_map.samples);
     controls_free(&engine->controls);
 }

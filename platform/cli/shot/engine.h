@@ -17,6 +17,7 @@ struct engine_settings {
     double threads, repeat;
     const char *aperture; /* NULL: that of the bokeh's preset */
     bool mirror, background, no_thin, json;
+    bool in_strips; /* in little memory, as strips.h says */
     struct paper_settings papers;
     struct control_settings controls;
     struct bokeh_settings bokeh;
@@ -46,7 +47,8 @@ const char *engine_blend_summary(uint32_t index);
     {                                                                                              \
         .kind = OPTION_CHOICE, .name = "--method", .argument = "NAME",                             \
         .offset = offsetof(type, member.method), .choice = refocus_method_name,                    \
-        .summary = refocus_method_summary, .help = "how it is rendered; default sweep"             \
+        .summary = refocus_method_summary, .brief = "how it is rendered",                          \
+        .help = "how it is rendered; default sweep"                                                \
     }
 #define METHOD_OPTIONS(type, member)                                                               \
     {.kind = OPTION_INTEGER,                                                                       \
@@ -66,6 +68,7 @@ const char *engine_blend_summary(uint32_t index);
          .offset = offsetof(type, member.quality),                                                 \
          .choice = engine_quality_name,                                                            \
          .summary = engine_quality_summary,                                                        \
+         .brief = "time against smoothness",                                                       \
          .help = "presets; default standard; --rays overrules"},                                   \
         {.kind = OPTION_INTEGER,                                                                   \
          .name = "--iterations",                                                                   \
@@ -106,6 +109,7 @@ const char *engine_blend_summary(uint32_t index);
          .offset = offsetof(type, member.aperture),                                                \
          .choice = bokeh_figure_name,                                                              \
          .summary = bokeh_figure_summary,                                                          \
+         .brief = "disc, polygon:6, heart, star, or a mask picture",                               \
          .help = "disc (default), polygon:BLADES or polygon:BLADES:DEGREES with 3 to 16 "          \
                  "blades, a mask picture of at most 255x255, white = open, or a figure:"},         \
         {.kind = OPTION_CHOICE,                                                                    \
@@ -129,9 +133,9 @@ const char *engine_blend_summary(uint32_t index);
         .kind = OPTION_NUMBER, .name = "--highlights", .argument = "GAIN",                         \
         .offset = offsetof(type, member.highlights), .least = 1, .greatest = 16, .word = "off",    \
         .word_value = 1, .other_word = "auto", .other_value = HIGHLIGHTS_ESTIMATED,                \
-        .help = "sweep: light given back to clipped highlights: auto = as much as the photo "      \
-                "tells, the default; up to GAIN times white to small ones",                        \
-        OF_METHODS(type, member.method, OF_SWEEP)                                                  \
+        .help = "sweep, search: light given back to clipped highlights: auto = as much as the "    \
+                "photo tells, the default; up to GAIN times white to small ones",                  \
+        OF_METHODS(type, member.method, OF_SWEEP | OF_SEARCH)                                      \
     }
 #define RUN_OPTIONS(type, member)                                                                  \
     {.kind = OPTION_INTEGER,                                                                       \
@@ -151,7 +155,7 @@ const char *engine_blend_summary(uint32_t index);
                  "changes the result"},                                                            \
     {                                                                                              \
         .kind = OPTION_FLAG, .elsewhere = true, .name = "--json",                                  \
-        .offset = offsetof(type, member.json),                                                     \
+        .offset = offsetof(type, member.json), .brief = "print a report as one JSON object",       \
         .help = "print a report as one JSON object; times in milliseconds, without "               \
                 "reading and writing of files"                                                     \
     }
@@ -173,7 +177,12 @@ struct engine {
     bool has_matte;         /* the renderer is made for scenes with a matte */
     double field_disparity; /* NAN: that in focus */
     bool behind;            /* the renderer is made for a second layer */
-    uint32_t methods;       /* methods that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
+    bool deep;              /* the renderer takes deep photos and pictures */
+    const struct refocus_light *light; /* light by a gain map, if that is rendered, or NULL */
+    bool keeps_light;                  /* `rendered` is wanted; before engine_render() */
+    /* Such light as it was rendered, before it went back into 8 bits; no plane: there is none. */
+    struct refocus_image rendered;
+    uint32_t methods;  /* methods that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
     bool places_edges; /* the renderer can put edges of a map on the photo's; before engine_create()
                         */
     struct refocus_depth_edges_report edges; /* by the last scene; struct_size 0: as given */
@@ -186,6 +195,12 @@ struct engine {
 
 /* The aperture and what else can be wrong before a photo is read. */
 int engine_begin(struct engine *engine, const struct engine_settings *settings);
+
+/* Whether deep photos can be rendered so, as the core says. */
+bool engine_takes_deep(const struct refocus_settings *params);
+
+/* The largest blur radius, in pixels, that the method of these settings renders. */
+double engine_most_blur(const struct engine_settings *settings);
 
 /* Renderer for photos of this size and blur; prepare; render settings->repeat times. */
 int engine_create(struct engine *engine, const struct engine_settings *settings, int width,

@@ -3,6 +3,7 @@
 #include <string.h>
 #include <refocus/platform/file.h>
 #include "shot/papers.h"
+#include "inputs/limits.h"
 #include "line/report.h"
 
 const char *papers_spread_name(uint32_t index)
@@ -31,7 +32,7 @@ uint8_t *papers_read_grey(const char *file, int *width, int *height)
     struct refocus_reason reason = {""};
     struct refocus_photo *photo = NULL;
     uint8_t *grey = NULL;
-    const int status = refocus_photo_read(&photo, file, NULL, &reason);
+    const int status = refocus_photo_read(&photo, file, limits_taken(), &reason);
 
     if (status != REFOCUS_OK || !photo->image->plane[0]) {
         report_failure(EXIT_FAILED, file, "%s",

@@ -1,8 +1,12 @@
 /* shot.c: one photo is read and prepared, with its lens setting in engine.params. */
 #include <stdlib.h>
 #include <string.h>
+#include "inputs/made.h"
+#include "inputs/matte.h"
+#include "line/interrupt.h"
 #include "line/report.h"
 #include "shot/shot.h"
+#include "shot/strips.h"
 
 int shot_aim(const struct input *input, const struct lens_settings *lens,
              const struct controls *controls, const uint16_t *disparity,
@@ -28,17 +32,18 @@ static int choose_focus(struct shot *shot, const struct lens_settings *lens)
     const struct refocus_image *photo = shot->input.photo->image;
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
     const ptrdiff_t stride = (ptrdiff_t)photo->width * 2;
-    uint16_t *prepared = malloc(pixels * sizeof *prepared);
-    int status;
+    uint16_t *prepared = shot->full ? shot->full : malloc(pixels * sizeof *prepared);
+    int status = EXIT_DONE;
 
-    if (!prepared || refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY, prepared,
-                                      stride) != REFOCUS_OK) {
+    if (!prepared || (!shot->full && refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY,
+                                                      prepared, stride) != REFOCUS_OK))
+        status = report_failure(EXIT_FAILED, shot->input.photo_name,
+                                "not enough memory to find the focus");
+    if (status == EXIT_DONE)
+        status =
+            shot_aim(&shot->input, lens, &shot->engine.controls, prepared, &shot->engine.params);
+    if (!shot->full)
         free(prepared);
-        return report_failure(EXIT_FAILED, shot->input.photo_name,
-                              "not enough memory to find the focus");
-    }
-    status = shot_aim(&shot->input, lens, &shot->engine.controls, prepared, &shot->engine.params);
-    free(prepared);
     return status;
 }
 
@@ -46,12 +51,16 @@ int shot_check(struct shot_settings *settings, bool own_focus)
 {
     int status = input_check_depth(&settings->depth);
 
+    if (input_depth_is_made(&settings->depth))
+        settings->depth.make = made_depth;
     settings->engine.bokeh.f_number = settings->lens.f_number;
     if (status == EXIT_DONE)
         status = input_check_lens(&settings->lens);
     if (status == EXIT_DONE)
         status = controls_check(&settings->engine.controls,
                                 own_focus || input_focus_is_given(&settings->lens));
+    if (status == EXIT_DONE && settings->engine.in_strips)
+        status = strips_check(&settings->engine, &settings->depth, settings->behind.image != NULL);
     return status;
 }
 
@@ -62,7 +71,7 @@ int shot_inputs(const struct shot_settings *settings, const char *photo,
 
     inputs[count++] = photo;
     inputs[count++] = settings->depth.file;
-    inputs[count++] = settings->depth.matte;
+    inputs[count++] = matte_is_none(settings->depth.matte) ? NULL : settings->depth.matte;
     inputs[count++] = settings->behind.image;
     inputs[count++] = settings->behind.depth;
     inputs[count++] = settings->engine.aperture;
@@ -70,6 +79,9 @@ int shot_inputs(const struct shot_settings *settings, const char *photo,
     inputs[count++] = settings->engine.controls.focus_map;
     inputs[count++] = settings->engine.controls.sharp_mask;
     inputs[count++] = settings->load;
+    inputs[count++] = settings->config;
+    inputs[count++] = settings->depth.model;
+    inputs[count++] = settings->depth.right;
     return count;
 }
 
@@ -79,17 +91,24 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     struct refocus_disparity disparity;
     struct refocus_scene scene;
     const struct refocus_image *image;
+    struct depth_settings depth = settings->depth;
     double blur = 0;
     int status;
 
     memset(&shot->input, 0, sizeof shot->input);
     memset(&shot->behind, 0, sizeof shot->behind);
+    shot->full = NULL;
     status = engine_begin(&shot->engine, &settings->engine);
     shot->engine.name = photo;
     if (status == EXIT_DONE) {
         report_progress("reading", 0);
-        status = input_read(&shot->input, photo, &settings->depth);
+        if (!engine_takes_deep(&shot->engine.params) || settings->engine.in_strips) {
+            depth.deep = DEEP_NONE;
+            depth.light = false;
+        }
+        status = input_read(&shot->input, photo, &depth);
     }
+    shot->input.most_blur = engine_most_blur(&settings->engine);
     if (status == EXIT_DONE)
         status = behind_read(&shot->behind, &settings->behind, &settings->depth, &shot->input);
     if (status == EXIT_DONE)
@@ -97,15 +116,31 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     if (status != EXIT_DONE)
         return status;
     image = shot->input.photo->image;
+    report_progress("preparing", 0.15);
+    shot->engine.places_edges = input_has_edges_placed(&shot->input, &settings->depth);
+    if (settings->engine.in_strips) {
+        status = strips_disparity(&shot->input, shot->engine.places_edges, &settings->engine,
+                                  &shot->full, &shot->engine.edges);
+        if (status != EXIT_DONE)
+            return status;
+    }
     disparity = refocus_disparity16(shot->input.disparity, shot->input.width, shot->input.height,
                                     (ptrdiff_t)shot->input.width * 2);
     scene = input_scene(&shot->input, &disparity);
-    shot->engine.places_edges = input_has_edges_placed(&shot->input, &settings->depth);
     scene.depth_edges = shot->engine.places_edges;
+    if (shot->full) {
+        disparity = refocus_disparity16(shot->full, image->width, image->height,
+                                        2 * (ptrdiff_t)image->width);
+        scene.depth_edges = REFOCUS_DEPTH_EDGES_AS_GIVEN;
+        scene.confidence = NULL;
+    }
     behind_add(&shot->behind, &scene);
-    report_progress("preparing", 0.15);
     shot->engine.has_matte = shot->input.matte.samples != NULL;
     shot->engine.behind = settings->behind.image != NULL;
+    shot->engine.deep = shot->input.deep.plane[0] != NULL;
+    shot->engine.light = shot->input.light;
+    shot->engine.params.render.dither =
+        depth.no_dither ? REFOCUS_DITHER_OFF : REFOCUS_DITHER_ORDERED;
     status = engine_create(&shot->engine, &settings->engine, image->width, image->height,
                            fmax(blur, most_blur));
     shot->engine.params.render.max_blur_radius = (float)blur;
@@ -114,15 +149,26 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     return status == EXIT_DONE ? choose_focus(shot, &settings->lens) : status;
 }
 
+void shot_rendered(struct shot *shot)
+{
+    interrupt_watch(NULL);
+    refocus_renderer_destroy(&shot->engine.renderer);
+    free(shot->full);
+    shot->full = NULL;
+}
+
 void shot_close(struct shot *shot)
 {
     engine_end(&shot->engine);
     behind_free(&shot->behind);
+    free(shot->full);
     input_free(&shot->input);
 }
 
-int shot_output(struct shot *shot, const double region[4], struct refocus_image *out)
+int shot_output(struct shot *shot, const double region[4], uint32_t format,
+                struct refocus_image *out)
 {
+    const int bytes = refocus_format_bytes(format);
     const struct refocus_image *photo = shot->input.photo->image;
     struct refocus_settings *params = &shot->engine.params;
     int width = photo->width, height = photo->height;
@@ -140,9 +186,9 @@ int shot_output(struct shot *shot, const double region[4], struct refocus_image 
         params->render.region_width = width = (int32_t)region[2];
         params->render.region_height = height = (int32_t)region[3];
     }
-    *out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, (ptrdiff_t)width * 3);
-    if ((uint64_t)width * 3 * (uint64_t)height <= SIZE_MAX)
-        out->plane[0] = malloc((size_t)width * 3 * (size_t)height);
+    *out = refocus_image_packed(format, NULL, width, height, (ptrdiff_t)width * bytes);
+    if ((uint64_t)width * (uint64_t)bytes * (uint64_t)height <= SIZE_MAX)
+        out->plane[0] = malloc((size_t)width * (size_t)bytes * (size_t)height);
     if (!out->plane[0])
         return report_failure(EXIT_FAILED, shot->input.photo_name,
                               "not enough memory for %dx%d pixels", width, height);

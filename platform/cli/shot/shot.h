@@ -5,6 +5,7 @@
 #include "inputs/behind.h"
 #include "inputs/inputs.h"
 #include "inputs/lens.h"
+#include "settings/config.h"
 #include "settings/settings.h"
 #include "shot/engine.h"
 
@@ -14,7 +15,8 @@ struct shot_settings {
     struct behind_settings behind;
     struct lens_settings lens;
     struct engine_settings engine;
-    const char *load, *save; /* files of settings, or NULL */
+    const char *load, *save;     /* files of settings, or NULL */
+    const char *config, *preset; /* parts of the configuration, or NULL */
 };
 
 #define SHOT_SETTINGS_NONE                                                                         \
@@ -26,8 +28,10 @@ struct shot_settings {
 /* Rows of tables of options, for settings with a member of that type. */
 #define SHOT_DEPTH_OPTIONS(type, member)                                                           \
     DEPTH_FILE_OPTION(type, member.depth), DEPTH_UNIT_OPTIONS(type, member.depth),                 \
-        REPAIR_OPTIONS(type, member.depth), DEPTH_EDGES_OPTION(type, member.depth),                \
-        MATTE_OPTION(type, member.depth)
+        DEPTH_WAYS_OPTIONS(type, member.depth), REPAIR_OPTIONS(type, member.depth),                \
+        UPSAMPLE_OPTION(type, member.depth), DEPTH_EDGES_OPTION(type, member.depth),               \
+        ORIENT_DEPTH_OPTION(type, member.depth), MATTE_OPTION(type, member.depth),                 \
+        LIMIT_OPTIONS(type, member.depth.limits)
 #define SHOT_LENS_OPTIONS(type, member)                                                            \
     {.kind = OPTION_HEADING, .help = "Focus and blur"}, FOCUS_OPTIONS(type, member.lens),          \
         LENS_OPTIONS(type, member.lens), CONTROL_OPTIONS(type, member.engine.controls),            \
@@ -40,6 +44,7 @@ struct shot_settings {
 
 struct shot {
     struct input input;
+    uint16_t *full; /* disparities of the photo's size that are rendered in strips, or NULL */
     struct behind behind;
     struct engine engine;
 };
@@ -53,7 +58,7 @@ int shot_check(struct shot_settings *settings, bool own_focus);
 
 /* The files that a picture is made of, some of which may be NULL, and their number: for
  * checks that none of them is written over. */
-enum { SHOT_INPUTS = 10 };
+enum { SHOT_INPUTS = 13 };
 int shot_inputs(const struct shot_settings *settings, const char *photo,
                 const char *inputs[SHOT_INPUTS]);
 
@@ -63,6 +68,9 @@ int shot_aim(const struct input *input, const struct lens_settings *lens,
              const struct controls *controls, const uint16_t *disparity,
              struct refocus_settings *params);
 
+/* Give back what no picture needs that was rendered; shot_close() is still to come. */
+void shot_rendered(struct shot *shot);
+
 /* most_blur: what the renderer is made for, where that is more than the settings' blur;
  * 0: that. Ended by shot_close(), whatever it returned. */
 int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings,
@@ -71,6 +79,7 @@ void shot_close(struct shot *shot);
 
 /* A picture to render into, of the whole photo or, where region[0] is not NAN, of X, Y,
  * width and height in it; plane[0] is to be freed. */
-int shot_output(struct shot *shot, const double region[4], struct refocus_image *out);
+int shot_output(struct shot *shot, const double region[4], uint32_t format,
+                struct refocus_image *out);
 
 #endif

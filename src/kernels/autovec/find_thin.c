@@ -2,6 +2,7 @@
  * what parts. */
 #include "kernels/autovec/thin_parts.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* Weights of what is hit, by steps less one, for each of the two kinds of directions. */
@@ -64,10 +65,17 @@ static bool is_bright(const struct rf_thin_batch *b, const struct rf_thin_mixtur
     return false;
 }
 
+/* Memory that is too large for the stack. */
+struct share {
+    struct rf_thin_window window;
+    struct rf_thin_taps taps[BATCH];
+};
+static_assert(sizeof(struct share) <= RF_THIN_SHARE, "it fits the memory of callers");
+
 /* Writes the mixtures among the batch: pixels of something thin, or beside it and mixed. The
  * batch is empty afterwards. */
 static int separate(struct rf_thin *out, int most, struct rf_thin_batch *b,
-                    const struct rf_thin_tile *t, const struct rf_thin_window *w)
+                    const struct rf_thin_tile *t, struct share *share)
 {
     struct rf_thin_mixture m;
     int count = 0;
@@ -75,7 +83,7 @@ static int separate(struct rf_thin *out, int most, struct rf_thin_batch *b,
     if (b->count == 0)
         return 0;
     RF_VEC(rf_thin_far)(&m, b);
-    RF_VEC(rf_thin_near)(&m, b, t, w);
+    RF_VEC(rf_thin_near)(&m, b, t, &share->window, share->taps);
     for (int k = 0; k < b->count && count < most; k++) {
         const bool kept = b->kept[k], mixed = m.mixed[k];
 
@@ -94,15 +102,17 @@ static int separate(struct rf_thin *out, int most, struct rf_thin_batch *b,
     return count;
 }
 
-int RF_VEC(rf_find_thin)(struct rf_thin *out, const struct rf_thin_tile *tile, int most)
+int RF_VEC(rf_find_thin)(struct rf_thin *out, const struct rf_thin_tile *tile, int most,
+                         void *memory)
 {
     const int rows = clamp(tile->below, 0, RF_TILE), columns = clamp(tile->right, 0, RF_TILE);
-    struct rf_thin_window w;
+    struct share *const share = memory;
+    struct rf_thin_window *const w = &share->window;
     struct places places;
     struct rf_thin_batch batch;
     int count = 0;
 
-    if (!RF_VEC(rf_thin_window)(&w, tile))
+    if (!RF_VEC(rf_thin_window)(w, tile))
         return 0;
     find_places(places.window, ROW);
     find_places(places.tile, tile->stride);
@@ -110,13 +120,13 @@ int RF_VEC(rf_find_thin)(struct rf_thin *out, const struct rf_thin_tile *tile, i
     for (int y = 0; y < rows; y++) {
         struct rf_thin_row row;
 
-        unsigned look = RF_VEC(rf_thin_row)(&row, &w, y, columns);
+        unsigned look = RF_VEC(rf_thin_row)(&row, w, y, columns);
 
         for (; look; look &= look - 1) {
-            add_pixel(&batch, &row, tile, &w, &places, __builtin_ctz(look), y);
+            add_pixel(&batch, &row, tile, w, &places, __builtin_ctz(look), y);
             if (batch.count == BATCH)
-                count += separate(out + count, most - count, &batch, tile, &w);
+                count += separate(out + count, most - count, &batch, tile, share);
         }
     }
-    return count + separate(out + count, most - count, &batch, tile, &w);
+    return count + separate(out + count, most - count, &batch, tile, share);
 }

@@ -3,10 +3,10 @@
 
 #include <math.h>
 
-void RF_VEC(rf_half_chords)(int16_t *restrict half, int radius, int first, int tall)
+void RF_VEC(rf_half_chords)(int16_t *restrict half, int radius, int first, int tall, int unit)
 {
     const float r = (float)radius * (1 / 256.0f), square = r * r;
-    const float scale = 32 / (float)tall;
+    const float scale = (float)(32 >> unit) / (float)tall;
     float sum[RF_TILE];
 
     for (int y = 0; y < RF_TILE; y++)

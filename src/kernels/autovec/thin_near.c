@@ -4,14 +4,9 @@
 
 #include <string.h>
 
-/* The near pixels around one, TAPS of them; others are 0. */
-enum { TAPS = 32 };
+enum { TAPS = RF_THIN_TAPS };
 
-struct taps {
-    uint16_t near[TAPS], light[3][TAPS];
-};
-
-static void gather(struct taps *taps, const struct rf_thin_batch *b, int k,
+static void gather(struct rf_thin_taps *taps, const struct rf_thin_batch *b, int k,
                    const struct rf_thin_tile *t, const struct rf_thin_window *w)
 {
     const int x = b->at[k] % RF_TILE, y = b->at[k] / RF_TILE;
@@ -43,7 +38,7 @@ static inline int32_t dot(const int16_t *restrict weight, const uint16_t *restri
     return sum;
 }
 
-static void add_taps(struct sums *restrict sums, int k, const struct taps *restrict taps,
+static void add_taps(struct sums *restrict sums, int k, const struct rf_thin_taps *restrict taps,
                      uint16_t level, const uint16_t far_light[3])
 {
     const uint16_t red = far_light[0], green = far_light[1], blue = far_light[2];
@@ -75,7 +70,7 @@ static void add_taps(struct sums *restrict sums, int k, const struct taps *restr
 }
 
 /* Whether N may be too bright for a mixture. */
-static bool may_be_bright(const struct taps *taps)
+static bool may_be_bright(const struct rf_thin_taps *taps)
 {
     uint16_t most = 0;
 
@@ -88,9 +83,9 @@ static bool may_be_bright(const struct taps *taps)
 /* N, and the nearest disparity of it. What is kept and not mixed needs only the latter,
  * and whether N is too bright. */
 static void set_near(struct rf_thin_mixture *m, const struct rf_thin_batch *b,
-                     const struct rf_thin_tile *t, const struct rf_thin_window *w)
+                     const struct rf_thin_tile *t, const struct rf_thin_window *w,
+                     struct rf_thin_taps *taps)
 {
-    struct taps taps[BATCH];
     struct sums sums;
     uint8_t wanted[BATCH];
     int count = 0;
@@ -197,8 +192,9 @@ static void set_alpha(struct rf_thin_mixture *m, const struct rf_thin_batch *b)
 }
 
 void RF_VEC(rf_thin_near)(struct rf_thin_mixture *m, const struct rf_thin_batch *b,
-                          const struct rf_thin_tile *t, const struct rf_thin_window *w)
+                          const struct rf_thin_tile *t, const struct rf_thin_window *w,
+                          struct rf_thin_taps *taps)
 {
-    set_near(m, b, t, w);
+    set_near(m, b, t, w, taps);
     set_alpha(m, b);
 }

@@ -92,6 +92,13 @@ struct rf_thin_mixture {
     int32_t alpha[BATCH];
 };
 
+/* The near pixels around one, RF_THIN_TAPS of them; others are 0. */
+enum { RF_THIN_TAPS = 32 };
+
+struct rf_thin_taps {
+    uint16_t near[RF_THIN_TAPS], light[3][RF_THIN_TAPS];
+};
+
 /* False: there is nothing to find in this tile. */
 bool RF_VEC(rf_thin_window)(struct rf_thin_window *w, const struct rf_thin_tile *t);
 
@@ -102,8 +109,9 @@ unsigned RF_VEC(rf_thin_row)(struct rf_thin_row *row, const struct rf_thin_windo
 /* F, and what is mixed; weights are left of what is of F's surface. */
 void RF_VEC(rf_thin_far)(struct rf_thin_mixture *m, struct rf_thin_batch *b);
 
-/* N, as far as it is needed, and alpha. */
+/* N, as far as it is needed, and alpha; `taps` is memory for a batch of them. */
 void RF_VEC(rf_thin_near)(struct rf_thin_mixture *m, const struct rf_thin_batch *b,
-                          const struct rf_thin_tile *t, const struct rf_thin_window *w);
+                          const struct rf_thin_tile *t, const struct rf_thin_window *w,
+                          struct rf_thin_taps *taps);
 
 #endif

@@ -235,16 +235,18 @@ static const struct refocus_disparity *take_matte(struct input *in, int any,
     return &matte;
 }
 
-static void use(struct input *in, struct refocus_renderer *renderer, float most, int wild)
+/* `deep`: photos have more than 8 bits, and may be rendered into any format. */
+static void use(struct input *in, struct refocus_renderer *renderer, float most, int wild, int deep)
 {
-    enum { CAPACITY = 4 * MAX_SIDE * MAX_SIDE + 2 * GUARD };
-    static uint8_t photo[4 * MAX_SIDE * MAX_SIDE], out[2][CAPACITY];
+    enum { CAPACITY = 16 * MAX_SIDE * MAX_SIDE + 2 * GUARD };
+    static uint8_t photo[16 * MAX_SIDE * MAX_SIDE], out[2][CAPACITY];
     static uint16_t disparity[MAX_SIDE * MAX_SIDE], view[MAX_SIDE * MAX_SIDE];
     static uint16_t farther[MAX_SIDE * MAX_SIDE];
     const int width = take_in(in, 0, 1, MAX_SIDE), height = take_in(in, 0, 1, MAX_SIDE);
-    const uint32_t kind = take(in, 1), out_format = 1 + take(in, 1) % 8;
+    const uint32_t kind = take(in, 1), out_format = 1 + take(in, 1) % (deep ? 16 : 8);
     const uint32_t format =
-        1 + kind % 8; /* bits 3 and 4: matrix and range; 5: edges; 6, 7: matte */
+        deep ? 9 + kind % 8
+             : 1 + kind % 8; /* bits 3 and 4: matrix and range; 5: edges; 6, 7: matte */
     const int bits = take(in, 1) & 1 ? 16 : 8;
     const int dw = take_in(in, 0, 1, MAX_SIDE), dh = take_in(in, 0, 1, MAX_SIDE);
     const uint32_t shape = take(in, 1); /* bit 1: there is something behind; bit 2: texture */
@@ -261,6 +263,10 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
 
     image.matrix = kind >> 3 & 1;
     image.range = kind >> 4 & 1;
+    if (deep) {
+        image.transfer = (kind >> 3 & 7) % 7;
+        image.white = shape >> 3 & 1 ? 0.3f : 0;
+    }
     for (int i = 0; i < refocus_format_planes(format); i++) { /* bottom-up */
         image.plane[i] += image.stride[i] * (refocus_plane_rows(format, i, height) - 1);
         image.stride[i] = -image.stride[i];
@@ -316,13 +322,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     limits.thin = flags >> 2 & 1;
     limits.behind = flags >> 3 & 1;
     limits.textured = flags >> 4 & 1;
+    limits.deep = flags >> 5 & 1;
     status = refocus_renderer_create(&renderer, &limits);
     check((status == REFOCUS_OK) == (renderer != NULL));
     check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT || status == REFOCUS_ERR_SIZE ||
           status == REFOCUS_ERR_THREAD);
     check((status == REFOCUS_ERR_ARGUMENT) == (refocus_renderer_memory(&limits) == 0));
     for (int i = 0; i < 2 && renderer; i++)
-        use(&in, renderer, limits.max_blur_radius, wild);
+        use(&in, renderer, limits.max_blur_radius, wild, flags >> 5 & 1);
     refocus_renderer_destroy(&renderer);
     return 0;
 }

@@ -7,12 +7,14 @@
 
 #include "base64.h"
 #include "convert.h"
+#include "dynamic.h"
 #include "exif.h"
 #include "format.h"
 #include "gdepth.h"
 #include "heif_boxes.h"
 #include "mpf.h"
 #include "number.h"
+#include "read.h"
 #include "xmp_extended.h"
 #include "xmp_parse.h"
 
@@ -32,7 +34,7 @@ struct fuzz_reading {
 static inline void fuzz_begin(struct fuzz_reading *reading)
 {
     memset(reading, 0, sizeof *reading);
-    reading->read.limits = fuzz_limits;
+    rf_read_limits(&reading->read.limits, &fuzz_limits, &reading->reason); /* fills in the zeros */
     reading->read.reason = &reading->reason;
     reading->read.info = &reading->info;
     reading->read.picture_always = true;
@@ -42,9 +44,13 @@ static inline void fuzz_begin(struct fuzz_reading *reading)
 static inline void fuzz_end(struct fuzz_reading *reading)
 {
     rf_raster_free(&reading->read.image);
+    rf_raster_free(&reading->read.deep);
     rf_raster_free(&reading->read.samples);
+    rf_raster_free(&reading->read.confidence);
+    rf_raster_free(&reading->read.matte);
     free(reading->read.exif.data);
     free(reading->read.icc.data);
+    free(reading->read.kept.bytes.data);
 }
 
 /* Checks the promises that the caller may rely on; reads every byte, for the sanitizers. */
@@ -74,6 +80,17 @@ static inline void fuzz_check_photo(const struct refocus_photo *photo)
         if (photo->info->depth_source == REFOCUS_DEPTH_SOURCE_NONE ||
             !(photo->depth->near_m >= 0.0) || !(photo->depth->far_m >= 0.0)) {
             abort();
+        }
+    }
+    if (photo->matte->samples) {
+        const uint8_t *const samples = photo->matte->samples;
+        for (int32_t i = 0; i < photo->matte->height * (int32_t)photo->matte->stride; i++) {
+            sum += samples[i];
+        }
+    }
+    if (photo->confidence) {
+        for (int32_t i = 0; i < photo->depth->width * photo->depth->height; i++) {
+            sum += photo->confidence[i];
         }
     }
     for (size_t i = 0; i < photo->exif.size; i++) {

@@ -1,6 +1,32 @@
 /* fuzz_exif.c: any bytes as EXIF. Parsing is idempotent: a block that was made upright stays as
  * it is. */
+#include "exif_copy.h"
 #include "fuzz.h"
+
+/* A block that was made of a TIFF is one itself, of which no more is made. */
+static void check_copies(struct rf_bytes tiff)
+{
+    uint8_t *const copy = malloc(RF_EXIF_COPY_ROOM), *const again = malloc(RF_EXIF_COPY_ROOM);
+    const size_t size = rf_exif_of_tiff(tiff, copy);
+    char text[64];
+
+    if (size > RF_EXIF_COPY_ROOM) {
+        abort();
+    }
+    if (size > 0) {
+        const size_t smaller = rf_exif_of_tiff((struct rf_bytes){copy, size}, again);
+
+        if (smaller == 0 || smaller > size) {
+            abort();
+        }
+    }
+    if (rf_exif_directory(tiff, 0x8769, 8, again) > RF_EXIF_COPY_ROOM ||
+        (rf_exif_text(tiff, 0x10f, text, sizeof text) && strlen(text) >= sizeof text)) {
+        abort();
+    }
+    free(copy);
+    free(again);
+}
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
@@ -15,6 +41,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         memcpy(twice, once, size);
         rf_exif_parse(twice, size, &second);
     }
+    check_copies((struct rf_bytes){data, size});
     free(once);
     free(twice);
     return 0;

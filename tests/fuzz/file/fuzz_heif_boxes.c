@@ -1,4 +1,5 @@
-/* fuzz_heif_boxes.c: any bytes as the boxes of a HEIF file that tell its orientation. */
+/* fuzz_heif_boxes.c: any bytes as the boxes of a HEIF file that are looked at beside
+ * libheif. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -11,5 +12,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             abort();
         }
     }
+    rf_heif_is_sequence(file);
     return 0;
 }

@@ -3,7 +3,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    struct rf_xmp xmp = {{NULL}, {0}};
+    struct rf_xmp xmp = {.items = 0};
     struct fuzz_reading reading;
 
     fuzz_begin(&reading);

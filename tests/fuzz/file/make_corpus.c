@@ -1,5 +1,6 @@
 /* make_corpus.c: writes the seeds: make_corpus tests/fuzz/file/corpus. Run it after a change of
  * make.c; it needs a build with all formats. */
+#include "make_formats.h"
 #include "samples.h"
 
 #include <stdio.h>
@@ -76,6 +77,19 @@ static void seed_mpf(void)
     }
 }
 
+static void seed_gain_map(void)
+{
+    static const int32_t values[] = {0,    3000, -1000, 1000, 1000, 16,   16, 0, 2000,
+                                     1000, 16,   16,    0,    3000, 1000, 16, 16};
+
+    for (int channels = 1; channels <= 3; channels += 2) {
+        struct bytes iso = make_gain_iso(channels, values);
+
+        seed("gain_map", channels == 1 ? "grey" : "colour", iso.data, iso.size);
+        bytes_free(&iso);
+    }
+}
+
 static void seed_heif_boxes(void)
 {
     static const struct heif_property both[] = {{"irot", 1}, {"imir", 0}};
@@ -115,6 +129,77 @@ static void seed_xmp(void)
     seed("xmp", "elements", apple, sizeof apple - 1);
 }
 
+/* A packet, a zero, and the pictures that it names. */
+static void seed_dynamic(void)
+{
+    for (int plain = 0; plain < 2; plain++) {
+        struct dynamic dynamic = {.plain = plain,
+                                  .map = "DepthMap:Format=\"RangeLinear\" DepthMap:Near=\"1\" "
+                                         "DepthMap:Far=\"4\" DepthMap:Units=\"Meters\"",
+                                  .depth = make_png(2, 2, 0, 8),
+                                  .confidence = make_png(2, 2, 0, 16),
+                                  .original = make_png(2, 2, 2, 8)};
+        struct bytes file = make_dynamic_xmp(&dynamic);
+
+        bytes_add(&file, "", 1);
+        bytes_join(&file, dynamic.original);
+        bytes_join(&file, dynamic.depth);
+        bytes_join(&file, dynamic.confidence);
+        seed("dynamic", plain ? "plain" : "cameras", file.data, file.size);
+        bytes_free(&file);
+    }
+}
+
+/* Seeds of WebP and JPEG XL were made by libwebp and libjxl in test_formats.c. */
+static void seed_formats(void)
+{
+    static const struct {
+        const char *name;
+        struct tiff_kind kind;
+    } kinds[] = {{"rgb8", {.bits = 8, .channels = 3, .photometric = 2, .orientation = 6}},
+                 {"planar16", {.bits = 16, .channels = 3, .photometric = 2, .planar = true}},
+                 {"float", {.bits = 32, .channels = 1, .photometric = 1, .floats = true}},
+                 {"palette", {.bits = 8, .channels = 1, .photometric = 3}},
+                 {"ycbcr", {.bits = 8, .channels = 3, .photometric = 6, .big_endian = true}}};
+    const struct bytes none = {NULL, 0};
+
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        struct bytes file = make_tiff(5, 4, kinds[i].kind);
+
+        seed("tiff", kinds[i].name, file.data, file.size);
+        bytes_free(&file);
+    }
+    for (int layers = 0; layers < 2; layers++) {
+        struct bytes file = make_exr(5, 4, layers ? "a.B a.G a.R depth.Z" : "Y", -2, layers);
+
+        seed("openexr", layers ? "layers" : "grey", file.data, file.size);
+        bytes_free(&file);
+    }
+    for (int preview = 0; preview < 2; preview++) {
+        struct bytes file =
+            make_dng(32, 24, 20000, preview ? make_jpeg(16, 16, false, false) : none);
+
+        seed("raw", preview ? "preview" : "plain", file.data, file.size);
+        if (preview) {
+            seed("photo", "preview.dng", file.data, file.size);
+        }
+        bytes_free(&file);
+    }
+}
+
+static void seed_trailer(void)
+{
+    for (int i = 0; i < 2; i++) {
+        struct bytes file = i ? make_huawei(6, 4, false) : make_samsung(32, 6, 4, false, true);
+        struct bytes main_picture = make_jpeg(64, 32, false, false);
+
+        seed("trailer", i ? "huawei" : "samsung", file.data + main_picture.size,
+             file.size - main_picture.size);
+        bytes_free(&main_picture);
+        bytes_free(&file);
+    }
+}
+
 int main(int count, char **arguments)
 {
     if (count != 2) {
@@ -126,8 +211,12 @@ int main(int count, char **arguments)
     seed_samples();
     seed_exif();
     seed_mpf();
+    seed_gain_map();
     seed_heif_boxes();
     seed_xmp();
+    seed_dynamic();
+    seed_formats();
+    seed_trailer();
     seed_text("number", "decimal", " -12.5e-3 ");
     seed_text("number", "long", "123456789012345678901234567890.000000000000000000001");
     seed_text("number", "base64", "QUJD RA==");

@@ -6,6 +6,9 @@
 #include <refocus/platform/file.h>
 #include "layout.h"
 #include "rgb_to_yuv.h"
+#ifdef RF_HAVE_JPEG
+#include <turbojpeg.h>
+#endif
 
 static uint32_t seed = 1;
 
@@ -332,6 +335,98 @@ static void jpegs_are_decoded_or_refused(void **state)
     assert_memory_equal(got->plane[0], bytes, (size_t)got->bytes);
     refocus_source_close(&source);
 }
+
+/* A JPEG picture whose samples are slopes; Y is 4 x + y, and so on, which is met within 2. */
+static void encode(struct refocus_frame *frame, int subsampling, int width, int height)
+{
+    static uint8_t codes[3][64 * 64];
+    static unsigned char jpeg[65536];
+    unsigned char *to = jpeg;
+    unsigned long bytes = sizeof jpeg;
+    const unsigned char *plane[3] = {codes[0], codes[1], codes[2]};
+    const int strides[3] = {64, 64, 64};
+    tjhandle handle = tjInitCompress();
+
+    for (int i = 0; i < 3; i++)
+        for (int y = 0; y < 64; y++)
+            for (int x = 0; x < 64; x++)
+                codes[i][64 * y + x] = (uint8_t)(i == 0 ? 4 * x + y : 100 + 20 * i + x + 2 * y);
+    assert_non_null(handle);
+    assert_int_equal(tjCompressFromYUVPlanes(handle, plane, width, strides, height, subsampling,
+                                             &to, &bytes, 100, TJFLAG_NOREALLOC),
+                     0);
+    tjDestroy(handle);
+    *frame = refocus_frame_default();
+    frame->format = REFOCUS_FRAME_MJPEG;
+    frame->width = width;
+    frame->height = height;
+    frame->plane[0] = jpeg;
+    frame->bytes = bytes;
+}
+
+static void check_jpeg_yuv(struct refocus_converter *converter, int subsampling, int width,
+                           int height, uint32_t format)
+{
+    static uint8_t codes[64 * 64 * 2 + PAD];
+    const int down = subsampling == TJSAMP_420 ? 1 : 0;
+    struct refocus_frame frame;
+    struct refocus_image image = refocus_image_planar(format, codes, width, height);
+    const size_t bytes = refocus_image_bytes(format, width, height);
+
+    encode(&frame, subsampling, width, height);
+    assert_int_equal(refocus_convert_image_format(converter, &frame), format);
+    memset(codes, 0xa5, sizeof codes);
+    image.matrix = REFOCUS_MATRIX_BT709;
+    assert_status(refocus_convert_copy(converter, &frame, &image, NULL), REFOCUS_OK);
+    assert_int_equal(image.matrix, REFOCUS_MATRIX_BT601);
+    assert_int_equal(image.range, REFOCUS_RANGE_FULL);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const uint8_t *row = codes + image.stride[0] * y;
+            const int luma = down ? row[x] : row[2 * x];
+
+            assert_true(abs(luma - (4 * x + y)) <= 2);
+            for (int i = 1; i < 3; i++) {
+                const int code = down ? image.plane[i][image.stride[i] * (y / 2) + x / 2]
+                                      : row[x / 2 * 4 + 2 * i - 1];
+
+                assert_true(abs(code - (100 + 20 * i + x / 2 + 2 * (y >> down))) <= 2);
+            }
+        }
+    for (int i = 0; i < PAD; i++)
+        assert_int_equal(codes[bytes + (size_t)i], 0xa5);
+    frame.bytes -= 20;
+    assert_status(refocus_convert_copy(converter, &frame, &image, NULL), REFOCUS_ERR_FORMAT);
+}
+
+static void jpegs_keep_their_samples(void **state)
+{
+    static const int none[][3] = {{TJSAMP_444, 32, 16}, {TJSAMP_GRAY, 32, 16},
+                                  {TJSAMP_420, 31, 16}, {TJSAMP_420, 32, 15},
+                                  {TJSAMP_422, 31, 16}, {TJSAMP_440, 32, 16}};
+    struct refocus_converter *converter = NULL;
+    struct refocus_frame frame;
+
+    (void)state;
+    assert_status(refocus_converter_create(&converter), REFOCUS_OK);
+    /* Sides that are no whole number of blocks, and planes that get larger. */
+    check_jpeg_yuv(converter, TJSAMP_420, 32, 16, REFOCUS_FORMAT_I420);
+    check_jpeg_yuv(converter, TJSAMP_420, 38, 22, REFOCUS_FORMAT_I420);
+    check_jpeg_yuv(converter, TJSAMP_422, 32, 16, REFOCUS_FORMAT_YUYV);
+    check_jpeg_yuv(converter, TJSAMP_422, 38, 21, REFOCUS_FORMAT_YUYV);
+    for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
+        encode(&frame, none[i][0], none[i][1], none[i][2]);
+        assert_int_equal(refocus_convert_image_format(converter, &frame), REFOCUS_FORMAT_NONE);
+    }
+    encode(&frame, TJSAMP_420, 32, 16);
+    frame.width = 16; /* The picture says another size. */
+    assert_int_equal(refocus_convert_image_format(converter, &frame), REFOCUS_FORMAT_NONE);
+    frame.bytes = 0;
+    assert_int_equal(refocus_convert_image_format(converter, &frame), REFOCUS_FORMAT_NONE);
+    frame.plane[0] = NULL;
+    assert_int_equal(refocus_convert_image_format(converter, &frame), REFOCUS_FORMAT_NONE);
+    refocus_converter_destroy(&converter);
+}
 #endif
 
 /* Registration ---------------------------------------------------------------------------- */
@@ -411,6 +506,7 @@ int main(void)
         cmocka_unit_test(encoding_comes_back),
 #ifdef RF_HAVE_JPEG
         cmocka_unit_test(jpegs_are_decoded_or_refused),
+        cmocka_unit_test(jpegs_keep_their_samples),
 #endif
         cmocka_unit_test(registering_onto_itself_is_nothing),
         cmocka_unit_test(registering_shifts_near_things_more),

@@ -22,12 +22,17 @@ static bool is_half(ptrdiff_t stride)
 static void sources_of_nothing(void **state)
 {
     const struct refocus_source_counters zeros = refocus_source_counters_default();
+    struct refocus_source_lens lens = refocus_source_lens_default();
     struct refocus_source_counters counters;
     struct refocus_source *source = NULL;
     struct refocus_source_mode mode = refocus_source_mode_default();
     const struct refocus_frame *frame;
 
+    const struct refocus_source_config config = refocus_source_config_default();
+
     (void)state;
+    assert_string_not_equal(refocus_source_backends(), "");
+    assert_int_equal(config.struct_size, sizeof config);
     memset(&counters, 7, sizeof counters);
     counters.struct_size = sizeof counters;
     refocus_source_get_counters(NULL, &counters);
@@ -40,6 +45,9 @@ static void sources_of_nothing(void **state)
     assert_status(refocus_source_restart(NULL, NULL, NULL), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_source_wait(NULL, 0, &frame, NULL), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_source_set_control(NULL, "focus", 1, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_get_lens(NULL, &lens, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_set_focus(NULL, 0, 1, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_lock_exposure(NULL, 1, NULL), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_source_list(NULL, NULL), REFOCUS_ERR_ARGUMENT);
     refocus_source_close(NULL);
     refocus_source_close(&source);
@@ -57,6 +65,8 @@ static void sources_of_nothing(void **state)
     assert_status(refocus_source_get_mode(source, -1, &mode), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_source_wait(source, 0, NULL, NULL), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_source_set_control(source, NULL, 1, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_get_lens(source, NULL, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_set_focus(source, UINT32_MAX, 1, NULL), REFOCUS_ERR_ARGUMENT);
     for (int i = 0; i < 3; i++)
         assert_status(refocus_source_set_control(
                           source, "focus", (double[]){(double)NAN, 1e300, -INFINITY}[i], NULL),
@@ -176,6 +186,9 @@ static void converters_of_nothing(void **state)
     assert_status(refocus_convert_copy(converter, NULL, &rgb, NULL), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_convert_samples(converter, NULL, samples, NULL), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_frame_image_format(UINT32_MAX), REFOCUS_FORMAT_NONE);
+    assert_int_equal(refocus_convert_image_format(NULL, &frame), REFOCUS_FORMAT_NONE);
+    assert_int_equal(refocus_convert_image_format(converter, NULL), REFOCUS_FORMAT_NONE);
+    assert_int_equal(refocus_convert_image_format(converter, &frame), REFOCUS_FORMAT_NV12);
     for (uint32_t format = 1; format < REFOCUS_FRAME_FORMAT_COUNT; format++) {
         const uint32_t own = refocus_frame_image_format(format);
         struct refocus_image copy =

@@ -2,6 +2,7 @@
  * them. */
 #include "check.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <time.h>
 
@@ -323,6 +324,102 @@ static void faults_lose_no_buffer(void **state)
     refocus_source_close(&source);
 }
 
+/* Pictures lens-0.ppm to lens-2.ppm, each of one colour. */
+static void write_stack(void)
+{
+    for (int k = 0; k < 3; k++) {
+        char name[16];
+        FILE *file;
+
+        snprintf(name, sizeof name, "lens-%d.ppm", k);
+        file = fopen(name, "wb");
+        assert_non_null(file);
+        fprintf(file, "P6\n16 16\n255\n");
+        for (int i = 0; i < 3 * 16 * 16; i++)
+            fputc(100 * k, file);
+        assert_int_equal(fclose(file), 0);
+    }
+}
+
+/* Takes a frame; returns the number of its picture. */
+static int look(struct refocus_source *source, double *position)
+{
+    struct refocus_source_lens lens = refocus_source_lens_default();
+    const struct refocus_frame *frame = next(source);
+    const int picture = frame->plane[0][0] / 100;
+    const double reported = (double)frame->lens_dioptres;
+
+    refocus_source_release(source, frame);
+    assert_status(refocus_source_get_lens(source, &lens, NULL), REFOCUS_OK);
+    assert_true(fabs(lens.position - reported) < 1e-6);
+    *position = lens.position;
+    return picture;
+}
+
+#define LENS_SCRIPT "replay::stack lens-%d.ppm 3;lens 0 4;"
+
+static void a_lens_is_slow_sticks_and_errs(void **state)
+{
+    struct refocus_source_lens lens = refocus_source_lens_default();
+    struct refocus_reason reason;
+    struct refocus_source *source;
+    double position;
+
+    (void)state;
+    write_stack();
+    source =
+        started(LENS_SCRIPT "lens-speed 0.5;lens-stop 2.5;lens-error 0.25", REFOCUS_SOURCE_FAST);
+    assert_status(refocus_source_get_lens(source, &lens, &reason), REFOCUS_OK);
+    assert_int_equal(lens.modes, 7);
+    assert_true(lens.dioptres && lens.least == 0 && lens.greatest == 4 && isnan(lens.position));
+    assert_int_equal(look(source, &position), 0);
+    assert_true(position == 0.25);
+    assert_status(refocus_source_set_focus(source, REFOCUS_SOURCE_FOCUS_FIXED, 4, &reason),
+                  REFOCUS_OK);
+    for (int i = 1; i <= 8; i++) {
+        const double at = 0.5 * (i < 5 ? i : 5);
+
+        assert_int_equal(look(source, &position), at < 1 ? 0 : at < 3 ? 1 : 2);
+        assert_true(position == at + 0.25);
+    }
+    refocus_source_stop(source);
+    assert_status(refocus_source_start(source, NULL, NULL, &reason), REFOCUS_OK);
+    assert_int_equal(look(source, &position), 1);
+    for (int i = 0; i < 2; i++)
+        assert_status(refocus_source_set_focus(source, REFOCUS_SOURCE_FOCUS_FIXED,
+                                               (double[]){4.01, (double)NAN}[i], &reason),
+                      REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_set_focus(source, REFOCUS_SOURCE_FOCUS_COUNT, 1, &reason),
+                  REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_set_focus(source, REFOCUS_SOURCE_FOCUS_ONCE, 9, &reason),
+                  REFOCUS_OK);
+    assert_status(refocus_source_lock_exposure(source, 1, &reason), REFOCUS_OK);
+    refocus_source_close(&source);
+}
+
+static void no_lens_moves_without_one(void **state)
+{
+    struct refocus_source_lens lens = refocus_source_lens_default();
+    struct refocus_source *source = started("replay::size 16x12", REFOCUS_SOURCE_FAST);
+    struct refocus_reason reason;
+
+    (void)state;
+    assert_status(refocus_source_get_lens(source, &lens, NULL), REFOCUS_OK);
+    assert_int_equal(lens.modes, 0);
+    assert_status(refocus_source_set_focus(source, REFOCUS_SOURCE_FOCUS_FIXED, 0, &reason),
+                  REFOCUS_ERR_UNSUPPORTED);
+    assert_string_equal(reason.text, "its lens does not move");
+    refocus_source_close(&source);
+    assert_status(refocus_source_open(&source, "replay::stack lens-9%d.ppm 3", &reason),
+                  REFOCUS_ERR_GONE);
+    assert_status(refocus_source_open(&source, "replay::stack lens.ppm 3", &reason),
+                  REFOCUS_ERR_FORMAT);
+    assert_status(refocus_source_open(&source, "replay::lens 4 2", &reason), REFOCUS_ERR_FORMAT);
+    source = started("file:lens-%d.ppm", REFOCUS_SOURCE_FAST);
+    assert_status(refocus_source_lock_exposure(source, 1, &reason), REFOCUS_ERR_UNSUPPORTED);
+    refocus_source_close(&source);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -337,6 +434,8 @@ int main(void)
         cmocka_unit_test(another_thread_stops_it),
         cmocka_unit_test(opening_and_closing_leaks_nothing),
         cmocka_unit_test(faults_lose_no_buffer),
+        cmocka_unit_test(a_lens_is_slow_sticks_and_errs),
+        cmocka_unit_test(no_lens_moves_without_one),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

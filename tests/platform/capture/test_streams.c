@@ -155,26 +155,6 @@ static void wrong_names_are_refused(void **state)
     assert_status(refocus_source_open(NULL, "x", NULL), REFOCUS_ERR_ARGUMENT);
 }
 
-/* The reader of a pipe goes: a status, and no signal ends this program. */
-static void a_closed_pipe_is_a_status(void **state)
-{
-    struct refocus_sink *sink = NULL;
-    const struct refocus_image image = picture(0);
-    char name[64];
-    int ends[2];
-
-    (void)state;
-    assert_int_equal(pipe(ends), 0);
-    snprintf(name, sizeof name, "raw:/proc/self/fd/%d", ends[1]);
-    assert_status(refocus_sink_open(&sink, name, NULL), REFOCUS_OK);
-    assert_status(refocus_sink_start(sink, WIDTH, HEIGHT, 25, NULL), REFOCUS_OK);
-    assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_OK);
-    close(ends[0]);
-    assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_ERR_GONE);
-    assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
-    close(ends[1]);
-}
-
 /* Sample i of pixel (x, y) of a picture of Y, U and V. */
 static uint8_t *sample_of(const struct refocus_image *p, int i, int x, int y)
 {
@@ -537,17 +517,11 @@ static void replay_replays(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(streams_come_back),
-        cmocka_unit_test(pictures_come_back),
-        cmocka_unit_test(damage_is_named),
-        cmocka_unit_test(wrong_names_are_refused),
-        cmocka_unit_test(a_closed_pipe_is_a_status),
-        cmocka_unit_test(y4m_keeps_codes),
-        cmocka_unit_test(raw_keeps_codes),
-        cmocka_unit_test(raw_formats),
-        cmocka_unit_test(raw_of_other_samples),
-        cmocka_unit_test(y4m_422_comes_back),
-        cmocka_unit_test(sinks_refuse_what_is_wrong),
+        cmocka_unit_test(streams_come_back),  cmocka_unit_test(pictures_come_back),
+        cmocka_unit_test(damage_is_named),    cmocka_unit_test(wrong_names_are_refused),
+        cmocka_unit_test(y4m_keeps_codes),    cmocka_unit_test(raw_keeps_codes),
+        cmocka_unit_test(raw_formats),        cmocka_unit_test(raw_of_other_samples),
+        cmocka_unit_test(y4m_422_comes_back), cmocka_unit_test(sinks_refuse_what_is_wrong),
         cmocka_unit_test(replay_replays),
     };
 

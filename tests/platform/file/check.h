@@ -2,6 +2,7 @@
 #ifndef RF_TEST_CHECK_H
 #define RF_TEST_CHECK_H
 
+#include <dirent.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,6 +15,20 @@
 
 #include <refocus/platform/file.h>
 #include "make.h"
+
+/* Files and folders in one, "." and ".." counted. */
+static inline int entries(const char *path)
+{
+    DIR *const directory = opendir(path);
+    int n = 0;
+
+    assert_non_null(directory);
+    while (readdir(directory)) {
+        n++;
+    }
+    closedir(directory);
+    return n;
+}
 
 static inline void check_status(int status, int expected, const char *reason, const char *file,
                                 int line)

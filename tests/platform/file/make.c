@@ -303,6 +303,32 @@ struct bytes base64(const void *data, size_t size)
     return text;
 }
 
+struct bytes make_gain_xmp(const char *elements)
+{
+    struct bytes xmp = {NULL, 0};
+
+    bytes_text(&xmp, "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF xmlns:rdf="
+                     "\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"><rdf:Description "
+                     "xmlns:hdrgm=\"http://ns.adobe.com/hdr-gain-map/1.0/\" "
+                     "hdrgm:Version=\"1.0\">");
+    bytes_text(&xmp, elements);
+    bytes_text(&xmp, "</rdf:Description></rdf:RDF></x:xmpmeta>");
+    return xmp;
+}
+
+struct bytes make_gain_iso(int channels, const int32_t *values)
+{
+    struct bytes iso = {NULL, 0};
+
+    bytes_number(&iso, 0, 4, true);
+    bytes_number(&iso, channels == 3 ? 0xc0 : 0x40, 1, true);
+    for (int i = 0; i < 2 + 5 * channels; i++) {
+        bytes_number(&iso, (uint32_t)values[i], 4, true);
+        bytes_number(&iso, 1000, 4, true);
+    }
+    return iso;
+}
+
 struct bytes make_xmp(const char *attributes)
 {
     struct bytes xmp = {NULL, 0};

@@ -75,9 +75,34 @@ struct bytes make_gdepth(struct gdepth gdepth, int orientation);
 /* Make it with depth and original in an extended packet. */
 struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step, int skip);
 
+/* A phone's photo of 48 x 32 with Dynamic Depth, or with the directory of Ultra HDR, which names
+ * items by what they are. */
+struct dynamic {
+    bool plain;        /* the directory of Ultra HDR */
+    const char *map;   /* attributes of Camera:DepthMap; NULL: no Device */
+    size_t padding;    /* bytes behind the main picture and behind each item */
+    size_t between;    /* bytes of something else behind the main picture */
+    struct bytes gain; /* freed, as the others; empty: none */
+    struct bytes depth, confidence, original;
+};
+struct bytes make_dynamic(struct dynamic dynamic, int orientation);
+/* The packet of such a file alone. */
+struct bytes make_dynamic_xmp(const struct dynamic *dynamic);
+
 /* A JPEG with others behind it, as MPF lists them. Parts are freed. */
 struct bytes make_mpf(struct bytes main_jpeg, struct bytes *parts, int count, bool big_endian);
+/* The XMP of a gain map: its properties as elements, <hdrgm:Gamma>1</hdrgm:Gamma>... */
+struct bytes make_gain_xmp(const char *elements);
+/* ISO 21496-1: base and other headroom, then least, greatest, gamma and two offsets of each
+ * channel, in thousandths. */
+struct bytes make_gain_iso(int channels, const int32_t *values);
 /* A grey JPEG whose XMP says what it is. */
 struct bytes make_auxiliary(const char *type, const char *extra);
+
+/* A JPEG of 64 x 32 with a map of 6 x 4 in the trailer of Samsung or Huawei, which says these
+ * sides, Samsung's at that place; with an original of 60 x 30, and behind it a block of another
+ * kind. */
+struct bytes make_samsung(int mark_at, int width, int height, bool original, bool other_block);
+struct bytes make_huawei(int width, int height, bool original);
 
 #endif

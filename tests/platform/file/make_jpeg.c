@@ -159,6 +159,101 @@ struct bytes make_gdepth_extended(struct gdepth gdepth, size_t chunk, int step, 
     return jpeg;
 }
 
+static void add_item(struct bytes *text, const struct dynamic *dynamic, const char *semantic,
+                     const char *uri, size_t length)
+{
+    char item[256];
+
+    snprintf(item, sizeof item,
+             dynamic->plain ? "<rdf:li rdf:parseType=\"Resource\"><Container:Item Item:Mime=\"x\" "
+                              "Item:Semantic=\"%s\" Item:Length=\"%zu\" Item:Padding=\"%zu\"/>"
+                              "</rdf:li>"
+                            : "<rdf:li rdf:parseType=\"Resource\"><Item:DataURI>%s</Item:DataURI>"
+                              "<Item:Length>%zu</Item:Length><Item:Padding>%zu</Item:Padding>"
+                              "</rdf:li>",
+             dynamic->plain ? semantic : uri, length, dynamic->padding);
+    bytes_text(text, item);
+}
+
+struct bytes make_dynamic_xmp(const struct dynamic *dynamic)
+{
+    struct bytes text = {NULL, 0};
+
+    bytes_text(&text,
+               "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF "
+               "xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\"><rdf:Description ");
+#define DD "http://ns.google.com/photos/dd/1.0/"
+    bytes_text(&text, dynamic->plain
+                          ? "xmlns:Container=\"http://ns.google.com/photos/1.0/container/\" "
+                            "xmlns:Item=\"http://ns.google.com/photos/1.0/container/item/\" "
+                          : "xmlns:Container=\"" DD "container/\" xmlns:Item=\"" DD "item/\" ");
+    bytes_text(&text, "xmlns:Device=\"" DD "device/\" xmlns:Camera=\"" DD "camera/\" "
+                      "xmlns:Image=\"" DD "image/\" xmlns:DepthMap=\"" DD "depthmap/\">"
+                      "<Container:Directory><rdf:Seq>");
+    add_item(&text, dynamic, "Primary", "primary_image", 0);
+    if (dynamic->gain.data) {
+        add_item(&text, dynamic, "GainMap", "android/gainmap", dynamic->gain.size);
+    }
+    if (dynamic->original.data) {
+        add_item(&text, dynamic, "Original", "android/original_image", dynamic->original.size);
+    }
+    if (dynamic->depth.data) {
+        add_item(&text, dynamic, "Depth", "android/depthmap", dynamic->depth.size);
+    }
+    if (dynamic->confidence.data) {
+        add_item(&text, dynamic, "Confidence", "android/confidencemap", dynamic->confidence.size);
+    }
+    bytes_text(&text, "</rdf:Seq></Container:Directory>");
+    if (dynamic->map) {
+        bytes_text(&text,
+                   "<Device:Cameras><rdf:Seq><rdf:li><Device:Camera Camera:Trait=\"Physical\">");
+        if (dynamic->original.data) {
+            bytes_text(&text, "<Camera:Image Image:ItemSemantic=\"Original\" "
+                              "Image:ItemURI=\"android/original_image\"/>");
+        }
+        bytes_text(&text, "<Camera:DepthMap ");
+        bytes_text(&text, dynamic->map);
+        /* A second camera, of which nothing is taken. */
+        bytes_text(&text, "/></Device:Camera></rdf:li><rdf:li><Device:Camera>"
+                          "<Camera:DepthMap DepthMap:Near=\"7\" DepthMap:ConfidenceURI=\"x\"/>"
+                          "</Device:Camera></rdf:li></rdf:Seq></Device:Cameras>");
+    }
+    bytes_text(&text, "</rdf:Description></rdf:RDF></x:xmpmeta>");
+    return text;
+}
+
+static void add_zeros(struct bytes *file, size_t count)
+{
+    while (count-- > 0) {
+        bytes_add(file, "", 1);
+    }
+}
+
+static void add_behind(struct bytes *file, struct bytes part, size_t padding)
+{
+    if (part.data) {
+        bytes_join(file, part);
+        add_zeros(file, padding);
+    }
+}
+
+struct bytes make_dynamic(struct dynamic dynamic, int orientation)
+{
+    struct bytes jpeg = make_jpeg(48, 32, false, false), xmp = make_dynamic_xmp(&dynamic);
+
+    jpeg_insert_xmp(&jpeg, (const char *)xmp.data);
+    bytes_free(&xmp);
+    if (orientation) {
+        jpeg_insert_exif(&jpeg, make_exif(true, orientation));
+    }
+    add_zeros(&jpeg, dynamic.between + dynamic.padding);
+    add_behind(&jpeg, dynamic.gain, dynamic.padding);
+    add_behind(&jpeg, dynamic.original, dynamic.padding);
+    add_behind(&jpeg, dynamic.depth, dynamic.padding);
+    add_behind(&jpeg, dynamic.confidence, dynamic.padding);
+    return jpeg;
+}
+
 struct bytes make_mpf(struct bytes main_jpeg, struct bytes *parts, int count, bool big_endian)
 {
     const size_t entries = 16 * (size_t)(count + 1);

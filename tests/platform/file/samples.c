@@ -57,6 +57,10 @@ static void put_jpeg(struct sample *samples, int *count)
 
     jpeg_insert_exif(&jpeg, make_exif(true, 6));
     put(samples, count, "progressive.jpg", jpeg, true, false);
+    put(samples, count, "samsung.jpg", make_samsung(32, 6, 4, false, true), true, true);
+    samples[*count - 1].loose_end = true;
+    put(samples, count, "huawei.jpg", make_huawei(6, 4, false), true, true);
+    samples[*count - 1].loose_end = true;
     put(samples, count, "grey.jpg", make_jpeg(16, 16, true, false), true, true);
 }
 #endif
@@ -72,6 +76,18 @@ static void put_phone(struct sample *samples, int *count)
         make_auxiliary("disparity", "apdi:FloatMinValue=\"0.25\" apdi:FloatMaxValue=\"4\"")};
     const size_t last = parts[0].size + parts[1].size;
 
+    struct bytes map = make_jpeg(16, 16, false, false);
+    struct bytes xmp = make_gain_xmp("<hdrgm:GainMapMax>3</hdrgm:GainMapMax>"
+                                     "<hdrgm:HDRCapacityMax>3</hdrgm:HDRCapacityMax>");
+    struct bytes turned = make_jpeg(16, 16, false, false);
+    size_t map_size;
+
+    jpeg_insert_xmp(&map, (const char *)xmp.data);
+    bytes_free(&xmp);
+    map_size = map.size;
+    jpeg_insert_exif(&turned, make_exif(true, 6));
+    put(samples, count, "gain.jpg", make_mpf(turned, &map, 1, true), true, false);
+    samples[*count - 1].whole_at = samples[*count - 1].bytes.size - map_size;
     put(samples, count, "linear.jpg", make_gdepth(jpeg_depth, 8), true, true);
     put(samples, count, "apple.jpg", make_mpf(make_jpeg(16, 16, false, false), parts, 2, true),
         true, true);
@@ -83,7 +99,16 @@ static void put_phone(struct sample *samples, int *count)
                  "GFocus:FocalPointX=\"0.5\" GFocus:FocalPointY=\"0.25\" ",
         .depth = make_png(4, 3, 0, 8),
         .original = make_png(3, 2, 2, 8)};
+    const struct dynamic dynamic = {.map = "DepthMap:Format=\"RangeInverse\" "
+                                           "DepthMap:DepthURI=\"android/depthmap\" "
+                                           "DepthMap:ConfidenceURI=\"android/confidencemap\"",
+                                    .depth = make_png(4, 3, 0, 8),
+                                    .confidence = make_png(4, 3, 0, 8)};
+    const size_t behind = dynamic.depth.size + dynamic.confidence.size;
+
     put(samples, count, "extended.jpg", make_gdepth_extended(png_depth, 100, 23, -1), true, true);
+    put(samples, count, "dynamic.jpg", make_dynamic(dynamic, 6), true, true);
+    samples[*count - 1].whole_at = samples[*count - 1].bytes.size - behind;
 #endif
 }
 #endif

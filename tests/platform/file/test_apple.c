@@ -31,9 +31,43 @@ static void apple_disparity(void **state)
         assert_near(photo->depth->near_m, 0.25);
         assert_near(photo->depth->far_m, 4.0);
         assert_true(has_evidence(photo, "hdrgainmap"));
-        assert_true(has_evidence(photo, "portraiteffectsmatte"));
+        assert_true(has_evidence(photo, "image 3 is the portrait matte"));
+        /* 32 x 16 of the quarters 32, 96 / 160, 224, turned as the photo is. */
+        assert_int_equal(photo->matte->width, 16);
+        assert_int_equal(photo->matte->height, 32);
+        assert_true(photo->matte->value_near == 255 && photo->matte->value_far == 0);
+        assert_in_range(sample_at(photo->matte, 15, 0), 28, 36);
+        assert_in_range(sample_at(photo->matte, 0, 31), 220, 228);
         refocus_photo_free(&photo);
     }
+}
+
+/* A matte of no picture is damage; a second one, those of hair and skin, and that of a depth file
+ * alone are passed over. */
+static void apple_mattes(void **state)
+{
+    static const char matte[] = "urn:com:apple:photo:2018:aux:portraiteffectsmatte";
+    struct bytes parts[3] = {
+        make_auxiliary(matte, NULL), make_auxiliary(matte, NULL),
+        make_auxiliary("urn:com:apple:photo:2019:aux:semantichairmatte", NULL)};
+    struct bytes file = make_mpf(make_jpeg(32, 16, false, false), parts, 3, true), depth;
+    struct refocus_photo *photo = read_photo(file, REFOCUS_OK);
+
+    (void)state;
+    assert_non_null(photo->matte->samples);
+    assert_null(photo->depth->samples);
+    assert_true(has_evidence(photo, "image 3 passed over, it is no depth but"));
+    assert_true(has_evidence(photo, "semantichairmatte"));
+    refocus_photo_free(&photo);
+    parts[0] = make_auxiliary(matte, NULL);
+    parts[0].size -= 40; /* a JPEG without its end */
+    read_photo(make_mpf(make_jpeg(32, 16, false, false), parts, 1, true), REFOCUS_ERR_FORMAT);
+    parts[0] = make_auxiliary(matte, NULL);
+    depth = make_auxiliary("disparity", APPLE_RANGE);
+    parts[1] = depth;
+    photo = read_depth(make_mpf(make_jpeg(32, 16, false, false), parts, 2, true), NULL, REFOCUS_OK);
+    assert_null(photo->matte->samples);
+    refocus_photo_free(&photo);
 }
 
 static void apple_gain_map_is_no_depth(void **state)
@@ -86,6 +120,27 @@ static void mpo_second_view(void **state)
     unlink(path);
     assert_int_equal(refocus_photo_read_second(&photo, path, NULL, &reason), REFOCUS_ERR_IO);
     assert_null(photo);
+}
+
+/* MPF tells views for stereo from previews, and which of them there are is told. */
+static void mpo_views(void **state)
+{
+    const size_t attributes = 10 + 50 + 16; /* the second picture has them there, see make_mpf() */
+
+    (void)state;
+    for (int view = 0; view < 2; view++) {
+        struct bytes part = make_jpeg(48, 24, true, false);
+        struct bytes mpo = make_mpf(make_jpeg(48, 32, false, false), &part, 1, true);
+        struct refocus_photo *photo;
+
+        if (view) {
+            memcpy(mpo.data + attributes, "\0\2\0\2", 4);
+        }
+        photo = read_photo(mpo, REFOCUS_OK);
+        assert_int_equal(photo->info->views, view);
+        assert_true(has_evidence(photo, "another view, for stereo") == view);
+        refocus_photo_free(&photo);
+    }
 }
 
 static struct refocus_photo *apple_with(const char *type, const char *extra, int expected)
@@ -169,7 +224,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(mpo_second_view),
+        cmocka_unit_test(mpo_views),
         cmocka_unit_test(apple_disparity),
+        cmocka_unit_test(apple_mattes),
         cmocka_unit_test(apple_gain_map_is_no_depth),
         cmocka_unit_test(apple_ranges),
         cmocka_unit_test(mpf_index_of_another_file),

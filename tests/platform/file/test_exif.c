@@ -2,6 +2,7 @@
  * touched, so that a read or a write beyond it ends the test, whatever the compiler; and what a
  * bound refuses without any such read shows in the facts. Taking away any one bound of exif.c
  * fails here. */
+#include <math.h>
 #include "check.h"
 
 #include "../../kernels/guarded.h"
@@ -18,7 +19,9 @@ enum {
     ORIENTATION = 0x0112,
     SETTINGS = 0x8769,
     F_NUMBER = 0x829d,
+    SUBJECT_DISTANCE = 0x9206,
     FOCAL_LENGTH = 0x920a,
+    SUBJECT_AREA = 0x9214,
     WIDTH = 0xa002,
     HEIGHT = 0xa003,
     FOCAL_LENGTH_35MM = 0xa405,
@@ -108,6 +111,38 @@ static void header_is_whole(void **state)
         assert_false(parse(&block, &exif));
         bytes_free(&block);
     }
+}
+
+static struct bytes with_subject(int type, uint32_t count, uint32_t x, uint32_t y, int sides)
+{
+    struct bytes block = with_settings(1, 1 + sides);
+
+    entry(&block, SUBJECT_AREA, type, count, x << 16 | y);
+    if (sides > 0) {
+        entry_short(&block, WIDTH, 640);
+    }
+    if (sides > 1) {
+        entry(&block, HEIGHT, LONG, 1, 480);
+    }
+    add(&block, 0, 4);
+    return block;
+}
+
+/* A point within sides that are known, and nothing else. */
+static void subject_lies_within(void **state)
+{
+    const struct rf_exif exif = facts(with_subject(SHORT, 2, 320, 479, 2));
+
+    (void)state;
+    assert_near(exif.subject_x, 320.5 / 640);
+    assert_near(exif.subject_y, 479.5 / 480);
+    assert_true(facts(with_subject(SHORT, 2, 640, 0, 2)).subject_x == -1);
+    assert_true(facts(with_subject(SHORT, 2, 0, 480, 2)).subject_x == -1);
+    assert_true(facts(with_subject(SHORT, 2, 0, 0, 1)).subject_x == -1);
+    assert_true(facts(with_subject(SHORT, 2, 0, 0, 0)).subject_x == -1);
+    assert_true(facts(with_subject(SHORT, 1, 0, 0, 2)).subject_x == -1);
+    assert_true(facts(with_subject(SHORT, 9, 8, 8, 2)).subject_x == -1);
+    assert_true(facts(with_subject(LONG, 1, 0, 0, 2)).subject_x == -1);
 }
 
 /* The number of entries lies within the block. */
@@ -201,6 +236,24 @@ static void values_lie_within(void **state)
         add(&block, 28, 4);
         add(&block, 10, 4);
         assert_true(facts(block).f_number == (beyond == 0 ? 2.8 : 0));
+    }
+}
+
+/* Metres; the greatest numerator is infinity, 0 is not known. */
+static void distances_are_metres(void **state)
+{
+    static const uint32_t above[] = {5, UINT32_MAX, 0, UINT32_MAX};
+    static const double metres[] = {2.5, INFINITY, 0, INFINITY};
+    const uint32_t place = 8 + 2 + 2 * 12 + 4 + 2 + 12;
+
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        struct bytes block = with_settings(1, 1);
+
+        entry(&block, SUBJECT_DISTANCE, RATIONAL, 1, place);
+        add(&block, above[i], 4);
+        add(&block, i < 3 ? 2 : 0, 4);
+        assert_true(facts(block).subject_distance == metres[i]);
     }
 }
 
@@ -389,18 +442,13 @@ static void profiles_have_a_header(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(header_is_whole),
-        cmocka_unit_test(directory_lies_within),
-        cmocka_unit_test(entries_lie_within),
-        cmocka_unit_test(link_lies_within),
-        cmocka_unit_test(values_lie_within),
-        cmocka_unit_test(counts_are_possible),
-        cmocka_unit_test(texts_end),
-        cmocka_unit_test(types_are_what_they_say),
-        cmocka_unit_test(orientations_are_1_to_8),
-        cmocka_unit_test(sides_are_exchanged),
-        cmocka_unit_test(one_side_stays),
-        cmocka_unit_test(two_heights_are_none),
+        cmocka_unit_test(header_is_whole),         cmocka_unit_test(directory_lies_within),
+        cmocka_unit_test(entries_lie_within),      cmocka_unit_test(link_lies_within),
+        cmocka_unit_test(values_lie_within),       cmocka_unit_test(distances_are_metres),
+        cmocka_unit_test(counts_are_possible),     cmocka_unit_test(texts_end),
+        cmocka_unit_test(types_are_what_they_say), cmocka_unit_test(orientations_are_1_to_8),
+        cmocka_unit_test(sides_are_exchanged),     cmocka_unit_test(one_side_stays),
+        cmocka_unit_test(two_heights_are_none),    cmocka_unit_test(subject_lies_within),
         cmocka_unit_test(profiles_have_a_header),
     };
 

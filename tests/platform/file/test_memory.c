@@ -1,6 +1,8 @@
 /* test_memory.c: every allocation fails once, in every reader and writer: REFOCUS_ERR_MEMORY, no
  * crash, and nothing kept. The linker sends the library's calls here; libpng and expat take
  * theirs from the library. */
+#include "gain_values.h"
+#include "read.h"
 #include "failing.h"
 #include "photos.h"
 #include "samples.h"
@@ -62,6 +64,53 @@ static void readers(void **state)
     free_samples(samples, count);
 }
 
+#if defined(RF_HAVE_JPEG) && defined(RF_HAVE_XMP)
+static int make_light(const struct refocus_photo *photo)
+{
+    struct refocus_light *light;
+    const int status = refocus_light_create(&light, photo);
+
+    assert_true((light != NULL) == (status == REFOCUS_OK));
+    refocus_light_destroy(&light);
+    return status;
+}
+
+/* The light of a gain map, and the memory that is stated for it. */
+static void lights(void **state)
+{
+    struct sample samples[SAMPLES_MAX];
+    const int count = make_samples(samples);
+
+    (void)state;
+    for (int i = 0; i < count; i++) {
+        struct refocus_photo *photo;
+        long total;
+
+        if (strcmp(samples[i].name, "gain.jpg") != 0) {
+            continue;
+        }
+        assert_int_equal(refocus_photo_read_memory(&photo, samples[i].bytes.data,
+                                                   samples[i].bytes.size, NULL, NULL),
+                         REFOCUS_OK);
+        failing.calls = failing.live = 0;
+        failing.held = failing.peak = 0;
+        assert_int_equal(make_light(photo), REFOCUS_OK);
+        assert_in_range(failing.peak, 100 << 10, (850 << 10) + 6 * 16 * 16);
+        total = failing.calls;
+        assert_true(total >= 3);
+        for (long k = 1; k <= total; k++) {
+            failing.calls = failing.live = 0;
+            failing.fail_at = k;
+            assert_int_equal(make_light(photo), REFOCUS_ERR_MEMORY);
+            failing.fail_at = 0;
+            assert_int_equal(failing.live, 0);
+        }
+        refocus_photo_free(&photo);
+    }
+    free_samples(samples, count);
+}
+#endif
+
 #ifdef RF_HAVE_HEIC
 /* libheif's own memory is not ours to refuse; this is what heic.c asks for. */
 static void heic(void **state)
@@ -90,7 +139,8 @@ static void peak_of(const struct sample *sample)
         refocus_photo_read_memory(&photo, sample->bytes.data, sample->bytes.size, NULL, NULL),
         REFOCUS_OK);
     bound = (128u << 10) + (strstr(sample->name, ".jpg") ? 8 * sample->bytes.size : 0) +
-            9 * (size_t)photo->image->width * (size_t)photo->image->height +
+            (photo->deep->plane[0] ? 27 : 9) * (size_t)photo->image->width *
+                (size_t)photo->image->height +
             9 * (size_t)photo->depth->width * (size_t)photo->depth->height;
     if (failing.peak > bound || failing.peak == 0) {
         fail_msg("%s: %zu bytes at the most, %zu are stated", sample->name, failing.peak, bound);
@@ -189,6 +239,104 @@ static void writers(void **state)
     }
 }
 
+#if defined(RF_HAVE_JPEG) && defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
+static int write_kept(const char *path, const struct refocus_photo *photo, long fail)
+{
+    uint8_t pixels[12 * 3] = {0};
+    uint16_t halves[12 * 3] = {0};
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, 4, 3, 12);
+    const struct refocus_image light =
+        refocus_image_packed(REFOCUS_FORMAT_RGB_HALF, halves, 4, 3, 24);
+    const uint16_t samples[6] = {1, 2, 3, 4, 5, 6};
+    struct refocus_depth_write depth = refocus_depth_write_default();
+    struct refocus_editable editable = refocus_editable_default();
+    struct refocus_write_options options = refocus_write_options_default();
+    int status;
+
+    depth.disparity = samples;
+    depth.width = 3;
+    depth.height = 2;
+    depth.stride = 6;
+    editable.depth = &depth;
+    options.keep = photo;
+    if (strstr(path, ".jpg") && photo->info->original_used == 0) {
+        options.editable = &editable; /* the photo and depth go into the file */
+    }
+    options.light = strstr(path, ".jpg") ? &light : NULL; /* a gain map lies behind it */
+    failing.calls = failing.live = 0;
+    failing.fail_at = fail;
+    status = refocus_image_write(path, &image, &options, NULL);
+    failing.fail_at = 0;
+    /* The C library gets the memory of files in memory, which is not counted until it is freed. */
+    if (failing.live > 0 || failing.live < (options.editable ? -5 : options.light ? -1 : 0)) {
+        fail_msg("%s: allocation %ld keeps %ld", path, fail, failing.live);
+    }
+    return status;
+}
+
+/* Make believe that a photo is of another container, with a gain map and a portrait matte. */
+static void become(struct refocus_photo *photo, const char *container)
+{
+    struct rf_photo *const inner = (struct rf_photo *)(void *)photo;
+
+    inner->kept.kind = RF_KEPT_NOTHING;
+    strcpy(inner->info.container, container);
+    inner->gain.samples = (struct rf_raster){.pixels = calloc(12, 1),
+                                             .width = 4,
+                                             .height = 3,
+                                             .channels = 1,
+                                             .sample = REFOCUS_SAMPLE_U8,
+                                             .max_value = 255};
+    rf_gain_make_apple(&inner->gain, 4);
+    inner->matte = *photo->depth;
+    inner->matte.value_near = 255;
+}
+
+/* The photo's packets lose depth and keep other properties, in an extended packet too; one without
+ * an original becomes editable. */
+static void keepers_of(bool has_original, const char *container)
+{
+    static const char *const endings[] = {".jpg", ".png"};
+    struct gdepth gdepth = {.format = "RangeInverse",
+                            .extra = "xmlns:q=\"q:\" q:a=\"1\"",
+                            .depth = make_png(30, 20, 0, 16)};
+    struct refocus_photo *photo;
+
+    if (has_original) {
+        gdepth.original = make_png(50, 30, 2, 8);
+    }
+    photo = read_photo(make_gdepth_extended(gdepth, 6000, 7, -1), REFOCUS_OK);
+    if (container) {
+        become(photo, container);
+    }
+    for (int i = 0; i < 2; i++) {
+        char path[64];
+        long total;
+
+        snprintf(path, sizeof path, "/tmp/refocus-memory-%ld%s", (long)getpid(), endings[i]);
+        assert_int_equal(write_kept(path, photo, 0), REFOCUS_OK);
+        total = failing.calls;
+        assert_true(total > 4);
+        assert_int_equal(unlink(path), 0);
+        for (long k = 1; k <= total; k++) {
+            if (write_kept(path, photo, k) != REFOCUS_ERR_MEMORY || access(path, F_OK) == 0) {
+                fail_msg("%s: allocation %ld", path, k);
+            }
+        }
+    }
+    refocus_photo_free(&photo);
+}
+
+static void keepers(void **state)
+{
+    (void)state;
+    keepers_of(true, NULL);
+    keepers_of(false, NULL);
+    keepers_of(false, "HEIC");
+    keepers_of(false, "PPM");
+}
+#endif
+
 static int read_path(const char *path, bool depth, long fail)
 {
     struct refocus_photo *photo = NULL;
@@ -227,10 +375,18 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(readers),
+#if defined(RF_HAVE_JPEG) && defined(RF_HAVE_XMP)
+        cmocka_unit_test(lights),
+#endif
 #ifdef RF_HAVE_HEIC
         cmocka_unit_test(heic),
 #endif
-        cmocka_unit_test(stated_peak), cmocka_unit_test(writers), cmocka_unit_test(files),
+        cmocka_unit_test(stated_peak),
+        cmocka_unit_test(writers),
+#if defined(RF_HAVE_JPEG) && defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
+        cmocka_unit_test(keepers),
+#endif
+        cmocka_unit_test(files),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -150,6 +150,27 @@ static void disparity_ranges(void **state)
     assert_true(isinf(map.far_m) && map.value_far == 25 && map.value_near == 100);
 }
 
+/* Tracks without a picture are refused in words of their own; a file with both is a picture. */
+static void heif_sequences(void **state)
+{
+    static const char head[] = "\0\0\0\24ftypmsf1\0\0\0\0hevc";
+    static const char track[] = "\0\0\0\14moov\1\2\3\4", meta[] = "\0\0\0\14meta\0\0\0\0";
+    struct bytes film = bytes_copy(head, 20), both;
+
+    (void)state;
+    assert_false(rf_heif_is_sequence((struct rf_bytes){film.data, film.size}));
+    bytes_add(&film, track, 12);
+    assert_true(rf_heif_is_sequence((struct rf_bytes){film.data, film.size}));
+    for (size_t size = 20; size < 32; size++) {
+        assert_false(rf_heif_is_sequence((struct rf_bytes){film.data, size}));
+    }
+    both = bytes_copy(film.data, film.size);
+    bytes_add(&both, meta, 12);
+    assert_false(rf_heif_is_sequence((struct rf_bytes){both.data, both.size}));
+    bytes_free(&both);
+    read_photo(film, REFOCUS_ERR_UNSUPPORTED);
+}
+
 static void heif_orientations(void **state)
 {
     static const struct {
@@ -190,10 +211,10 @@ static void heif_orientations(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers),           cmocka_unit_test(base64_text),
-        cmocka_unit_test(exif_offsets),      cmocka_unit_test(exif_texts_are_clean),
-        cmocka_unit_test(heif_orientations), cmocka_unit_test(mpf_bounds),
-        cmocka_unit_test(disparity_ranges),
+        cmocka_unit_test(numbers),        cmocka_unit_test(base64_text),
+        cmocka_unit_test(exif_offsets),   cmocka_unit_test(exif_texts_are_clean),
+        cmocka_unit_test(heif_sequences), cmocka_unit_test(heif_orientations),
+        cmocka_unit_test(mpf_bounds),     cmocka_unit_test(disparity_ranges),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

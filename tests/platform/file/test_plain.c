@@ -1,5 +1,6 @@
 /* test_plain.c: formats without metadata of depth: PNM, PFM, PNG; and the words for depth units. */
 #include "check.h"
+#include "make_formats.h"
 
 #include <locale.h>
 #include <math.h>
@@ -91,15 +92,16 @@ static void pnm_damaged(void **state)
     read_photo(text_file("P6 99999999999999999999 1 255 x"), REFOCUS_ERR_FORMAT);
 }
 
+/* A PFM of 3 x 2 samples, or pixels of three. */
 static struct bytes make_pfm(bool big_endian, const char *kind)
 {
     static const float values[6] = {-1.5f, 0.0f, 2.25f, 3.0f, 100.0f, 0.125f};
     struct bytes file = text_file(kind);
 
     bytes_text(&file, big_endian ? "\n3 2\n1.0\n" : "\n3 2\n-1.0\n");
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < (kind[1] == 'F' ? 18 : 6); i++) {
         uint32_t bits;
-        memcpy(&bits, &values[i], 4);
+        memcpy(&bits, &values[i % 6], 4);
         bytes_number(&file, bits, 4, big_endian);
     }
     return file;
@@ -123,6 +125,35 @@ static void pfm_both_byte_orders(void **state)
     }
 }
 
+/* Light of three colours is a photo: floats as they are, and codes of sRGB beside them. */
+static void pfm_in_colour(void **state)
+{
+    static const float values[6] = {-1.5f, 0.0f, 2.25f, 3.0f, 100.0f, 0.125f};
+    static const int codes[6] = {0, 0, 255, 255, 255, 99};
+
+    (void)state;
+    for (int big_endian = 0; big_endian < 2; big_endian++) {
+        struct refocus_photo *photo = read_photo(make_pfm(big_endian, "PF"), REFOCUS_OK);
+
+        assert_string_equal(photo->info->container, "PFM");
+        assert_int_equal(photo->info->stored_bits, 0);
+        assert_int_equal(photo->deep->format, REFOCUS_FORMAT_RGB_FLOAT);
+        assert_int_equal(photo->deep->width, 3);
+        assert_int_equal(photo->deep->height, 2);
+        for (int i = 0; i < 18; i++) { /* the file begins with the bottom row */
+            const int x = i / 3 % 3, y = i < 9, c = i % 3;
+            float light;
+
+            memcpy(&light, photo->deep->plane[0] + y * photo->deep->stride[0] + 4 * (3 * x + c), 4);
+            assert_true(light == values[i % 6]);
+            assert_int_equal(pixel_at(photo->image, x, y)[c], codes[i % 6]);
+        }
+        refocus_photo_free(&photo);
+    }
+    read_photo(text_file("PF\n3 2\n-1\n...."), REFOCUS_ERR_FORMAT);
+    read_photo(text_file("PF\n65535 65535\n-1\n...."), REFOCUS_ERR_SIZE);
+}
+
 static void pfm_units(void **state)
 {
     struct refocus_photo *photo = read_depth(make_pfm(false, "Pf"), "inverse", REFOCUS_OK);
@@ -144,7 +175,7 @@ static void pfm_refused(void **state)
     read_depth(make_pfm(false, "PF"), NULL, REFOCUS_ERR_NO_DEPTH);
     read_photo(make_pfm(false, "Pf"), REFOCUS_ERR_UNSUPPORTED);
     read_depth(tall, NULL, REFOCUS_ERR_SIZE);
-    read_depth(text_file("Pf\n65535 4096\n-1\n...."), NULL, REFOCUS_ERR_FORMAT);
+    read_depth(text_file("Pf\n32768 4096\n-1\n...."), NULL, REFOCUS_ERR_FORMAT);
     read_depth(text_file("Pf\n1 1\n0\n...."), NULL, REFOCUS_ERR_FORMAT);
     read_depth(text_file("Pf\n1.5 1\n-1\n...."), NULL, REFOCUS_ERR_FORMAT);
     read_depth(text_file("Pf\n-1 1\n-1\n...."), NULL, REFOCUS_ERR_FORMAT);
@@ -257,15 +288,21 @@ static void png_kinds(void **state)
         assert_string_equal(photo->info->container, "PNG");
         assert_int_equal(photo->info->stored_bits, bits);
         assert_int_equal(photo->image->width, 7);
+        assert_true(!photo->deep->plane[0] == (bits == 8));
         for (int y = 0; y < 5; y++) {
             for (int x = 0; x < 7; x++) {
                 for (int c = 0; c < 3; c++) {
                     const unsigned max = bits == 16 ? 65535 : 255;
                     const unsigned v = pattern(x, y, type & 2 && type != 3 ? c : 0, max);
                     const int code = pixel_at(photo->image, x, y)[c];
+                    uint16_t all;
 
                     if (bits == 16) { /* dithered: one of the two beside it */
                         assert_true(fabs(code - v * 255.0 / max) < 1);
+                        memcpy(&all,
+                               photo->deep->plane[0] + y * photo->deep->stride[0] + 2 * (3 * x + c),
+                               2);
+                        assert_int_equal(all, v);
                     } else {
                         assert_int_equal(code, (v * 255 + max / 2) / max);
                     }
@@ -431,6 +468,64 @@ static void formats_are_named(void **state)
 #endif
 }
 
+/* This program is linked without the shared library, beside which modules are looked for: each says
+ * which library it lacks. */
+static void modules_are_missed_in_words(void **state)
+{
+    static const struct {
+        const char *begin;
+        size_t size;
+        const char *library;
+    } formats[] = {{"II*\0\10\0\0\0", 8, "libtiff"},
+                   {"\x76\x2f\x31\x01", 4, "OpenEXR"},
+                   {"RIFF\4\0\0\0WEBP", 12, "libwebp"},
+                   {"\xff\x0a", 2, "libjxl"}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        struct refocus_photo *photo = NULL;
+        struct refocus_reason reason;
+        const int status =
+            refocus_photo_read_memory(&photo, formats[i].begin, formats[i].size, NULL, &reason);
+
+        /* Where the modules are installed they are found, and the file is damaged. */
+        assert_true(status == REFOCUS_ERR_FORMAT || status == REFOCUS_ERR_UNSUPPORTED);
+        assert_true(status == REFOCUS_ERR_FORMAT || strstr(reason.text, formats[i].library));
+    }
+}
+
+#ifdef RF_HAVE_JPEG
+static void raw_by_its_preview(void **state)
+{
+    struct bytes file = make_dng(32, 32, 20000, make_jpeg(16, 32, false, false));
+    struct refocus_read_limits limits = refocus_read_limits_default();
+    struct refocus_photo *photo = NULL;
+
+    (void)state;
+    limits.raw_preview = 1;
+    assert_int_equal(refocus_photo_read_memory(&photo, file.data, file.size, &limits, NULL),
+                     REFOCUS_OK);
+    assert_string_equal(photo->info->container, "raw");
+    assert_int_equal(photo->image->width, 16);
+    assert_int_equal(photo->image->height, 32);
+    assert_true(pixel_at(photo->image, 2, 2)[0] > 250 && pixel_at(photo->image, 2, 2)[1] < 5);
+    assert_true(has_evidence(photo, "preview"));
+    assert_null(photo->deep->plane[0]);
+    refocus_photo_free(&photo);
+    limits.max_pixels = 511;
+    assert_int_equal(refocus_photo_read_memory(&photo, file.data, file.size, &limits, NULL),
+                     REFOCUS_ERR_SIZE);
+    limits.max_pixels = 0;
+    assert_int_equal(refocus_photo_read_memory(&photo, file.data, file.size - 500, &limits, NULL),
+                     REFOCUS_ERR_FORMAT);
+    bytes_free(&file);
+    file = make_dng(32, 32, 20000, (struct bytes){NULL, 0});
+    assert_int_equal(refocus_photo_read_memory(&photo, file.data, file.size, &limits, NULL),
+                     REFOCUS_ERR_UNSUPPORTED);
+    bytes_free(&file);
+}
+#endif
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -439,6 +534,7 @@ int main(void)
         cmocka_unit_test(pgm_white_is_its_greatest_value),
         cmocka_unit_test(pnm_damaged),
         cmocka_unit_test(pfm_both_byte_orders),
+        cmocka_unit_test(pfm_in_colour),
         cmocka_unit_test(pfm_units),
         cmocka_unit_test(pfm_refused),
         cmocka_unit_test(unit_words),
@@ -454,6 +550,10 @@ int main(void)
 #endif
         cmocka_unit_test(numbers_ignore_the_locale),
         cmocka_unit_test(formats_are_named),
+        cmocka_unit_test(modules_are_missed_in_words),
+#ifdef RF_HAVE_JPEG
+        cmocka_unit_test(raw_by_its_preview),
+#endif
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

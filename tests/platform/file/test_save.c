@@ -2,7 +2,6 @@
  * fsync() and rename() are counted on their way to the system. */
 #include "check.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -235,19 +234,6 @@ static void assert_unchanged(const struct stat *was)
     assert_int_equal(facts.st_mode, was->st_mode);
 }
 
-static int entries(void)
-{
-    DIR *const directory = opendir(".");
-    int n = 0;
-
-    assert_non_null(directory);
-    while (readdir(directory)) {
-        n++;
-    }
-    closedir(directory);
-    return n;
-}
-
 /* A user who may write in the folder but does not own the file is refused, and nothing is left
  * beside it. */
 static void owner_that_cannot_be_kept(void **state)
@@ -268,7 +254,7 @@ static void owner_that_cannot_be_kept(void **state)
     assert_int_equal(chmod("a.ppm", 0664), 0);
     assert_int_equal(chmod(".", 0777), 0);
     was = facts_of("a.ppm");
-    files = entries();
+    files = entries(".");
     assert_int_equal(setegid(4713), 0);
     assert_int_equal(seteuid(4714), 0);
     saved = save("a.ppm", NULL);
@@ -278,7 +264,7 @@ static void owner_that_cannot_be_kept(void **state)
     assert_int_equal(saved, REFOCUS_ERR_IO);
     assert_int_equal(moved, REFOCUS_ERR_IO);
     assert_unchanged(&was);
-    assert_int_equal(entries(), files);
+    assert_int_equal(entries("."), files);
 }
 
 /* The owner stays but is not in the file's group any more: it is another group's file, which gets
@@ -320,7 +306,7 @@ static void only_files_are_replaced(void **state)
     assert_int_equal(symlink("/dev/null", "null.ppm"), 0);
     assert_int_equal(symlink("circle.ppm", "circle.ppm"), 0);
     assert_int_equal(refocus_file_write("tmp", "new", 3, NULL), REFOCUS_OK);
-    files = entries();
+    files = entries(".");
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         struct refocus_reason reason;
         const mode_t was = facts_of(names[i]).st_mode;
@@ -330,7 +316,7 @@ static void only_files_are_replaced(void **state)
         assert_string_not_equal(reason.text, "");
         assert_int_equal(facts_of(names[i]).st_mode, was);
     }
-    assert_int_equal(entries(), files);
+    assert_int_equal(entries("."), files);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         assert_int_equal(remove(names[i]), 0);
     }
@@ -363,6 +349,45 @@ static void links_stay(void **state)
     free(place);
 }
 
+/* Temporary files for others to write: each is new, lies where a link points, is as open as the
+ * file that it replaces, and never one that was there. */
+static void temporary_files(void **state)
+{
+    char *first, *second, text[4];
+    struct stat facts;
+
+    (void)state;
+    assert_int_equal(refocus_file_temporary("a.tar.apng", &first, NULL), REFOCUS_OK);
+    assert_int_equal(refocus_file_temporary("a.tar.apng", &second, NULL), REFOCUS_OK);
+    assert_string_not_equal(first, second);
+    assert_string_equal(first + strlen(first) - 9, ".tmp.apng");
+    assert_int_equal(stat(first, &facts), 0);
+    assert_true(S_ISREG(facts.st_mode) && facts.st_size == 0);
+    assert_int_equal(unlink(first), 0);
+    assert_int_equal(unlink(second), 0);
+    free(first);
+    free(second);
+
+    assert_int_equal(mkdir("there", 0700), 0);
+    assert_int_equal(symlink("there/b.mp4", "b.mp4"), 0);
+    assert_int_equal(refocus_file_write("b.mp4", "old", 3, NULL), REFOCUS_OK);
+    assert_int_equal(chmod("there/b.mp4", 0640), 0);
+    assert_int_equal(refocus_file_temporary("b.mp4", &first, NULL), REFOCUS_OK);
+    assert_int_equal(strncmp(first, "there/.refocus-", 15), 0);
+    assert_int_equal(stat(first, &facts), 0);
+    assert_int_equal(facts.st_mode & 0777, 0640);
+    assert_int_equal(refocus_file_move(first, "b.mp4", NULL), REFOCUS_OK);
+    assert_int_equal(readlink("b.mp4", text, sizeof text), sizeof text);
+    assert_int_equal(stat("there/b.mp4", &facts), 0);
+    assert_int_equal(facts.st_size, 0);
+    free(first);
+    assert_int_equal(unlink("there/b.mp4"), 0);
+    assert_int_equal(unlink("b.mp4"), 0);
+    assert_int_equal(rmdir("there"), 0);
+    assert_int_equal(refocus_file_temporary("none/b.mp4", &first, NULL), REFOCUS_ERR_IO);
+    assert_null(first);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
 
 int main(void)
@@ -379,6 +404,7 @@ int main(void)
         TEST(group_that_cannot_be_kept),
         TEST(only_files_are_replaced),
         TEST(links_stay),
+        TEST(temporary_files),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

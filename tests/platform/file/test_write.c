@@ -436,9 +436,52 @@ static void a_name_without_folder(void **state)
     free(picture.memory);
 }
 
+/* Deep pictures come back as they are from the formats that hold them; others refuse them. */
+static void deep_pictures(void **state)
+{
+    static uint16_t codes[5 * 4 * 3];
+    static float light[5 * 4 * 3];
+    struct refocus_image deep[2];
+    struct refocus_reason reason;
+
+    (void)state;
+    for (int i = 0; i < 5 * 4 * 3; i++) {
+        codes[i] = (uint16_t)(i * 1111);
+        light[i] = (float)(i - 7) * 0.77f;
+    }
+    deep[0] = refocus_image_packed(REFOCUS_FORMAT_RGB16, codes + 45, 5, 4, -30);
+    deep[1] = refocus_image_packed(REFOCUS_FORMAT_RGB_FLOAT, light, 5, 4, 60);
+    for (int k = 0; k < 2; k++) {
+        const char *const name = k ? "deep.pfm" : "deep.png";
+        struct refocus_photo *photo;
+        int status = refocus_image_write(in_folder(name), &deep[k], NULL, &reason);
+
+        if (!k && status == REFOCUS_ERR_UNSUPPORTED) /* a build without libpng */
+            continue;
+        assert_int_equal(status, REFOCUS_OK);
+        assert_int_equal(refocus_photo_read(&photo, in_folder(name), NULL, &reason), REFOCUS_OK);
+        assert_int_equal(photo->deep->format, deep[k].format);
+        for (int y = 0; y < 4; y++)
+            assert_memory_equal(photo->deep->plane[0] + y * photo->deep->stride[0],
+                                deep[k].plane[0] + y * deep[k].stride[0], k ? 60 : 30);
+        refocus_photo_free(&photo);
+        for (int other = 0; other < 3; other++) {
+            const char *const names[] = {"no.ppm", k ? "no.png" : "no.pfm", "no.jpg"};
+
+            assert_int_equal(refocus_image_write(in_folder(names[other]), &deep[k], NULL, &reason),
+                             REFOCUS_ERR_UNSUPPORTED);
+            assert_int_not_equal(access(in_folder(names[other]), F_OK), 0);
+        }
+    }
+    deep[0].format = REFOCUS_FORMAT_RGBA16;
+    assert_int_equal(refocus_image_write(in_folder("no.png"), &deep[0], NULL, &reason),
+                     REFOCUS_ERR_ARGUMENT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(deep_pictures),
         cmocka_unit_test(ppm_round_trip),
         cmocka_unit_test(grey_round_trip),
 #ifdef RF_HAVE_PNG

@@ -440,58 +440,6 @@ static void estimates_of_any_size(void **state)
     unlink(path);
 }
 
-static void upsample(void **state)
-{
-    static uint8_t pixels[3 * W * H];
-    static uint16_t map[40 * 25], out[W * H];
-    const struct refocus_image photo = picture(pixels);
-    const struct refocus_disparity coarse = refocus_disparity16(map, 40, 25, 80);
-
-    (void)state;
-    for (int i = 0; i < W * H; i++) /* sample k is at pixel 8 k + 3.5 */
-        memset(pixels + 3 * i, i % W < 150 ? 220 : 30, 3);
-    for (int i = 0; i < 40 * 25; i++)
-        map[i] = i % 40 * 8 + 4 < 150 ? 50000 : 10000;
-    assert_int_equal(refocus_cv_upsample(&photo, &coarse, 20, out, NULL), REFOCUS_OK);
-    for (int i = 0; i < W * H; i++)
-        assert_in_range(out[i], i % W < 150 ? 49990 : 9990, i % W < 150 ? 50010 : 10010);
-    assert_int_equal(refocus_cv_upsample(&photo, &coarse, 0, out, NULL), REFOCUS_ERR_ARGUMENT);
-}
-
-/* Every filter keeps a plane; those of contrib are there, or say what is missing. */
-static void upsample_by(void **state)
-{
-    static uint8_t pixels[3 * W * H];
-    static uint16_t map[40 * 25], out[W * H];
-    const struct refocus_image photo = picture(pixels);
-    struct refocus_disparity coarse = refocus_disparity16(map, 40, 25, 80);
-    struct refocus_cv_reason reason;
-    uint32_t filter;
-
-    (void)state;
-    for (int i = 0; i < 40 * 25; i++)
-        map[i] = 30000;
-    for (filter = 0; refocus_cv_filter_name(filter); filter++) {
-        const int status = refocus_cv_upsample_by(filter, &photo, &coarse, out, &reason);
-
-#ifndef WITH_XIMGPROC
-        if (status == REFOCUS_ERR_UNSUPPORTED && filter >= REFOCUS_CV_GUIDED) {
-            assert_non_null(strstr(reason.text, "-Dximgproc=enabled"));
-            continue;
-        }
-#endif
-        assert_int_equal(status, REFOCUS_OK);
-        for (int i = 0; i < W * H; i++)
-            assert_in_range(out[i], 29998, 30002);
-    }
-    assert_int_equal(filter, 5);
-    assert_int_equal(refocus_cv_upsample_by(filter, &photo, &coarse, out, &reason),
-                     REFOCUS_ERR_ARGUMENT);
-    coarse.bits = 12;
-    assert_int_equal(refocus_cv_upsample_by(0, &photo, &coarse, out, &reason),
-                     REFOCUS_ERR_ARGUMENT);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(stereo),
@@ -500,9 +448,7 @@ int main(void)
                                        cmocka_unit_test(estimator),
                                        cmocka_unit_test(reports_of_any_size),
                                        cmocka_unit_test(networks_of_any_size),
-                                       cmocka_unit_test(estimates_of_any_size),
-                                       cmocka_unit_test(upsample),
-                                       cmocka_unit_test(upsample_by)};
+                                       cmocka_unit_test(estimates_of_any_size)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -185,11 +185,55 @@ static void test_too_many(void **unused)
     refocus_strokes_destroy(&strokes);
 }
 
+/* Load so many copies of a text between a beginning and an end. */
+static int load_copies(struct refocus_strokes *strokes, const char *beginning, const char *copy,
+                       int count, const char *end)
+{
+    const size_t room = strlen(beginning) + strlen(end) + (size_t)count * (strlen(copy) + 2) + 1;
+    char *const text = malloc(room);
+    size_t size;
+    int status;
+
+    assert_non_null(text);
+    size = (size_t)snprintf(text, room, "%s", beginning);
+    for (int i = 0; i < count; i++)
+        size += (size_t)snprintf(text + size, room - size, "%s%s", i > 0 ? ", " : "", copy);
+    size += (size_t)snprintf(text + size, room - size, "%s", end);
+    status = refocus_strokes_load(strokes, text, size, NULL);
+    free(text);
+    return status;
+}
+
+/* Files of some kilobytes that would take minutes are refused, and nothing has changed. */
+static void test_too_much_work(void **unused)
+{
+    static const char object[] = "{\"kind\": \"object\", \"radius\": 99, \"points\": [[9, 9]]}";
+    static const char brush[] = HEAD "{\"kind\": \"brush\", \"radius\": 4096, \"points\": [";
+    static uint16_t before[W * H];
+    /* All of the picture is within reach of an object; on a quarter of each side it is cut, and
+     * its colours are counted. */
+    const int objects = REFOCUS_MAX_STROKE_WORK / (W * H + 100 * (W / 4) * (H / 4) + 65536 + 8192);
+    const float over[] = {120, 120, 200, 120};
+    struct refocus_strokes *strokes = begin();
+
+    (void)unused;
+    paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, 2);
+    memcpy(before, refocus_strokes_disparity(strokes), sizeof before);
+    assert_int_equal(load_copies(strokes, HEAD, object, objects + 1, "]}"), REFOCUS_ERR_SIZE);
+    assert_int_equal(load_copies(strokes, brush, "[9, 9]", 80000, "]}]}"), REFOCUS_ERR_SIZE);
+    assert_int_equal(refocus_strokes_count(strokes), 1);
+    assert_memory_equal(refocus_strokes_disparity(strokes), before, sizeof before);
+    assert_int_equal(load_copies(strokes, HEAD, object, objects / 20, "]}"), REFOCUS_OK);
+    assert_int_equal(load_copies(strokes, brush, "[9, 9]", 40000, "]}]}"), REFOCUS_OK);
+    refocus_strokes_destroy(&strokes);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_round_trip), cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_appended), cmocka_unit_test(test_too_many)};
+        cmocka_unit_test(test_appended), cmocka_unit_test(test_too_many),
+        cmocka_unit_test(test_too_much_work)};
     int failed;
 
     photo = make_picture(W, H);

@@ -1,0 +1,141 @@
+/** @file stack.h  Depth and an all-in-focus photo from pictures at several focus distances. */
+#ifndef REFOCUS_STACK_H
+#define REFOCUS_STACK_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <refocus/image.h>
+#include <refocus/sized.h>
+#include <refocus/status.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A focus stack. Opaque; reentrant: one thread at a time. */
+struct refocus_stack;
+
+/** Frames of a stack. */
+enum { REFOCUS_STACK_LEAST_FRAMES = 2, REFOCUS_STACK_MOST_FRAMES = 32 };
+
+/** How to treat frames that do not lie on each other. */
+enum refocus_stack_align {
+    REFOCUS_STACK_ALIGN_SIMILARITY, /**< scale (the focus breathes), shift and rotation (the hand
+                                         shakes) are found and undone; the default */
+    REFOCUS_STACK_ALIGN_NONE,       /**< frames are taken as they are */
+    REFOCUS_STACK_ALIGN_COUNT
+};
+
+/** How to work. Start from refocus_stack_params_default(). */
+struct refocus_stack_params {
+    uint32_t struct_size; /**< sizeof(struct refocus_stack_params) */
+    int32_t width;        /**< pixels of each frame, 16 to REFOCUS_MAX_SIDE */
+    int32_t height;       /**< pixels of each frame, 16 to REFOCUS_MAX_SIDE */
+    int32_t frames;       /**< how many will be added, REFOCUS_STACK_LEAST_FRAMES to
+                               REFOCUS_STACK_MOST_FRAMES */
+    int32_t reference;    /**< the result has the geometry of this frame, 1 to frames in the order
+                               that they are added in; 0 = the one in the middle of the focus */
+    uint32_t align;       /**< enum refocus_stack_align */
+};
+
+static inline struct refocus_stack_params
+refocus_stack_params_default(int32_t width, int32_t height, int32_t frames)
+{
+    struct refocus_stack_params params;
+
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    params.width = width;
+    params.height = height;
+    params.frames = frames;
+    return params;
+}
+
+/** Results of refocus_stack_finish(). All pictures have the size of the frames and are the
+ *  caller's; any may be NULL. Start from refocus_stack_result_default(). */
+struct refocus_stack_result {
+    uint32_t struct_size; /**< sizeof(struct refocus_stack_result) */
+    uint32_t reserved;    /**< 0 */
+    uint8_t *photo;       /**< all in focus: R, G, B, 3 bytes a pixel */
+    ptrdiff_t photo_stride;
+    uint16_t *disparity; /**< 65535 = the nearest focus of the stack, 0 = the farthest, in between
+                            in proportion to the positions; the address is even */
+    ptrdiff_t disparity_stride; /**< bytes; even */
+    uint8_t *confidence;        /**< 255 = measured, 0 = filled from what is around */
+    ptrdiff_t confidence_stride;
+    float measured; /**< receives the share of pixels whose depth was measured, 0 to 1; near 0 where
+                         frames are alike or show nothing but flat colour */
+    float moved;    /**< receives how far the farthest corner of a frame was moved, in pixels */
+    float disorder; /**< receives the share of measured samples whose sharpness has two peaks over
+                         the frames: hardly any in a stack, most where the order or the positions
+                         are wrong. A stack that is reversed cannot be told from one that is not. */
+    uint32_t reserved2; /**< 0 */
+};
+
+static inline struct refocus_stack_result refocus_stack_result_default(void)
+{
+    struct refocus_stack_result result;
+
+    memset(&result, 0, sizeof result);
+    result.struct_size = sizeof result;
+    return result;
+}
+
+/**
+ * Make an empty stack. It takes all its memory here: for each frame 3 bytes a pixel and 2 a sample
+ * of the map that the work is done at, which has at most 3 million samples; 3 more a sample for
+ * each frame, their number rounded up to 8, 16 or 32; some 10 a sample and 3 a pixel. Nine frames
+ * of 2 megapixels take 240 MB, of 12 megapixels 620 MB.
+ *
+ * @param stack  receives it, or NULL on an error
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY, REFOCUS_ERR_SIZE (it would need
+ *         more memory than can be addressed), REFOCUS_ERR_UNSUPPORTED (a field of a newer library)
+ */
+REFOCUS_API int refocus_stack_create(struct refocus_stack **stack,
+                                     const struct refocus_stack_params *params);
+
+/** End a stack and set the handle to NULL; a NULL handle is fine. */
+REFOCUS_API void refocus_stack_destroy(struct refocus_stack **stack);
+
+/**
+ * Add the next frame. Its pixels are copied.
+ *
+ * @param frame     of R, G and B, 8 bits a channel, of the stack's size. All frames need one
+ *                  exposure and white balance.
+ * @param position  of the focus in dioptres, 1 / metres, or any number that is proportional to them
+ *                  up to an offset: larger = nearer. NAN if it is not known: frames without
+ *                  positions are taken for equally far apart, in the order that they are added in,
+ *                  the farthest focus first. Either all frames have one or none has.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (not an image of that size, a format of Y, U and V or
+ *         of more than 8 bits, an infinite position, one that another frame has, one where others
+ *         had none), REFOCUS_ERR_STATE (there are as many as were announced); on an error the
+ *         stack is as it was
+ */
+REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refocus_image *frame,
+                                  double position);
+
+/**
+ * Make depth and the photo. With E the sharpness of a frame, the sum of absolute second differences
+ * over one and two pixels, and E_k the mean of its square over a Gaussian of 1.4 samples, and that
+ * over squares of 9 and 17, frame k costs
+ *
+ *     sum over the three of (max E - E_k) / (max E + noise)
+ *
+ * at a sample. Costs are aggregated along eight directions (semi-global matching, Hirschmueller
+ * 2008), where steps of depth are cheaper across edges of the photo; the least one, with a parabola
+ * through its neighbours, is the depth. So what is flat or clipped takes the depth of what is
+ * around it. Integer arithmetic: the same bytes on every processor.
+ *
+ * A stack is finished once: what aligns its frames overwrites them.
+ *
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (fewer than two frames, no reference
+ *         yet, or finished before), REFOCUS_ERR_UNSUPPORTED; on an error nothing is written
+ */
+REFOCUS_API int refocus_stack_finish(struct refocus_stack *stack,
+                                     struct refocus_stack_result *result);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

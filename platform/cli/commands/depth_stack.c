@@ -1,0 +1,331 @@
+/* depth_stack.c: depth and an all-in-focus photo are made of a focus stack. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "commands/depth_stack.h"
+#include "inputs/standard.h"
+#include "line/report.h"
+
+/* A share of measured pixels below this is no depth. */
+#define LEAST_MEASURED 0.002
+/* More of it is no order: 0.03 in stacks of nine frames as they were taken, 0.9 shuffled. */
+#define MOST_DISORDER 0.5
+
+static const struct {
+    const char *name, *summary;
+} aligns[] = {
+    [REFOCUS_STACK_ALIGN_SIMILARITY] = {"similarity", "scale, shift and rotation are undone"},
+    [REFOCUS_STACK_ALIGN_NONE] = {"none", "frames are taken as they are"},
+};
+
+const char *stack_align_name(uint32_t index)
+{
+    return index < sizeof aligns / sizeof *aligns ? aligns[index].name : NULL;
+}
+
+const char *stack_align_summary(uint32_t index)
+{
+    return index < sizeof aligns / sizeof *aligns ? aligns[index].summary : NULL;
+}
+
+struct frames {
+    const char *const *file;
+    int count, reference; /* the latter from 0 on */
+    double position[REFOCUS_STACK_MOST_FRAMES];
+    bool no_unit;  /* positions are not dioptres */
+    bool of_files; /* positions are distances of EXIF */
+};
+
+/* ----- positions ----- */
+
+static int take_position(struct frames *frames, int *n, double position)
+{
+    if (!(position >= 0) || position > 1e6)
+        return report_failure(EXIT_WRONG, "--positions",
+                              "%g is no focus in dioptres; give numbers from 0 to 1e6", position);
+    for (int k = 0; k < *n && k < REFOCUS_STACK_MOST_FRAMES; k++)
+        if (frames->position[k] == position)
+            return report_failure(EXIT_WRONG, "--positions",
+                                  "%g is there twice; give each frame its own", position);
+    if (*n < REFOCUS_STACK_MOST_FRAMES)
+        frames->position[*n] = position;
+    ++*n;
+    return EXIT_DONE;
+}
+
+static int positions_of_text(struct frames *frames, const char *text, int *n)
+{
+    for (const char *at = text;;) {
+        char *end;
+        const double position = strtod(at, &end);
+
+        if (end == at || (*end && *end != ','))
+            return report_failure(EXIT_WRONG, "--positions",
+                                  "'%s' is no list of numbers; give dioptres with commas, such as "
+                                  "0.2,0.5,1, or a .json file",
+                                  text);
+        const int status = take_position(frames, n, position);
+        if (status != EXIT_DONE)
+            return status;
+        if (!*end)
+            return EXIT_DONE;
+        at = end + 1;
+    }
+}
+
+/* A list of numbers, or an object with one as "positions", whose "dioptres" may be false. */
+static int positions_of_file(struct frames *frames, const char *file, int *n)
+{
+    json_error_t error;
+    json_t *json = json_load_file(file, JSON_REJECT_DUPLICATES, &error);
+    json_t *list = json_is_object(json) ? json_object_get(json, "positions") : json, *value;
+    size_t i;
+    int status = EXIT_DONE;
+
+    if (!json)
+        return report_failure(EXIT_FAILED, file, "%s", error.text);
+    if (!json_is_array(list)) {
+        json_decref(json);
+        return report_failure(EXIT_FAILED, file,
+                              "it holds no positions; give [0.2, 0.5, 1] or "
+                              "{\"positions\": [0.2, 0.5, 1]}, in dioptres");
+    }
+    frames->no_unit = json_is_false(json_object_get(json, "dioptres"));
+    json_array_foreach(list, i, value)
+    {
+        status = json_is_number(value)
+                     ? take_position(frames, n, json_number_value(value))
+                     : report_failure(EXIT_FAILED, file, "position %zu is no number; give dioptres",
+                                      i + 1);
+        if (status != EXIT_DONE)
+            break;
+    }
+    json_decref(json);
+    return status;
+}
+
+static bool is_json(const char *text)
+{
+    const char *dot = strrchr(text, '.');
+
+    return dot && strcmp(dot, ".json") == 0;
+}
+
+/* By the distances that all files name in their EXIF, else by none. What cannot be read is told
+ * when it is read for its pixels. */
+static void positions_of_files(struct frames *frames)
+{
+    bool known = true;
+
+    for (int k = 0; k < frames->count && known; k++) {
+        struct refocus_reason ignored;
+        struct refocus_photo *photo = NULL;
+
+        known = standard_photo(&photo, frames->file[k], &ignored) == REFOCUS_OK &&
+                photo->info->subject_distance > 0;
+        frames->position[k] = known ? 1 / photo->info->subject_distance : NAN;
+        for (int j = 0; j < k && known; j++)
+            known = frames->position[j] != frames->position[k];
+        refocus_photo_free(&photo);
+    }
+    for (int k = 0; k < frames->count && !known; k++)
+        frames->position[k] = NAN;
+    frames->of_files = known;
+}
+
+static int read_positions(struct frames *frames, const char *text)
+{
+    int n = 0, status;
+
+    for (int k = 0; k < frames->count; k++)
+        frames->position[k] = NAN;
+    if (!text) {
+        positions_of_files(frames);
+        return EXIT_DONE;
+    }
+    status =
+        is_json(text) ? positions_of_file(frames, text, &n) : positions_of_text(frames, text, &n);
+    if (status == EXIT_DONE && n != frames->count)
+        return report_failure(EXIT_WRONG, "--positions",
+                              "%d positions for %d frames; give one for each", n, frames->count);
+    return status;
+}
+
+/* The frame in the middle of the focus: as many lie before it as the library counts. */
+static int middle_of(const struct frames *frames)
+{
+    for (int k = 0; k < frames->count; k++) {
+        int before = 0;
+
+        for (int j = 0; j < frames->count; j++)
+            before += frames->position[j] < frames->position[k];
+        if (before == frames->count / 2)
+            return k;
+    }
+    return frames->count / 2;
+}
+
+/* ----- frames ----- */
+
+static int add(struct refocus_stack *stack, const struct frames *frames, int k)
+{
+    struct input other;
+    int status = input_read_photo(&other, frames->file[k], "a photo");
+
+    if (status == EXIT_DONE) {
+        status = refocus_stack_add(stack, other.photo->image, frames->position[k]);
+        if (status != REFOCUS_OK)
+            status = report_failure(EXIT_FAILED, frames->file[k],
+                                    "it is %dx%d, and other frames are not; give frames of one "
+                                    "size",
+                                    other.photo->image->width, other.photo->image->height);
+    }
+    input_free(&other);
+    return status;
+}
+
+static int add_all(struct refocus_stack *stack, const struct frames *frames,
+                   const struct input *input)
+{
+    for (int k = 0; k < frames->count; k++) {
+        report_progress("reading", 0.6 * k / frames->count);
+        if (k != frames->reference) {
+            const int status = add(stack, frames, k);
+
+            if (status != EXIT_DONE)
+                return status;
+        } else if (refocus_stack_add(stack, input->photo->image, frames->position[k])) {
+            return report_failure(EXIT_FAILED, frames->file[k], "it cannot be added to the stack");
+        }
+    }
+    return EXIT_DONE;
+}
+
+/* ----- result ----- */
+
+static void set_range(struct input *input, const struct frames *frames,
+                      const struct depth_settings *settings)
+{
+    double least = frames->position[0], most = least;
+
+    for (int k = 1; k < frames->count; k++) {
+        least = fmin(least, frames->position[k]);
+        most = fmax(most, frames->position[k]);
+    }
+    if (!isnan(most) && !frames->no_unit) {
+        input->report.near_m = 1 / most;
+        input->report.far_m = least > 0 ? 1 / least : INFINITY;
+    }
+    if (!isnan(settings->near_m))
+        input->report.near_m = settings->near_m;
+    if (!isnan(settings->far_m))
+        input->report.far_m = settings->far_m;
+}
+
+static int finish(struct input *input, struct refocus_stack *stack, const struct frames *frames)
+{
+    struct refocus_stack_result result = refocus_stack_result_default();
+    const struct refocus_image *image = input->photo->image;
+    const size_t pixels = (size_t)image->width * (size_t)image->height;
+
+    input->disparity = malloc(pixels * sizeof *input->disparity);
+    input->confidence = malloc(pixels);
+    if (!input->disparity || !input->confidence)
+        return report_failure(EXIT_FAILED, input->photo_name, "not enough memory");
+    result.photo = image->plane[0];
+    result.photo_stride = image->stride[0];
+    result.disparity = input->disparity;
+    result.disparity_stride = 2 * (ptrdiff_t)image->width;
+    result.confidence = input->confidence;
+    result.confidence_stride = image->width;
+    report_progress("comparing", 0.6);
+    if (refocus_stack_finish(stack, &result))
+        return report_failure(EXIT_FAILED, input->photo_name, "the stack cannot be finished");
+    if (result.measured < (float)LEAST_MEASURED)
+        return report_failure(EXIT_FAILED, input->photo_name,
+                              "no part of the picture is sharper in one frame than in the others; "
+                              "give frames of different focus");
+    if (result.disorder > (float)MOST_DISORDER)
+        report_warning(input->photo_name,
+                       "frames do not follow each other in focus; give the farthest first, or "
+                       "--positions");
+    for (size_t i = 0; i < pixels; i++)
+        input->report.unknown += input->confidence[i] < 128;
+    snprintf(input->made_info.evidence[0], REFOCUS_INFO_LENGTH,
+             "focus stack: %d frames, moved by up to %.1f pixels, in the geometry of frame %d",
+             frames->count, (double)result.moved, frames->reference + 1);
+    input->made_info.evidence_count = 1;
+    if (frames->of_files)
+        snprintf(input->made_info.evidence[input->made_info.evidence_count++], REFOCUS_INFO_LENGTH,
+                 "EXIF: the subject distances of the frames");
+    return EXIT_DONE;
+}
+
+/* The input's map is of the photo's size, and all of it has a value. */
+static void begin(struct input *input)
+{
+    struct refocus_depth_map *const map = &input->made_map;
+
+    *map = refocus_depth_map_default();
+    input->made.depth = map;
+    input->made.info = &input->made_info;
+    map->width = input->width = input->photo->image->width;
+    map->height = input->height = input->photo->image->height;
+    input->report.value_near = map->value_near = 1;
+    input->depth_from = &input->made;
+}
+
+int input_read_stack(struct input *input, const char *const *files,
+                     const struct stack_settings *how, const struct depth_settings *settings)
+{
+    struct refocus_stack_params params;
+    struct refocus_stack *stack = NULL;
+    struct frames frames = {.file = files};
+    int status;
+
+    while (files[frames.count])
+        frames.count++;
+    status = read_positions(&frames, how->positions);
+    if (status != EXIT_DONE)
+        return status;
+    frames.reference = isnan(how->reference) ? middle_of(&frames) : (int)how->reference - 1;
+    status = input_read_photo(input, files[frames.reference], "a photo");
+    if (status != EXIT_DONE)
+        return status;
+    begin(input);
+    params = refocus_stack_params_default(input->width, input->height, frames.count);
+    params.reference = frames.reference + 1;
+    params.align = (uint32_t)how->align;
+    status = refocus_stack_create(&stack, &params);
+    if (status != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, files[frames.reference], "%s",
+                              status == REFOCUS_ERR_ARGUMENT
+                                  ? "it is too small; give frames of 16 x 16 pixels and more"
+                                  : refocus_strerror(status));
+    set_range(input, &frames, settings);
+    status = add_all(stack, &frames, input);
+    if (status == EXIT_DONE)
+        status = finish(input, stack, &frames);
+    refocus_stack_destroy(&stack);
+    return status;
+}
+
+/* ----- photo ----- */
+
+int stacked_write_photo(const struct input *input, const char *path)
+{
+    const struct refocus_write_options keeps = output_keeps(input->photo);
+
+    return output_write_image(path, input->photo->image, &keeps);
+}
+
+int stacked_write_temporary(const struct input *input, const char *path, char **temporary)
+{
+    struct refocus_reason reason = {""};
+    const int status = refocus_file_temporary(path, temporary, &reason);
+
+    return status == REFOCUS_OK
+               ? stacked_write_photo(input, *temporary)
+               : report_failure(EXIT_FAILED, path, "%s",
+                                reason.text[0] ? reason.text : refocus_strerror(status));
+}

@@ -1,0 +1,79 @@
+/* depth_stack.h: depth and an all-in-focus photo are made of a focus stack. */
+#ifndef RF_CLI_DEPTH_STACK_H
+#define RF_CLI_DEPTH_STACK_H
+
+#include <refocus/stack.h>
+#include "inputs/inputs.h"
+#include "outputs/outputs.h"
+
+/* How --focal-stack is read. */
+struct stack_settings {
+    bool on;
+    const char *positions; /* dioptres with commas, or a file of JSON; NULL: not known */
+    double reference;      /* frame whose geometry the result has, from 1 on; NAN: the middle one */
+    int align;             /* enum refocus_stack_align */
+    const char *photo;     /* receives the photo as well, or NULL */
+};
+#define STACK_SETTINGS_NONE                                                                        \
+    {                                                                                              \
+        false, NULL, NAN, 0, NULL                                                                  \
+    }
+
+/* Rows for tables of options. */
+#define STACK_OPTIONS(type, member)                                                                \
+    {.kind = OPTION_FLAG,                                                                          \
+     .name = "--focal-stack",                                                                      \
+     .offset = offsetof(type, member.on),                                                          \
+     .brief = "the FILEs show one view at 2 to 32 focus distances",                                \
+     .help =                                                                                       \
+         "the FILEs show one view at 2 to 32 focus distances, the farthest first: depth, and a "   \
+         "photo that is in focus everywhere, are made of them"},                                   \
+        {.kind = OPTION_TEXT,                                                                      \
+         .name = "--positions",                                                                    \
+         .argument = "LIST",                                                                       \
+         .offset = offsetof(type, member.positions),                                               \
+         .help =                                                                                   \
+             "focus of each frame in dioptres, 1 / metres, with commas, or a .json file with a "   \
+             "list of them; then any order will do, and depth is in metres; default: the subject " \
+             "distances of EXIF, else equally far apart",                                          \
+         .needs = "--focal-stack"},                                                                \
+        {.kind = OPTION_INTEGER,                                                                   \
+         .name = "--reference",                                                                    \
+         .argument = "N",                                                                          \
+         .offset = offsetof(type, member.reference),                                               \
+         .least = 1,                                                                               \
+         .greatest = REFOCUS_STACK_MOST_FRAMES,                                                    \
+         .help = "the result is seen as in the N-th frame; default: the one in the middle",        \
+         .needs = "--focal-stack"},                                                                \
+        {.kind = OPTION_CHOICE,                                                                    \
+         .name = "--align",                                                                        \
+         .argument = "HOW",                                                                        \
+         .offset = offsetof(type, member.align),                                                   \
+         .choice = stack_align_name,                                                               \
+         .summary = stack_align_summary,                                                           \
+         .help = "how frames are laid on each other",                                              \
+         .needs = "--focal-stack"},                                                                \
+    {                                                                                              \
+        .kind = OPTION_TEXT, .name = "--photo", .argument = "FILE",                                \
+        .offset = offsetof(type, member.photo),                                                    \
+        .help =                                                                                    \
+            "write the photo that is in focus everywhere as well: " OUTPUT_PICTURES "; a .jpg as " \
+            "OUT is that photo with the depth inside",                                             \
+        .needs = "--focal-stack"                                                                   \
+    }
+
+/* Words of --align and what they mean; NULL ends them. */
+const char *stack_align_name(uint32_t index);
+const char *stack_align_summary(uint32_t index);
+
+/* Read the frames, one after the other, and make the input of them: its photo is in focus
+ * everywhere. The list of files ends with NULL. Returns an exit code and prints why. */
+int input_read_stack(struct input *input, const char *const *files,
+                     const struct stack_settings *how, const struct depth_settings *settings);
+
+/* Write the photo of a stack as a picture, or to a temporary file beside the place of a path, whose
+ * name free() ends. These return exit codes and print why. */
+int stacked_write_photo(const struct input *input, const char *path);
+int stacked_write_temporary(const struct input *input, const char *path, char **temporary);
+
+#endif

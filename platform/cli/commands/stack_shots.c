@@ -1,0 +1,390 @@
+/* stack_shots.c: a camera moves its lens and photographs a focus stack into a folder.
+ *
+ * Time is that of the frames' own stamps, so a scripted camera takes none. The lens has arrived
+ * when the position that it reports is the one asked for, or when it has not changed for a second;
+ * a lens that reports nothing has arrived after the time to settle.
+ */
+#include "commands/stack_shots.h"
+#include <errno.h>
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <refocus/platform/convert.h>
+#include "inputs/inputs.h"
+#include "line/interrupt.h"
+#include "line/report.h"
+#include "outputs/outputs.h"
+
+enum {
+    WAIT_MS = 3000,     /* for a frame */
+    MEASURE_MS = 1000,  /* the camera finds its exposure in that time */
+    RESTING_MS = 1000,  /* a lens that has not moved for so long has stopped */
+    LONGEST_MS = 20000, /* for one position */
+    MOST_BROKEN = 100,  /* frames in a row */
+};
+
+/* ----- plan ----- */
+
+static int fail(const struct shots *shots, int status, const struct refocus_reason *reason)
+{
+    if (status == REFOCUS_ERR_CANCELLED)
+        return report_failure(EXIT_FAILED, shots->settings->camera,
+                              "interrupted; nothing was written");
+    return report_failure(input_exit_code(status), shots->settings->camera, "%s",
+                          reason->text[0] ? reason->text : refocus_strerror(status));
+}
+
+static int plan_range(struct shots *shots)
+{
+    const double *range = shots->settings->range;
+    const struct refocus_source_lens *lens = &shots->lens;
+    const bool given = !isnan(range[0]);
+    const double from = given ? range[0] : lens->least, to = given ? range[1] : lens->greatest;
+
+    if (!(from >= lens->least && to <= lens->greatest && from < to))
+        return report_failure(EXIT_WRONG, given ? "--range" : shots->settings->camera,
+                              "its lens goes from %g to %g; give the farther one first",
+                              lens->least, lens->greatest);
+    shots->count = (int)shots->settings->steps;
+    for (int k = 0; k < shots->count; k++)
+        shots->asked[k] = from + (to - from) * k / (shots->count - 1);
+    for (int k = 1; k < shots->count && !lens->dioptres; k++) /* steps are whole numbers */
+        if (lround(shots->asked[k]) == lround(shots->asked[k - 1]))
+            return report_failure(EXIT_WRONG, "--steps",
+                                  "its lens has %g positions in that range; give fewer steps",
+                                  to - from + 1);
+    return EXIT_DONE;
+}
+
+int shots_plan(struct shots *shots, const struct shots_settings *settings)
+{
+    struct refocus_reason reason = {""};
+    int status;
+
+    memset(shots, 0, sizeof *shots);
+    shots->settings = settings;
+    shots->lens = refocus_source_lens_default();
+    status = refocus_source_open(&shots->source, settings->camera, &reason);
+    if (status == REFOCUS_OK)
+        status = refocus_source_get_lens(shots->source, &shots->lens, &reason);
+    if (status != REFOCUS_OK)
+        return fail(shots, status, &reason);
+    if (!(shots->lens.modes >> REFOCUS_SOURCE_FOCUS_FIXED & 1))
+        return report_failure(EXIT_FAILED, settings->camera,
+                              "its lens cannot be moved; focus by hand, and give the pictures to "
+                              "refocus depth --focal-stack");
+    return plan_range(shots);
+}
+
+void shots_end(struct shots *shots)
+{
+    refocus_source_close(&shots->source);
+}
+
+/* ----- frames ----- */
+
+/* The next frame that is whole. */
+static int next_frame(struct shots *shots, const struct refocus_frame **frame)
+{
+    struct refocus_reason reason = {""};
+
+    for (int i = 0; i < MOST_BROKEN; i++) {
+        const int status = refocus_source_wait(shots->source, WAIT_MS, frame, &reason);
+
+        if (status != REFOCUS_OK)
+            return fail(shots, status, &reason);
+        if (!((*frame)->flags & REFOCUS_FRAME_CORRUPT))
+            return EXIT_DONE;
+        refocus_source_release(shots->source, *frame);
+    }
+    return report_failure(EXIT_FAILED, shots->settings->camera, "all of its frames are damaged");
+}
+
+/* The time of the next frame in milliseconds; the frame itself is not wanted. */
+static int pass_frame(struct shots *shots, double *ms)
+{
+    const struct refocus_frame *frame;
+    const int status = next_frame(shots, &frame);
+
+    if (status == EXIT_DONE) {
+        *ms = (double)frame->timestamp_ns * 1e-6;
+        refocus_source_release(shots->source, frame);
+    }
+    return status;
+}
+
+static int pass_time(struct shots *shots, double ms)
+{
+    double first, now;
+    int status = pass_frame(shots, &first);
+
+    for (now = first; status == EXIT_DONE && now >= first && now < first + ms;)
+        status = pass_frame(shots, &now);
+    return status;
+}
+
+static int focus(struct shots *shots, double position)
+{
+    struct refocus_reason reason = {""};
+    const int status =
+        refocus_source_set_focus(shots->source, REFOCUS_SOURCE_FOCUS_FIXED, position, &reason);
+
+    return status == REFOCUS_OK ? EXIT_DONE : fail(shots, status, &reason);
+}
+
+/* Frames pass until the lens is there, or stays elsewhere; *position receives what it reports. */
+static int arrive(struct shots *shots, double asked, double near_by, double *position)
+{
+    struct refocus_source_lens lens = refocus_source_lens_default();
+    struct refocus_reason reason = {""};
+    double began, now, mark = NAN, marked;
+    int status = pass_frame(shots, &began);
+
+    for (now = marked = began; status == EXIT_DONE; status = pass_frame(shots, &now)) {
+        const int got = refocus_source_get_lens(shots->source, &lens, &reason);
+
+        if (got != REFOCUS_OK)
+            return fail(shots, got, &reason);
+        *position = lens.position;
+        if (isnan(lens.position) || fabs(lens.position - asked) <= near_by)
+            return EXIT_DONE;
+        if (!(fabs(lens.position - mark) <= 0.2 * near_by)) {
+            mark = lens.position;
+            marked = now;
+        }
+        if (now - marked >= RESTING_MS || now < began)
+            return EXIT_DONE;
+        if (now - began >= LONGEST_MS)
+            return report_failure(EXIT_FAILED, shots->settings->camera,
+                                  "its lens has not come to rest within %d s", LONGEST_MS / 1000);
+    }
+    return status;
+}
+
+/* Moves the lens to position k. It may be off, but has to be nearer than the one before. */
+static int move_lens(struct shots *shots, int k)
+{
+    const double step = (shots->asked[shots->count - 1] - shots->asked[0]) / (shots->count - 1);
+    double position = NAN;
+    int status = focus(shots, shots->asked[k]);
+
+    if (status == EXIT_DONE)
+        status = arrive(shots, shots->asked[k], 0.1 * step, &position);
+    if (status == EXIT_DONE)
+        status = pass_time(shots, shots->settings->settle);
+    if (status != EXIT_DONE)
+        return status;
+    shots->reported[k] = isnan(position) ? shots->asked[k] : position;
+    if (k > 0 && shots->reported[k] < shots->reported[k - 1] + 0.25 * step)
+        return report_failure(EXIT_FAILED, shots->settings->camera,
+                              "its lens stays at %g where %g was asked for; give a --range that it "
+                              "can reach",
+                              shots->reported[k], shots->asked[k]);
+    return EXIT_DONE;
+}
+
+/* ----- pictures ----- */
+
+struct picture {
+    struct refocus_converter *converter;
+    int width, height;
+    uint8_t *rgb;
+    uint16_t *sum; /* up to 64 frames added up */
+};
+
+/* Makes it as large as the first frame; all others have to be so, too. */
+static int make_picture(struct picture *picture, const struct shots *shots,
+                        const struct refocus_frame *frame)
+{
+    const uint64_t bytes = 3 * (uint64_t)frame->width * (uint64_t)frame->height;
+
+    if (picture->rgb)
+        return frame->width == picture->width && frame->height == picture->height
+                   ? EXIT_DONE
+                   : report_failure(EXIT_FAILED, shots->settings->camera,
+                                    "its frames have changed their size");
+    picture->width = frame->width;
+    picture->height = frame->height;
+    picture->rgb = bytes <= SIZE_MAX / 2 ? malloc((size_t)bytes) : NULL;
+    picture->sum = bytes <= SIZE_MAX / 2 ? malloc(2 * (size_t)bytes) : NULL;
+    return picture->rgb && picture->sum && !refocus_converter_create(&picture->converter)
+               ? EXIT_DONE
+               : report_failure(EXIT_FAILED, shots->settings->camera, "not enough memory");
+}
+
+static int add_frame(struct shots *shots, struct picture *picture)
+{
+    struct refocus_reason reason = {""};
+    const struct refocus_frame *frame;
+    int status = next_frame(shots, &frame);
+
+    if (status != EXIT_DONE)
+        return status;
+    status = make_picture(picture, shots, frame);
+    if (status == EXIT_DONE) {
+        const struct refocus_image image = refocus_image_packed(
+            REFOCUS_FORMAT_RGB8, picture->rgb, frame->width, frame->height, 3 * frame->width);
+        const int got = refocus_convert_rgb8(picture->converter, frame, &image, &reason);
+
+        status = got == REFOCUS_OK ? EXIT_DONE : fail(shots, got, &reason);
+    }
+    refocus_source_release(shots->source, frame);
+    return status;
+}
+
+/* The mean of the frames at one position. */
+static int take_picture(struct shots *shots, struct picture *picture, const char *file)
+{
+    const int frames = (int)shots->settings->average;
+    int status = EXIT_DONE;
+
+    for (int i = 0; i < frames && status == EXIT_DONE; i++) {
+        status = add_frame(shots, picture);
+        const size_t bytes = 3 * (size_t)picture->width * (size_t)picture->height;
+
+        for (size_t b = 0; b < bytes && status == EXIT_DONE && frames > 1; b++) {
+            picture->sum[b] = (uint16_t)((i ? picture->sum[b] : frames / 2) + picture->rgb[b]);
+            if (i + 1 == frames)
+                picture->rgb[b] = (uint8_t)(picture->sum[b] / frames);
+        }
+    }
+    if (status != EXIT_DONE)
+        return status;
+    const struct refocus_image image = refocus_image_packed(
+        REFOCUS_FORMAT_RGB8, picture->rgb, picture->width, picture->height, 3 * picture->width);
+    return output_write_image(file, &image, NULL);
+}
+
+bool shots_name(char name[SHOTS_NAME], const char *folder, int k, const char *ending)
+{
+    const int n = k < 0 ? snprintf(name, SHOTS_NAME, "%s/stack.json", folder)
+                        : snprintf(name, SHOTS_NAME, "%s/%02d%s", folder, k, ending);
+
+    return n > 0 && n < SHOTS_NAME;
+}
+
+void shots_remove(const struct shots *shots, const char *folder, const char *ending)
+{
+    char name[SHOTS_NAME];
+
+    for (int k = -1; k < shots->count; k++)
+        if (shots_name(name, folder, k, ending))
+            unlink(name);
+    rmdir(folder);
+}
+
+/* Positions without a unit count from the first, since they may be below 0. */
+static int write_positions(const struct shots *shots, const char *folder, const char *ending)
+{
+    json_t *json = json_object(), *positions = json_array(), *frames = json_array();
+    const double first = shots->lens.dioptres ? 0 : shots->reported[0];
+    char name[SHOTS_NAME];
+    char *text = NULL;
+    int status;
+
+    for (int k = 0; k < shots->count; k++) {
+        snprintf(name, sizeof name, "%02d%s", k, ending);
+        json_array_append_new(positions, json_real(shots->reported[k] - first));
+        json_array_append_new(frames, json_string(name));
+    }
+    if (!json_object_set_new(json, "dioptres", json_boolean(shots->lens.dioptres)) &&
+        !json_object_set_new(json, "positions", positions) &&
+        !json_object_set_new(json, "frames", frames))
+        text = json_dumps(json, JSON_INDENT(1) | JSON_REAL_PRECISION(9));
+    json_decref(json);
+    shots_name(name, folder, -1, ending);
+    status = text ? output_write_file(name, text, strlen(text))
+                  : report_failure(EXIT_FAILED, name, "not enough memory");
+    free(text);
+    return status;
+}
+
+/* ----- all of it ----- */
+
+static void interrupt_source(void *source)
+{
+    refocus_source_interrupt(source);
+}
+
+/* The exposure is that of the middle of the range. */
+static int begin(struct shots *shots)
+{
+    const struct shots_settings *settings = shots->settings;
+    struct refocus_source_config config = refocus_source_config_default();
+    struct refocus_reason reason = {""};
+    int status;
+
+    if (!isnan(settings->size[0])) {
+        config.width = (int32_t)settings->size[0];
+        config.height = (int32_t)settings->size[1];
+    }
+    if (refocus_source_kind(settings->camera) == REFOCUS_SOURCE_KIND_SCRIPT)
+        config.flags = REFOCUS_SOURCE_FAST;
+    status = refocus_source_start(shots->source, &config, NULL, &reason);
+    if (status != REFOCUS_OK)
+        return fail(shots, status, &reason);
+    status = focus(shots, shots->asked[shots->count / 2]);
+    if (status == EXIT_DONE)
+        status = pass_time(shots, MEASURE_MS);
+    if (status != EXIT_DONE)
+        return status;
+    status = refocus_source_lock_exposure(shots->source, 1, &reason);
+    if (status == REFOCUS_ERR_UNSUPPORTED)
+        report_warning(settings->camera, "its exposure cannot be locked; frames may differ");
+    else if (status != REFOCUS_OK)
+        return fail(shots, status, &reason);
+    return EXIT_DONE;
+}
+
+/* The camera is left to itself again. */
+static void let_go(struct shots *shots)
+{
+    refocus_source_lock_exposure(shots->source, 0, NULL);
+    if (shots->lens.modes >> REFOCUS_SOURCE_FOCUS_CONTINUOUS & 1)
+        refocus_source_set_focus(shots->source, REFOCUS_SOURCE_FOCUS_CONTINUOUS, 0, NULL);
+}
+
+static void warn_of_positions(const struct shots *shots)
+{
+    const double step = (shots->asked[shots->count - 1] - shots->asked[0]) / (shots->count - 1);
+
+    for (int k = 0; k < shots->count; k++)
+        if (fabs(shots->reported[k] - shots->asked[k]) > 0.25 * step) {
+            report_warning(shots->settings->camera,
+                           "its lens reports %g where %g was asked for; depth goes by what it "
+                           "reports",
+                           shots->reported[k], shots->asked[k]);
+            return;
+        }
+}
+
+int shots_take(struct shots *shots, const char *folder, const char *ending)
+{
+    struct picture picture = {0};
+    char name[SHOTS_NAME];
+    int status;
+
+    interrupt_call(interrupt_source, shots->source);
+    status = begin(shots);
+    for (int k = 0; k < shots->count && status == EXIT_DONE; k++) {
+        report_progress("photographing", (double)k / shots->count);
+        status = move_lens(shots, k);
+        if (status == EXIT_DONE)
+            status = shots_name(name, folder, k, ending)
+                         ? take_picture(shots, &picture, name)
+                         : report_failure(EXIT_FAILED, folder, "the name is too long");
+    }
+    interrupt_call(NULL, NULL);
+    let_go(shots);
+    if (status == EXIT_DONE) {
+        warn_of_positions(shots);
+        status = write_positions(shots, folder, ending);
+    }
+    refocus_converter_destroy(&picture.converter);
+    free(picture.rgb);
+    free(picture.sum);
+    return status;
+}

@@ -1,0 +1,54 @@
+/* limits.h: how large picture files may be, for all that a command reads. */
+#ifndef RF_CLI_LIMITS_H
+#define RF_CLI_LIMITS_H
+
+#include <math.h>
+#include <refocus/platform/file.h>
+#include "line/option.h"
+
+struct limit_settings {
+    double side, pixels, mebibytes; /* NAN or 0: the defaults of the library */
+    bool raw_preview;
+};
+
+#define LIMIT_SETTINGS_NONE                                                                        \
+    {                                                                                              \
+        NAN, NAN, NAN, false                                                                       \
+    }
+/* Rows for tables of options, where the settings have a member of the type above. */
+#define LIMIT_OPTIONS(type, member)                                                                \
+    {.kind = OPTION_INTEGER,                                                                       \
+     .elsewhere = true,                                                                            \
+     .name = "--max-side",                                                                         \
+     .argument = "N",                                                                              \
+     .offset = offsetof(type, member.side),                                                        \
+     .least = 1,                                                                                   \
+     .greatest = REFOCUS_MAX_SIDE,                                                                 \
+     .help = "refuse picture files with more pixels a side; default 32768"},                       \
+        {.kind = OPTION_INTEGER,                                                                   \
+         .elsewhere = true,                                                                        \
+         .name = "--max-pixels",                                                                   \
+         .argument = "N",                                                                          \
+         .offset = offsetof(type, member.pixels),                                                  \
+         .least = 1,                                                                               \
+         .greatest = 4294836225.0, /* REFOCUS_MAX_SIDE squared */                                  \
+         .help = "refuse those with more pixels; default 201326592, 16384 x 12288"},               \
+        {.kind = OPTION_FLAG,                                                                      \
+         .elsewhere = true,                                                                        \
+         .name = "--raw-preview",                                                                  \
+         .offset = offsetof(type, member.raw_preview),                                             \
+         .help = "of a camera raw its preview, the JPEG in it, instead of the photo that libraw "  \
+                 "develops"},                                                                      \
+    {                                                                                              \
+        .kind = OPTION_INTEGER, .elsewhere = true, .name = "--max-memory", .argument = "MIB",      \
+        .offset = offsetof(type, member.mebibytes), .least = 1, .greatest = 1e9,                   \
+        .help = "refuse those that take more memory to read, in MiB; default half the machine's"   \
+    }
+
+/* Settle the limits, before anything is read. */
+void limits_take(const struct limit_settings *settings);
+
+/* The limits of all picture files that the command reads. */
+const struct refocus_read_limits *limits_taken(void);
+
+#endif

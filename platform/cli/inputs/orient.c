@@ -1,0 +1,55 @@
+/* orient.c: a depth map that lies as the sensor did is turned as its photo was. */
+#include <stdlib.h>
+#include <string.h>
+#include "inputs/orient.h"
+
+const char *orient_name(uint32_t index)
+{
+    static const char *const names[] = {"auto", "0", "90", "180", "270"};
+
+    return index < sizeof names / sizeof *names ? names[index] : NULL;
+}
+
+const char *orient_summary(uint32_t index)
+{
+    static const char *const words[] = {
+        "a map on its side beside a photo that EXIF has turned is turned with it", "as it is",
+        "a quarter turn", "upside down", "a quarter turn anticlockwise"};
+
+    return index < sizeof words / sizeof *words ? words[index] : NULL;
+}
+
+int orient_choose(enum orient orient, bool on_its_side, int photo_orientation, bool turned_already)
+{
+    static const int asked[] = {1, 1, 6, 3, 8};
+
+    if (orient != ORIENT_AUTO || !on_its_side || photo_orientation < 5)
+        return asked[orient];
+    if (turned_already && (photo_orientation == 6 || photo_orientation == 8))
+        return 14 - photo_orientation;
+    return photo_orientation;
+}
+
+bool orient_turn(void **samples, size_t bytes, int width, int height, int orientation)
+{
+    const bool exchanged = orientation >= 5;
+    const int across = exchanged ? height : width, down = exchanged ? width : height;
+    uint8_t *const turned = malloc((size_t)width * (size_t)height * bytes), *to = turned;
+
+    if (!turned)
+        return false;
+    for (int y = 0; y < down; y++)
+        for (int x = 0; x < across; x++, to += bytes) {
+            int u = exchanged ? y : x, v = exchanged ? x : y;
+
+            if (orientation == 3 || orientation == 7 || orientation == 8)
+                u = width - 1 - u;
+            if (orientation == 3 || orientation == 6 || orientation == 7)
+                v = height - 1 - v;
+            memcpy(to, (const uint8_t *)*samples + ((size_t)v * (size_t)width + (size_t)u) * bytes,
+                   bytes);
+        }
+    free(*samples);
+    *samples = turned;
+    return true;
+}

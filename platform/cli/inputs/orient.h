@@ -1,0 +1,24 @@
+/* orient.h: a depth map that lies as the sensor did is turned as its photo was. */
+#ifndef RF_CLI_ORIENT_H
+#define RF_CLI_ORIENT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum orient { ORIENT_AUTO, ORIENT_0, ORIENT_90, ORIENT_180, ORIENT_270 };
+
+/* Words of --orient-depth, and a line on each; NULL ends them. */
+const char *orient_name(uint32_t index);
+const char *orient_summary(uint32_t index);
+
+/* The EXIF orientation, 1 to 8, that turns a map as asked for. AUTO turns one that lies on its side
+ * beside a photo by what has turned the photo, or back, where the reader has turned the map with
+ * it. */
+int orient_choose(enum orient orient, bool on_its_side, int photo_orientation, bool turned_already);
+
+/* Turn packed samples of 1 or 2 bytes by an EXIF orientation but 2 and 4, in new memory that takes
+ * the place of the old; false without memory. The sides stay the caller's to exchange. */
+bool orient_turn(void **samples, size_t bytes, int width, int height, int orientation);
+
+#endif

@@ -1,0 +1,30 @@
+/* shape.c: a depth map has to have the shape of its photo, and is turned where it lies on its side.
+ */
+#include "inputs/shape.h"
+#include "line/report.h"
+
+bool shape_is_another(int width, int height, const struct refocus_image *photo)
+{
+    enum { FEWEST = 16 };
+    const int64_t wide = (int64_t)width * photo->height;
+    const int64_t high = (int64_t)height * photo->width;
+
+    return width >= FEWEST && height >= FEWEST && width != height &&
+           (2 * wide > 3 * high || 2 * high > 3 * wide);
+}
+
+bool shape_lies_on_its_side(int width, int height, const struct refocus_image *photo)
+{
+    return shape_is_another(width, height, photo) && !shape_is_another(height, width, photo);
+}
+
+int shape_check(const char *file, int width, int height, const struct refocus_image *photo,
+                const char *what)
+{
+    if (!shape_is_another(width, height, photo))
+        return EXIT_DONE;
+    return report_failure(EXIT_FAILED, file,
+                          "its %dx%d samples have another shape than the photo of %dx%d pixels; "
+                          "give the %s of this photo, as upright as the photo is",
+                          width, height, (int)photo->width, (int)photo->height, what);
+}

@@ -1,0 +1,28 @@
+/* transfer.h: the curves by which photos of more than 8 bits store light. */
+#ifndef RF_CLI_TRANSFER_H
+#define RF_CLI_TRANSFER_H
+
+#include <stdint.h>
+#include "line/option.h"
+
+const char *transfer_name(uint32_t index);
+const char *transfer_summary(uint32_t index);
+
+/* Rows of a table of options; `member` is a struct depth_settings. */
+#define TRANSFER_OPTIONS(type, member)                                                             \
+    {.kind = OPTION_CHOICE,                                                                        \
+     .name = "--transfer",                                                                         \
+     .argument = "CURVE",                                                                          \
+     .offset = offsetof(type, member.transfer),                                                    \
+     .choice = transfer_name,                                                                      \
+     .summary = transfer_summary,                                                                  \
+     .help = "how a photo of more than 8 bits stores light; default auto"},                        \
+    {                                                                                              \
+        .kind = OPTION_NUMBER, .name = "--white", .argument = "LIGHT",                             \
+        .offset = offsetof(type, member.white), .least = 1 / 65536.0, .greatest = 65536,           \
+        .help =                                                                                    \
+            "light of such a photo that is shown as white, cd/m2 with pq; what is brighter keeps " \
+            "its light out of focus; default 1, 203 with pq, 0.265 with hlg"                       \
+    }
+
+#endif

@@ -1,0 +1,91 @@
+/* ways.h: options that say how depth is made of pictures. */
+#ifndef RF_CLI_WAYS_H
+#define RF_CLI_WAYS_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include "line/option.h"
+
+/* How --estimate feeds its network; NAN: as the preset and the file say. */
+struct network_settings {
+    int preset;
+    double size[2], mean[3], scale;
+    bool inverse;
+};
+#define NETWORK_SETTINGS_NONE                                                                      \
+    {                                                                                              \
+        0, {NAN, NAN}, {NAN, NAN, NAN}, NAN, false                                                 \
+    }
+
+/* How a pair is matched. */
+struct stereo_settings {
+    bool within; /* both pictures are in the one file */
+    int method;  /* enum refocus_stereo_method */
+};
+
+/* Words of --network and --match; NULL ends them. */
+const char *ways_network(uint32_t index);
+const char *ways_match(uint32_t index);
+const char *ways_match_summary(uint32_t index);
+
+/* Rows for tables of options: `model` is a text, `network` and `stereo` are the settings above,
+ * short_help is a line of --help or NULL. */
+#define ESTIMATE_OPTIONS(type, model, network, short_help)                                         \
+    {.kind = OPTION_TEXT,                                                                          \
+     .name = "--estimate",                                                                         \
+     .argument = "MODEL.onnx",                                                                     \
+     .offset = offsetof(type, model),                                                              \
+     .brief = short_help,                                                                          \
+     .help = "depth of the one photo, by a network"},                                              \
+        {.kind = OPTION_CHOICE,                                                                    \
+         .name = "--network",                                                                      \
+         .argument = "NAME",                                                                       \
+         .offset = offsetof(type, network.preset),                                                 \
+         .choice = ways_network,                                                                   \
+         .help = "which network it is: range of its input, and its size where the file "           \
+                 "leaves it open",                                                                 \
+         .needs = "--estimate"},                                                                   \
+        {.kind = OPTION_NUMBERS,                                                                   \
+         .name = "--input-size",                                                                   \
+         .argument = "W,H",                                                                        \
+         .offset = offsetof(type, network.size),                                                   \
+         .least = 32,                                                                              \
+         .greatest = 2048,                                                                         \
+         .count = 2,                                                                               \
+         .help = "of the picture that the network takes; default: what the file says, else "       \
+                 "that of --network",                                                              \
+         .needs = "--estimate"},                                                                   \
+        {.kind = OPTION_NUMBERS,                                                                   \
+         .name = "--input-mean",                                                                   \
+         .argument = "R,G,B",                                                                      \
+         .offset = offsetof(type, network.mean),                                                   \
+         .least = -1000,                                                                           \
+         .greatest = 1000,                                                                         \
+         .count = 3,                                                                               \
+         .help = "codes that the network takes as 0; default: those of --network",                 \
+         .needs = "--estimate"},                                                                   \
+        {.kind = OPTION_NUMBER,                                                                    \
+         .name = "--input-scale",                                                                  \
+         .argument = "S",                                                                          \
+         .offset = offsetof(type, network.scale),                                                  \
+         .least = -1000,                                                                           \
+         .greatest = 1000,                                                                         \
+         .help = "worth of a code: value = (code - mean) S; default: that of --network",           \
+         .needs = "--estimate"},                                                                   \
+    {                                                                                              \
+        .kind = OPTION_FLAG, .name = "--far-is-large", .offset = offsetof(type, network.inverse),  \
+        .help = "the network gives distances: larger = farther", .needs = "--estimate"             \
+    }
+#define STEREO_FILE_OPTION(type, stereo, short_help)                                               \
+    {                                                                                              \
+        .kind = OPTION_FLAG, .name = "--stereo-file", .brief = short_help,                         \
+        .offset = offsetof(type, stereo.within),                                                   \
+        .help = "the photo's file holds both pictures of a stereo pair: an MPO or a stereo HEIC"   \
+    }
+#define MATCH_OPTION(type, stereo, short_help)                                                     \
+    .kind = OPTION_CHOICE, .name = "--match", .brief = short_help, .argument = "HOW",              \
+    .offset = offsetof(type, stereo.method), .choice = ways_match, .summary = ways_match_summary,  \
+    .help = "how a stereo pair is matched"
+
+#endif

@@ -1,0 +1,94 @@
+/* live_look.c: the look of live pictures beside focus and blur, by the options that render has. */
+#include "line/report.h"
+#include "live/live_estimate.h"
+#include "live/live_look.h"
+
+const char live_look_no_metres[] =
+    "--focus-distance and --f-number need a depth in metres; give --near and --far, or --focus "
+    "and --blur";
+
+bool live_look_needs_metres(const struct live_settings *settings)
+{
+    return !isnan(settings->lens.focus_distance) || !isnan(settings->lens.f_number);
+}
+
+int live_look_check(struct live_settings *settings)
+{
+    const struct lens_settings *const lens = &settings->lens;
+    int status = input_check_lens(lens);
+
+    if (status == EXIT_DONE)
+        status = controls_check(&settings->engine.controls, input_focus_is_given(lens));
+    if (status != EXIT_DONE)
+        return status;
+    if (settings->engine.fill == FILL_TEXTURED)
+        return report_failure(EXIT_WRONG, "--fill",
+                              "texture takes too long for live; give smooth, or leave it out");
+    if (!isnan(settings->engine.controls.focus_plane[0]))
+        return report_failure(EXIT_WRONG, "--focus-plane",
+                              "what is seen at three pixels changes in live; give --tilt-angle and "
+                              "--tilt-line");
+    if (!isnan(lens->f_number) && isnan(lens->focal_length))
+        return report_failure(EXIT_WRONG, "--f-number",
+                              "it goes with --focal-length in live; give that too");
+    if (live_look_needs_metres(settings) && live_estimate_is_meant(settings->depth.file))
+        return report_failure(EXIT_WRONG, settings->depth.file, "%s", live_look_no_metres);
+    settings->engine.bokeh.f_number = lens->f_number;
+    return EXIT_DONE;
+}
+
+int live_look_check_method(const struct live *live)
+{
+    struct refocus_settings params = live->engine->params;
+    int status;
+
+    params.render.max_blur_radius = (float)live->settings->blur_most;
+    if (!isnan(live->engine->controls.tilt_angle))
+        params.focus.tilt_across = 1; /* whatever the plane will be */
+    status = controls_check_method(&params);
+    return status == EXIT_DONE ? bokeh_check_method(&params, live->engine->has_sides) : status;
+}
+
+int live_look_place(struct live *live, int width, int height)
+{
+    static const struct refocus_depth_range one_dioptre = {1, INFINITY};
+    const struct lens_settings *const lens = &live->settings->lens;
+    struct refocus_settings aimed = live->engine->params;
+    const struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, 3 * (ptrdiff_t)width);
+    int status = papers_place(&live->settings->engine.papers, &live->engine->params, width, height);
+
+    if (status == EXIT_DONE)
+        status = live_look_aim(live, &photo, &aimed);
+    if (status == EXIT_DONE && !isnan(lens->f_number)) {
+        const struct refocus_lens given = input_given_lens(lens, width, height);
+
+        live_focus_lens(&live->focus, refocus_max_blur_radius(&given, &one_dioptre, width));
+    }
+    return status;
+}
+
+int live_look_aim(const struct live *live, const struct refocus_image *photo,
+                  struct refocus_settings *params)
+{
+    const struct engine *const engine = live->engine;
+    const double *const at = live->settings->lens.focus_at;
+    const struct refocus_disparity size =
+        refocus_disparity16(NULL, photo->width, photo->height, 2 * (ptrdiff_t)photo->width);
+    struct controls aimed = engine->controls;
+
+    params->field.disparity = isnan(engine->field_disparity) ? params->render.focus_disparity
+                                                             : (float)engine->field_disparity;
+    if (!isnan(at[0]))
+        controls_turn_about(&aimed, photo, fmin(fmax(at[1], 0), photo->height - 1));
+    return controls_aim(&aimed, params, &size);
+}
+
+bool live_look_takes_yuv(const struct engine *engine)
+{
+    const struct refocus_settings *const params = &engine->params;
+
+    return refocus_method_traits(params->render.method) & REFOCUS_METHOD_TAKES_YUV &&
+           params->look.cat_eye == 0 && params->look.fringe == 0 && params->look.grain == 0 &&
+           params->look.star_spikes == 0 && !engine->has_sides;
+}

@@ -1,0 +1,65 @@
+/* result.h: the size, the quality and the place of a picture that is written. */
+#ifndef RF_CLI_RESULT_H
+#define RF_CLI_RESULT_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <refocus/image.h>
+#include <refocus/platform/file.h>
+#include "line/option.h"
+
+struct result_settings {
+    const char *resize; /* or NULL */
+    double quality;     /* NAN: the default */
+    int format;         /* index of result_format(); 0: by the name */
+    bool standard;      /* the picture goes to standard output */
+};
+
+#define RESULT_SETTINGS_NONE                                                                       \
+    {                                                                                              \
+        .quality = NAN                                                                             \
+    }
+
+/* "auto", and the endings of pictures without their dots; NULL behind the last. */
+const char *result_format(uint32_t index);
+
+/* Rows of a table of options. */
+#define RESULT_OPTIONS(type, member)                                                               \
+    {.kind = OPTION_CHOICE,                                                                        \
+     .elsewhere = true,                                                                            \
+     .name = "--format",                                                                           \
+     .argument = "NAME",                                                                           \
+     .offset = offsetof(type, member.format),                                                      \
+     .choice = result_format,                                                                      \
+     .help = "of standard output (-o -), and {ext} of names; default the photo's own"},            \
+        {.kind = OPTION_TEXT,                                                                      \
+         .elsewhere = true,                                                                        \
+         .name = "--resize",                                                                       \
+         .argument = "SIZE",                                                                       \
+         .offset = offsetof(type, member.resize),                                                  \
+         .brief = "size of the picture: W, WxH or N%",                                             \
+         .help =                                                                                   \
+             "make the picture smaller: W pixels wide, to fit into WxH, or N% of its sides; "      \
+             "never larger than it is. Everything else is in pixels of the photo; the mean of "    \
+             "areas is taken in linear light"},                                                    \
+    {                                                                                              \
+        .kind = OPTION_INTEGER, .elsewhere = true, .name = "--jpeg-quality", .argument = "Q",      \
+        .offset = offsetof(type, member.quality), .least = 1, .greatest = 100,                     \
+        .help = "of JPEG; default 95. Below 90 colour is stored at half the size"                  \
+    }
+
+/* These return exit codes and print why it is not EXIT_DONE. */
+
+/* Check the options before the work; `output` is the name that is written. alone: the picture is
+ * no one of several, of which some may be no JPEG. */
+int result_check(const struct result_settings *settings, const char *output, bool alone);
+
+/* Give a packed picture the size that is asked for; its pixels are freed and made anew. */
+int result_resize(const struct result_settings *settings, struct refocus_image *picture);
+
+/* Write the picture as output_write_image() does, or to standard output in the format that the name
+ * says. */
+int result_write(const struct result_settings *settings, const char *output,
+                 const struct refocus_image *picture, struct refocus_write_options options);
+
+#endif

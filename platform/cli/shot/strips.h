@@ -1,0 +1,28 @@
+/* strips.h: a photo is rendered in strips, which takes little memory. */
+#ifndef RF_CLI_STRIPS_H
+#define RF_CLI_STRIPS_H
+
+#include "inputs/inputs.h"
+#include "shot/engine.h"
+
+/* Rows for tables of options, for settings with members of engine_settings. */
+#define STRIPS_OPTION(type, member)                                                                \
+    {                                                                                              \
+        .kind = OPTION_FLAG, .name = "--low-memory", .offset = offsetof(type, member.in_strips),   \
+        .help = "render in strips: a fourth of the memory, and longer. Thin structures are "       \
+                "gathered by rays, what is hidden is smooth, no matte is used, of a photo 8 bits " \
+                "are taken, and in photos of more than 4 megapixels edges of the depth map are "   \
+                "placed at a smaller size"                                                         \
+    }
+
+/* Refuse options that cannot be met in strips, and leave out what was not asked for; an exit
+ * code, and prints why. */
+int strips_check(const struct engine_settings *engine, struct depth_settings *depth, bool behind);
+
+/* Make packed disparities of the photo's size, which the caller frees, of those of its map; an
+ * exit code, and prints why. The report is written where edges are placed. */
+int strips_disparity(const struct input *input, bool places_edges,
+                     const struct engine_settings *engine, uint16_t **full,
+                     struct refocus_depth_edges_report *report);
+
+#endif

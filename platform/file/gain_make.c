@@ -1,0 +1,218 @@
+/* gain_make.c: the gain map of a picture that was refocused in light beyond white. A sample is the
+ * gain from the mean of the picture to the mean of the light in a block of two by two pixels, as
+ * gain_apply.c takes it apart again. */
+#include "gain_make.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "half.h"
+#include "tone.h"
+
+enum {
+    MOST_STOPS = 16,
+    UNITS = 1 << 16, /* values are multiples of 1 / UNITS, which XMP and ISO 21496-1 both hold */
+};
+
+/* Light by which nothing is divided where the picture is black. */
+static const double offset = 1.0 / 64;
+
+/* Pictures, and the samples of the map between them. */
+struct work {
+    const struct rf_rows *base;
+    const struct refocus_image *light;
+    int width, height;
+    double (*sums)[2][3]; /* a row of blocks: picture, and light */
+    int (*counts)[2];
+    int y[2]; /* rows of them that have been summed up */
+    float of_code[256];
+};
+
+bool rf_gain_can_make(const struct rf_rows *base, const struct refocus_image *light)
+{
+    return base->format == REFOCUS_FORMAT_RGB8 && light->format == REFOCUS_FORMAT_RGB_HALF &&
+           light->plane[0] && light->width >= 1 && light->width <= REFOCUS_MAX_SIDE &&
+           light->height >= 1 && light->height <= REFOCUS_MAX_SIDE &&
+           rf_good_rows(light->stride[0], 6 * (int64_t)light->width, light->height);
+}
+
+/* The block of a pixel, as gain_apply.c counts them. */
+static int block_at(int at, int size, int blocks)
+{
+    return (int)((at + 0.5) * blocks / size);
+}
+
+static void add_base(struct work *work, int y)
+{
+    const uint8_t *const codes = work->base->top + y * work->base->stride;
+
+    for (int x = 0; x < work->base->width; x++) {
+        const int block = block_at(x, work->base->width, work->width);
+
+        for (int c = 0; c < 3; c++) {
+            work->sums[block][0][c] += (double)work->of_code[codes[3 * x + c]];
+        }
+        work->counts[block][0]++;
+    }
+}
+
+static void add_light(struct work *work, int y)
+{
+    const uint8_t *const halves = work->light->plane[0] + y * work->light->stride[0];
+
+    for (int x = 0; x < work->light->width; x++) {
+        const int block = block_at(x, work->light->width, work->width);
+        uint16_t half[3];
+
+        memcpy(half, halves + 6 * (ptrdiff_t)x, sizeof half);
+        for (int c = 0; c < 3; c++) {
+            /* negative light, and no number at all, are none */
+            work->sums[block][1][c] += half[c] <= RF_HALF_MOST ? (double)rf_half_value(half[c]) : 0;
+        }
+        work->counts[block][1]++;
+    }
+}
+
+/* Sum up the next row of blocks; from row 0 on they follow each other. */
+static void sum(struct work *work, int row)
+{
+    if (row == 0) {
+        work->y[0] = work->y[1] = 0;
+    }
+    memset(work->sums, 0, (size_t)work->width * sizeof *work->sums);
+    memset(work->counts, 0, (size_t)work->width * sizeof *work->counts);
+    while (work->y[0] < work->base->height &&
+           block_at(work->y[0], work->base->height, work->height) == row) {
+        add_base(work, work->y[0]++);
+    }
+    while (work->y[1] < work->light->height &&
+           block_at(work->y[1], work->light->height, work->height) == row) {
+        add_light(work, work->y[1]++);
+    }
+}
+
+static double gain_at(const struct work *work, int x, int c)
+{
+    const double base = work->sums[x][0][c] / work->counts[x][0];
+    const double light = work->sums[x][1][c] / work->counts[x][1];
+    const double gain = log2((light + offset) / (base + offset));
+
+    return fmin(fmax(gain, -MOST_STOPS), MOST_STOPS);
+}
+
+static void find_range(struct work *work, double *least, double *greatest)
+{
+    *least = MOST_STOPS;
+    *greatest = -MOST_STOPS;
+    for (int y = 0; y < work->height; y++) {
+        sum(work, y);
+        for (int x = 0; x < work->width; x++) {
+            for (int c = 0; c < 3; c++) {
+                *least = fmin(*least, gain_at(work, x, c));
+                *greatest = fmax(*greatest, gain_at(work, x, c));
+            }
+        }
+    }
+    *least = floor(*least * UNITS) / UNITS;
+    *greatest = ceil(*greatest * UNITS) / UNITS;
+}
+
+static void fill(struct work *work, double least, double greatest, uint8_t *samples)
+{
+    const double scale = greatest > least ? 255 / (greatest - least) : 0;
+
+    for (int y = 0; y < work->height; y++) {
+        sum(work, y);
+        for (int x = 0; x < work->width; x++) {
+            for (int c = 0; c < 3; c++) {
+                *samples++ = (uint8_t)((gain_at(work, x, c) - least) * scale + 0.5);
+            }
+        }
+    }
+}
+
+static int half_of(int32_t a, int32_t b)
+{
+    return ((a < b ? a : b) + 1) / 2;
+}
+
+/* Set the values of a map whose gains go evenly from one to another. */
+static void set_values(struct rf_gain_values *values, double least, double greatest,
+                       double base_offset, double other_offset, double headroom)
+{
+    for (int c = 0; c < 3; c++) {
+        values->least[c] = least;
+        values->greatest[c] = greatest;
+        values->gamma[c] = 1;
+        values->base_offset[c] = base_offset;
+        values->other_offset[c] = other_offset;
+    }
+    values->other_headroom = floor(fmax(fmax(greatest, headroom), 0) * UNITS) / UNITS;
+}
+
+int rf_gain_copy(struct rf_gain_map *copy, const struct rf_gain_map *map)
+{
+    const struct rf_gain_values *const old = &map->values;
+    const size_t count = rf_raster_stride(&map->samples) * (size_t)map->samples.height;
+    float least = map->gain[0][0], greatest = least;
+    float scale;
+
+    memset(copy, 0, sizeof *copy);
+    copy->samples = map->samples;
+    copy->samples.pixels = malloc(count);
+    if (!copy->samples.pixels) {
+        return REFOCUS_ERR_MEMORY;
+    }
+    for (int i = 0; i < 3 * 256; i++) {
+        least = fminf(least, map->gain[i / 256][i % 256]);
+        greatest = fmaxf(greatest, map->gain[i / 256][i % 256]);
+    }
+    set_values(&copy->values, floor((double)least * UNITS) / UNITS,
+               ceil((double)greatest * UNITS) / UNITS, old->base_offset[0], old->other_offset[0],
+               old->other_headroom);
+    scale = greatest > least ? 255 / (greatest - least) : 0;
+    for (size_t i = 0; i < count; i++) {
+        const int c = (int)(i % (size_t)map->samples.channels);
+
+        copy->samples.pixels[i] =
+            (uint8_t)((map->gain[c][map->samples.pixels[i]] - least) * scale + 0.5f);
+    }
+    return REFOCUS_OK;
+}
+
+int rf_gain_make(struct rf_gain_map *map, const struct rf_rows *base,
+                 const struct refocus_image *light, double headroom)
+{
+    struct work work = {.base = base,
+                        .light = light,
+                        .width = half_of(base->width, light->width),
+                        .height = half_of(base->height, light->height)};
+    int status = REFOCUS_ERR_MEMORY;
+
+    memset(map, 0, sizeof *map);
+    work.sums = malloc((size_t)work.width * sizeof *work.sums);
+    work.counts = malloc((size_t)work.width * sizeof *work.counts);
+    /* a quarter of the bytes that the picture takes */
+    map->samples.pixels = malloc(3 * (size_t)work.width * (size_t)work.height);
+    if (work.sums && work.counts && map->samples.pixels) {
+        double least, greatest;
+
+        for (int i = 0; i < 256; i++) {
+            work.of_code[i] = rf_tone_light(i);
+        }
+        find_range(&work, &least, &greatest);
+        fill(&work, least, greatest, map->samples.pixels);
+        map->samples.width = work.width;
+        map->samples.height = work.height;
+        map->samples.channels = 3;
+        map->samples.sample = REFOCUS_SAMPLE_U8;
+        map->samples.max_value = 255;
+        set_values(&map->values, least, greatest, offset, offset, headroom);
+        status = REFOCUS_OK;
+    } else {
+        rf_raster_free(&map->samples);
+    }
+    free(work.sums);
+    free(work.counts);
+    return status;
+}

@@ -1,0 +1,47 @@
+/* heic_deep.c: HEIC and AVIF of 10 and 12 bits: by the curves of HDR (nclx, ISO/IEC 23091-2) they
+ * are light, brighter than white in places; by others they are codes as those of 8 bits are. */
+#include "heic_deep.h"
+
+#include <string.h>
+
+#include "light.h"
+#include "reason.h"
+
+bool rf_heic_is_avif(struct rf_bytes file)
+{
+    return file.size >= 12 && memcmp(file.data + 8, "avi", 3) == 0;
+}
+
+enum heif_chroma rf_heic_deep_chroma(void)
+{
+    const uint16_t one = 1;
+
+    return *(const uint8_t *)&one == 1 ? heif_chroma_interleaved_RRGGBB_LE
+                                       : heif_chroma_interleaved_RRGGBB_BE;
+}
+
+int rf_heic_settle_light(struct rf_read *read, const struct heif_image_handle *handle)
+{
+    struct heif_color_profile_nclx *nclx = NULL;
+    int curve = 0, primaries = 0, status;
+
+    if (read->image.max_value <= 255 ||
+        heif_image_handle_get_nclx_color_profile(handle, &nclx).code != heif_error_Ok || !nclx) {
+        return REFOCUS_OK;
+    }
+    curve = (int)nclx->transfer_characteristics;
+    primaries = (int)nclx->color_primaries;
+    heif_nclx_color_profile_free(nclx);
+    if (!rf_curve_is_hdr(curve)) {
+        return REFOCUS_OK;
+    }
+    status = rf_raster_to_light(read, &read->image, curve, primaries);
+    if (status == REFOCUS_OK) {
+        rf_note(read->info, "%s: the curve of %s%s, read as linear light", read->info->container,
+                curve == RF_CURVE_PQ    ? "PQ"
+                : curve == RF_CURVE_HLG ? "HLG"
+                                        : "linear light",
+                primaries == RF_PRIMARIES_BT2020 ? " with the primaries of BT.2020" : "");
+    }
+    return status;
+}

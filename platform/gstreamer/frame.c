@@ -1,0 +1,89 @@
+/* frame.c: frames of GStreamer are described to the library where they lie. */
+#include <stdlib.h>
+#include <string.h>
+#include "frame.h"
+
+static uint32_t format_of(GstVideoFormat format)
+{
+    switch (format) {
+    case GST_VIDEO_FORMAT_NV12:
+        return REFOCUS_FORMAT_NV12;
+    case GST_VIDEO_FORMAT_NV21:
+        return REFOCUS_FORMAT_NV21;
+    case GST_VIDEO_FORMAT_I420:
+    case GST_VIDEO_FORMAT_YV12:
+    case GST_VIDEO_FORMAT_GRAY8:
+        return REFOCUS_FORMAT_I420;
+    case GST_VIDEO_FORMAT_YUY2:
+        return REFOCUS_FORMAT_YUYV;
+    case GST_VIDEO_FORMAT_RGB:
+        return REFOCUS_FORMAT_RGB8;
+    case GST_VIDEO_FORMAT_BGR:
+        return REFOCUS_FORMAT_BGR8;
+    case GST_VIDEO_FORMAT_RGBA:
+    case GST_VIDEO_FORMAT_RGBx: /* the fourth byte goes through as alpha does */
+        return REFOCUS_FORMAT_RGBA8;
+    case GST_VIDEO_FORMAT_BGRA:
+    case GST_VIDEO_FORMAT_BGRx:
+        return REFOCUS_FORMAT_BGRA8;
+    default:
+        return REFOCUS_FORMAT_NONE;
+    }
+}
+
+bool rf_gst_format_is_yuv(const GstVideoInfo *info)
+{
+    return refocus_format_is_yuv(format_of(GST_VIDEO_INFO_FORMAT(info)));
+}
+
+static bool add_chroma(struct rf_gst_chroma *chroma, struct refocus_image *picture)
+{
+    const size_t row = (size_t)refocus_plane_row_bytes(picture->format, 1, picture->width);
+    const size_t bytes = row * (size_t)refocus_plane_rows(picture->format, 1, picture->height);
+
+    if (bytes > chroma->bytes) {
+        rf_gst_chroma_end(chroma);
+        chroma->memory = malloc(bytes);
+        if (!chroma->memory)
+            return false;
+        chroma->bytes = bytes;
+    }
+    memset(chroma->memory, 128, bytes);
+    picture->plane[1] = picture->plane[2] = chroma->memory;
+    picture->stride[1] = picture->stride[2] = (ptrdiff_t)row;
+    return true;
+}
+
+bool rf_gst_picture(const GstVideoFrame *frame, struct rf_gst_chroma *chroma,
+                    struct refocus_image *picture)
+{
+    const GstVideoColorimetry *const colour = &frame->info.colorimetry;
+    const bool grey = GST_VIDEO_FRAME_FORMAT(frame) == GST_VIDEO_FORMAT_GRAY8;
+
+    *picture = refocus_image_packed(format_of(GST_VIDEO_FRAME_FORMAT(frame)), NULL,
+                                    GST_VIDEO_FRAME_WIDTH(frame), GST_VIDEO_FRAME_HEIGHT(frame), 0);
+    for (guint i = 0; i < GST_VIDEO_FRAME_N_PLANES(frame); i++) {
+        picture->plane[i] = GST_VIDEO_FRAME_PLANE_DATA(frame, i);
+        picture->stride[i] = GST_VIDEO_FRAME_PLANE_STRIDE(frame, i);
+    }
+    if (GST_VIDEO_FRAME_FORMAT(frame) == GST_VIDEO_FORMAT_YV12) {
+        picture->plane[1] = GST_VIDEO_FRAME_COMP_DATA(frame, 1);
+        picture->plane[2] = GST_VIDEO_FRAME_COMP_DATA(frame, 2);
+    }
+    /* Weights of BT.2020 are not known for 8 bits; those of BT.709 are the nearest. */
+    picture->matrix = colour->matrix == GST_VIDEO_COLOR_MATRIX_BT709 ||
+                              colour->matrix == GST_VIDEO_COLOR_MATRIX_BT2020
+                          ? REFOCUS_MATRIX_BT709
+                          : REFOCUS_MATRIX_BT601;
+    picture->range = colour->range == GST_VIDEO_COLOR_RANGE_0_255 ||
+                             (grey && colour->range != GST_VIDEO_COLOR_RANGE_16_235)
+                         ? REFOCUS_RANGE_FULL
+                         : REFOCUS_RANGE_LIMITED;
+    return !grey || add_chroma(chroma, picture);
+}
+
+void rf_gst_chroma_end(struct rf_gst_chroma *chroma)
+{
+    free(chroma->memory);
+    *chroma = (struct rf_gst_chroma){NULL, 0};
+}

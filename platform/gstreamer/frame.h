@@ -1,0 +1,26 @@
+/* frame.h: frames of GStreamer as pictures of the library, without a copy. */
+#ifndef RF_GSTREAMER_FRAME_H
+#define RF_GSTREAMER_FRAME_H
+
+#include <stdbool.h>
+#include <gst/video/video.h>
+#include <refocus/refocus.h>
+
+#define RF_GST_FORMATS_YUV "NV12, NV21, I420, YV12, YUY2, GRAY8"
+#define RF_GST_FORMATS_RGB "RGB, BGR, RGBA, BGRA, RGBx, BGRx"
+
+/* The chroma that frames of grey have to the renderer, which knows none without. */
+struct rf_gst_chroma {
+    uint8_t *memory;
+    size_t bytes;
+};
+
+bool rf_gst_format_is_yuv(const GstVideoInfo *info);
+
+/* The picture that a frame holds, in the frame's memory. Of GRAY8 the planes of U and V are those
+ * of `chroma`, set to neutral; false: there is no memory for them. */
+bool rf_gst_picture(const GstVideoFrame *frame, struct rf_gst_chroma *chroma,
+                    struct refocus_image *picture);
+void rf_gst_chroma_end(struct rf_gst_chroma *chroma);
+
+#endif

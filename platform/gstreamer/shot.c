@@ -1,0 +1,169 @@
+/* shot.c: what is in focus and how much is blurred follows from the settings, and it is rendered.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include "shot.h"
+
+static int fail(struct refocus_reason *reason, int status, const char *text)
+{
+    snprintf(reason->text, sizeof reason->text, "%s", text);
+    return status;
+}
+
+static bool is_known(const struct refocus_depth_range *range)
+{
+    return range->near_m > 0 && range->far_m > range->near_m;
+}
+
+static int find_focus(const struct rf_gst_settings *settings, const struct rf_gst_depths *depths,
+                      float *focus, struct refocus_reason *reason)
+{
+    const struct refocus_disparity *const map = &depths->disparity;
+
+    *focus = (float)settings->focus;
+    if (settings->focus_distance > 0) {
+        if (!is_known(&depths->range))
+            return fail(reason, REFOCUS_ERR_ARGUMENT,
+                        "focus-distance needs the metres between which the depth lies: give near "
+                        "and far");
+        *focus = (float)fmin(
+            fmax(refocus_disparity_of_depth(&depths->range, settings->focus_distance), 0), 1);
+    } else if (settings->focus_x >= 0 && settings->focus_y >= 0) {
+        return refocus_focus_at_point(
+            map, (int)fmin(settings->focus_x * map->width, map->width - 1),
+            (int)fmin(settings->focus_y * map->height, map->height - 1), 0, focus);
+    }
+    return REFOCUS_OK;
+}
+
+static int find_blur(const struct rf_gst_settings *settings, const struct rf_gst_depths *depths,
+                     int32_t width, float *blur, struct refocus_reason *reason)
+{
+    const uint32_t traits = refocus_method_traits((uint32_t)settings->method);
+    const double most =
+        traits & REFOCUS_METHOD_ANY_RADIUS ? REFOCUS_MAX_BLUR_RADIUS : REFOCUS_PLAIN_BLUR_RADIUS;
+    const struct refocus_lens lens = {settings->focal_length, settings->f_number,
+                                      settings->sensor_width};
+    double radius = settings->blur;
+
+    if (settings->f_number > 0) {
+        if (!is_known(&depths->range))
+            return fail(reason, REFOCUS_ERR_ARGUMENT,
+                        "f-number needs the metres between which the depth lies: give near and "
+                        "far, or blur instead");
+        radius = refocus_max_blur_radius(&lens, &depths->range, width);
+    }
+    *blur = (float)fmin(radius, most);
+    return REFOCUS_OK;
+}
+
+/* A blur that grows makes a new renderer, so it is made for more than is asked for. */
+static float room_for(float blur)
+{
+    static const float steps[] = {40, REFOCUS_PLAIN_BLUR_RADIUS, 236, 472};
+
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++)
+        if (blur <= steps[i])
+            return steps[i];
+    return REFOCUS_MAX_BLUR_RADIUS;
+}
+
+static int fit(struct rf_gst_shot *shot, const struct rf_gst_settings *settings, int32_t width,
+               int32_t height, float blur, struct refocus_reason *reason)
+{
+    struct refocus_renderer_params params =
+        refocus_renderer_params_default(width, height, room_for(blur));
+    int status;
+
+    params.threads = settings->threads;
+    params.papers = refocus_papers();
+    params.methods = REFOCUS_METHOD_BIT((uint32_t)settings->method);
+    params.depth_edges = settings->place_edges ? REFOCUS_DEPTH_EDGES_STEADY : 0;
+    if (shot->renderer && width <= shot->made.max_width && height <= shot->made.max_height &&
+        blur <= shot->made.max_blur_radius && params.threads == shot->made.threads &&
+        params.methods == shot->made.methods && params.depth_edges == shot->made.depth_edges)
+        return REFOCUS_OK;
+    refocus_renderer_destroy(&shot->renderer);
+    status = refocus_renderer_create(&shot->renderer, &params);
+    if (status != REFOCUS_OK)
+        snprintf(reason->text, sizeof reason->text,
+                 "%s: frames of %dx%d pixels with blur up to %.4g need %.0f MiB",
+                 refocus_strerror(status), (int)width, (int)height, (double)params.max_blur_radius,
+                 (double)refocus_renderer_memory(&params) / (1 << 20));
+    shot->made = params;
+    return status;
+}
+
+static int fit_aperture(struct rf_gst_shot *shot, const struct rf_gst_settings *settings,
+                        struct refocus_reason *reason)
+{
+    int status;
+
+    if (shot->shape_number == settings->shape_number)
+        return REFOCUS_OK;
+    if (!settings->shape_known) {
+        snprintf(reason->text, sizeof reason->text,
+                 "aperture '%.60s' is not known; give disc, polygon:BLADES, "
+                 "polygon:BLADES:DEGREES, heart, star or star:POINTS, of 3 to 16",
+                 settings->aperture);
+        return REFOCUS_ERR_ARGUMENT;
+    }
+    refocus_aperture_destroy(&shot->aperture);
+    status = refocus_aperture_create(&shot->aperture, &settings->shape);
+    if (status == REFOCUS_OK)
+        shot->shape_number = settings->shape_number;
+    return status;
+}
+
+/* The parameters of a render, by the settings. */
+static struct refocus_settings params_of(const struct rf_gst_shot *shot,
+                                         const struct rf_gst_settings *settings, float focus,
+                                         float blur)
+{
+    struct refocus_settings params = refocus_settings_default(focus, blur);
+    const uint32_t traits = refocus_method_traits((uint32_t)settings->method);
+
+    params.render.method = (uint32_t)settings->method;
+    params.render.rays = rf_gst_quality_rays(settings->quality);
+    if (!(traits & REFOCUS_METHOD_DISC_ONLY))
+        params.render.aperture = shot->aperture;
+    if (settings->highlights >= 1)
+        params.highlights.gain = (float)settings->highlights;
+    else if (traits & REFOCUS_METHOD_HIGHLIGHTS)
+        params.highlights.estimate = 1;
+    return params;
+}
+
+int rf_gst_shot_take(struct rf_gst_shot *shot, const struct rf_gst_settings *settings,
+                     const struct rf_gst_depths *depths, const struct refocus_image *photo,
+                     const struct refocus_image *out, struct refocus_reason *reason)
+{
+    struct refocus_scene scene = refocus_scene_default(photo, &depths->disparity);
+    struct refocus_settings params;
+    float focus = 0, blur = 0;
+    int status = find_focus(settings, depths, &focus, reason);
+
+    if (status == REFOCUS_OK)
+        status = find_blur(settings, depths, photo->width, &blur, reason);
+    if (status == REFOCUS_OK)
+        status = fit(shot, settings, photo->width, photo->height, blur, reason);
+    if (status == REFOCUS_OK)
+        status = fit_aperture(shot, settings, reason);
+    if (status != REFOCUS_OK)
+        return status;
+    if (settings->place_edges)
+        scene.depth_edges = REFOCUS_DEPTH_EDGES_STEADY;
+    params = params_of(shot, settings, focus, blur);
+    status = refocus_prepare_scene(shot->renderer, &scene);
+    if (status == REFOCUS_OK)
+        status = refocus_render_settings(shot->renderer, &params, out);
+    return status;
+}
+
+void rf_gst_shot_end(struct rf_gst_shot *shot)
+{
+    refocus_renderer_destroy(&shot->renderer);
+    refocus_aperture_destroy(&shot->aperture);
+    memset(shot, 0, sizeof *shot);
+}

@@ -1,0 +1,99 @@
+"""Photos with their depth from files, and pictures into files."""
+import os
+import typing
+
+import numpy
+
+from . import _core
+from ._errors import NoDepthError
+from ._image import Array, Buffer, Image, as_image
+from ._struct import made
+from ._structs import DepthReport, PhotoInfo
+
+
+class Photo:
+    """A photo from a file, upright, with the depth it carries: struct refocus_photo.
+
+    `image` is an array of uint8 (None of a depth file), `deep` of uint16 or float32 where the file
+    has more than 8 bits; both are the library's own memory. `info` says what else the file states.
+    """
+
+    def __init__(self, handle: typing.Any) -> None:
+        self._handle = handle
+        parts = _core.photo_parts(handle)
+        self.image = _array(parts['image'])
+        self.deep = _array(parts['deep'])
+        self.info = made(PhotoInfo, {**parts['info'], 'evidence': parts['evidence']})
+        self.exif: bytes = parts['exif']
+        self.icc: bytes = parts['icc']
+        self._depth: tuple[int, int] | None = parts['depth']
+        self._matte: tuple[int, int] | None = parts['matte']
+        self.confidence: Array | None = None
+        if parts['confidence'] is not None and self._depth:
+            self.confidence = numpy.frombuffer(parts['confidence'],
+                                               numpy.uint8).reshape(self._depth[::-1])
+
+    @property
+    def has_depth(self) -> bool:
+        """Whether disparity() has something to give."""
+        return self._depth is not None
+
+    def disparity(self) -> tuple[Array, DepthReport]:
+        """Its depth as disparities of 16 bits; `NoDepthError` when it carries none."""
+        return self._map(self._depth, False)
+
+    def matte(self) -> Array:
+        """How much of each pixel is subject, 65535 = all; `NoDepthError` when it has no matte."""
+        return self._map(self._matte, True)[0]
+
+    def _map(self, size: tuple[int, int] | None,
+             is_matte: bool) -> tuple[Array, DepthReport]:
+        if size is None:
+            raise NoDepthError('the file has no ' + ('matte' if is_matte else 'depth'))
+        out = numpy.empty(size[::-1], numpy.uint16)
+        report = _core.photo_disparity(self._handle, is_matte, out)
+        return out, made(DepthReport, report)
+
+
+def _array(part: tuple[typing.Any, int, int, int] | None) -> Array | None:
+    if part is None:
+        return None
+    pixels, width, height, stride = part
+    kind = {3: numpy.uint8, 6: numpy.uint16, 12: numpy.float32}[stride // width]
+    return numpy.frombuffer(pixels, kind).reshape(height, width, 3)
+
+
+def photo_read(path: str | os.PathLike[str] | bytes, *, second: bool = False) -> Photo:
+    """Read a photo; with `second` the other picture of a stereo file."""
+    return Photo(_core.photo_read(os.fsencode(path), second))
+
+
+def photo_read_memory(data: typing.Any) -> Photo:
+    """Read a photo from the bytes of a file."""
+    return Photo(_core.photo_read_memory(data))
+
+
+def depth_read(path: str | os.PathLike[str] | bytes, unit: str | None = None, *,
+               near_m: float = 0.0, far_m: float = 0.0) -> Photo:
+    """Read a depth file of its own; `unit` as in depth_to_disparity(), None: what it says."""
+    return Photo(_core.depth_read(os.fsencode(path), unit, near_m, far_m))
+
+
+def image_write(path: str | os.PathLike[str] | bytes, image: Image | Buffer, *, quality: int = 0,
+                keep: Photo | None = None, order: str = 'rgb') -> str:
+    """Write a picture whole or not at all; the end of the name says how.
+
+    With `keep`, metadata of that photo is kept. Returns what had to be left out, in words.
+    """
+    return _core.image_write(os.fsencode(path), as_image(image, order)._tuple(), quality,
+                             keep._handle if keep else None)
+
+
+def gray16_write(path: str | os.PathLike[str] | bytes, samples: Buffer) -> None:
+    """Write uint16 samples as greyscale: .png, .pgm or .pfm."""
+    _core.gray16_write(os.fsencode(path), samples)
+
+
+def file_formats() -> str:
+    """Formats of this build, such as 'JPEG PNG HEIC PPM PGM PFM'."""
+    return _core.file_formats()

@@ -1,0 +1,249 @@
+"""Renderers, their settings, and the picture in one call."""
+import math
+import types
+import typing
+
+import numpy
+
+from . import _core
+from ._errors import ArgumentError, StateError
+from ._image import Buffer, Image, as_image, is_deep
+from ._optics import disparity_of_depth, max_blur_radius
+from ._struct import Struct, made
+from ._structs import (
+    ApertureParams, DepthEdges, DepthEdgesReport, DepthRange, DiffusionParams, FieldParams,
+    FocusParams, FoveatedParams, HighlightParams, Inpaint, InterpolatedParams, JitteredParams, Lens,
+    LookParams, Method, RendererInfo, RendererParams, RenderParams, ScatterParams, SearchParams,
+    ThinParams, View)
+
+
+class Aperture:
+    """The shape of the aperture; never changes, and may be shared by threads.
+
+    Takes the fields of `ApertureParams`, or a `mask` of uint8: 255 = open, 0 = closed.
+
+        refocus.Aperture(blades=6, rotation_deg=15)
+    """
+
+    def __init__(self, mask: Buffer | None = None, **fields: typing.Any) -> None:
+        self.params = ApertureParams(**fields)
+        self._handle = _core.aperture_create(vars(self.params), mask)
+
+
+class Settings:
+    """All parameters of a render: struct refocus_settings.
+
+    `render` has those that every render needs; `look`, `focus` and so on one feature each.
+
+        settings = refocus.Settings(0.8, 20, rays=128)
+        settings.look.cat_eye = 0.5
+
+    Further arguments are fields of `render`, or dictionaries of the fields of a feature.
+    """
+
+    def __init__(self, focus_disparity: float = 0.0, max_blur_radius: float = 0.0, *,
+                 aperture: Aperture | None = None, **fields: typing.Any) -> None:
+        self.render = RenderParams(focus_disparity=focus_disparity, max_blur_radius=max_blur_radius)
+        self.highlights = HighlightParams()
+        self.thin = ThinParams()
+        self.look = LookParams()
+        self.focus = FocusParams()
+        self.field = FieldParams(disparity=focus_disparity)
+        self.search = SearchParams()
+        self.jittered = JitteredParams()
+        self.scatter = ScatterParams()
+        self.interpolated = InterpolatedParams()
+        self.foveated = FoveatedParams()
+        self.diffusion = DiffusionParams()
+        self.aperture = aperture
+        self.set(**fields)
+
+    def set(self, **fields: typing.Any) -> None:
+        """Set fields of `render`, or features by dictionaries or structs of their own."""
+        for name, value in fields.items():
+            part = vars(self).get(name)
+            if not isinstance(part, Struct):
+                setattr(self.render, name, value)
+            elif isinstance(value, type(part)):
+                setattr(self, name, value)
+            else:
+                part.set(**value)
+
+    def _parts(self) -> dict[str, dict[str, typing.Any]]:
+        return {name: vars(part) for name, part in vars(self).items() if isinstance(part, Struct)}
+
+
+class Renderer:
+    """Create once, prepare a photo, render as often as lens settings change.
+
+    The arguments are fields of `RendererParams`. One thread at a time may call into a renderer
+    (others get `BusyError`), but `cancel()`, which any may call; Python's lock is released while
+    the library works. Ends with `close()` or at the end of `with`.
+
+        with refocus.Renderer(720, 540, max_blur_radius=20) as renderer:
+            renderer.prepare(photo, disparity)
+            near = renderer.render(refocus.Settings(0.9, 20))
+            far = renderer.render(refocus.Settings(0.1, 20))
+    """
+
+    def __init__(self, max_width: int, max_height: int, max_blur_radius: float,
+                 **fields: typing.Any) -> None:
+        self.params = RendererParams(max_width=max_width, max_height=max_height,
+                                     max_blur_radius=max_blur_radius, **fields)
+        self._handle = _core.renderer_create(vars(self.params))
+        self._photo: Image | None = None
+
+    def __enter__(self) -> 'Renderer':
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None,
+                 trace: types.TracebackType | None) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Stop the threads and free all memory; further calls raise `StateError`."""
+        _core.renderer_destroy(self._handle)
+
+    def prepare(self, photo: Image | Buffer, disparity: Buffer, *,
+                depth_edges: DepthEdges = DepthEdges.AS_GIVEN, matte: Buffer | None = None,
+                behind: Image | Buffer | None = None, behind_disparity: Buffer | None = None,
+                confidence: Buffer | None = None, order: str = 'rgb') -> None:
+        """Take in a photo and what is known of its depth: refocus_prepare_scene().
+
+        `disparity` is uint8 or uint16 of any size, its greatest value nearest. Photos of more than
+        8 bits and renderers with `in_place` read photo and map until the next scene: they must not
+        change until then, and are kept.
+        """
+        image = as_image(photo, order)
+        hidden = None if behind is None else as_image(behind, order)._tuple()
+        self._photo = None
+        _core.prepare_scene(self._handle, image._tuple(), disparity, int(depth_edges), matte,
+                            hidden, behind_disparity, confidence)
+        # Its form alone: pixels are kept where they are needed, and only there.
+        self._photo = Image(image.format, image.width, image.height, (), image.matrix, image.range,
+                            image.transfer, image.gamma, image.white)
+
+    prepare_scene = prepare
+
+    def render(self, settings: Settings, out: Image | Buffer | None = None, *,
+               order: str = 'rgb') -> typing.Any:
+        """Refocus the prepared photo.
+
+        Returns `out`, or without it a new array of the photo's type (a new `Image` of photos that
+        are one of several planes), of the size of the region.
+        """
+        if out is not None:
+            image = as_image(out, order)
+        else:
+            photo = self._form()
+            part = settings.render
+            image = photo._empty_like(photo.format, part.region_width or photo.width,
+                                      part.region_height or photo.height)
+            out = image.array if len(image.planes) == 1 else image
+        aperture = settings.aperture._handle if settings.aperture else None
+        _core.render(self._handle, settings._parts(), aperture, image._tuple())
+        return out
+
+    def cancel(self) -> None:
+        """End the prepare() or render() that runs in another thread early: `CancelledError`."""
+        _core.cancel(self._handle)
+
+    def get_view(self, view: View, out: Buffer | None = None) -> typing.Any:
+        """A layer of the prepared photo: uint16, of its size."""
+        photo = self._form()
+        if out is None:
+            out = numpy.empty((photo.height, photo.width), numpy.uint16)
+        _core.get_view(self._handle, int(view), out, photo.width, photo.height)
+        return out
+
+    def get_depth_edges(self) -> DepthEdgesReport:
+        """The findings of the last prepare() about the edges of its map."""
+        return made(DepthEdgesReport, _core.get_depth_edges(self._handle))
+
+    def get_info(self) -> RendererInfo:
+        """Threads, instruction set and memory."""
+        return made(RendererInfo, _core.get_info(self._handle))
+
+    def _form(self) -> Image:
+        if self._photo is None:
+            _core.get_info(self._handle)  # raises if it is closed
+            raise StateError('nothing is prepared; call prepare() first')
+        return self._photo
+
+
+def renderer_memory(max_width: int, max_height: int, max_blur_radius: float,
+                    **fields: typing.Any) -> int:
+    """Bytes that a renderer takes, all of them at its creation."""
+    return _core.renderer_memory(vars(RendererParams(
+        max_width=max_width, max_height=max_height, max_blur_radius=max_blur_radius, **fields)))
+
+
+#: {name: (rays, thin structures, texture)}: as --quality of the command.
+QUALITIES = {'preview': (32, 0, Inpaint.SMOOTH), 'standard': (64, 1, Inpaint.SMOOTH),
+             'best': (128, 1, Inpaint.TEXTURED)}
+
+
+def render(photo: Image | Buffer, depth: Buffer, *, focus: float | None = None,
+           focus_at: tuple[int, int] | None = None, focus_distance: float | None = None,
+           blur: float | None = None, f_number: float | None = None,
+           focal_length_mm: float = 26.0, sensor_width_mm: float = 36.0,
+           near_m: float = 0.0, far_m: float = 0.0, quality: str = 'standard',
+           highlights: str | float = 'auto', depth_edges: DepthEdges = DepthEdges.AUTO,
+           matte: Buffer | None = None, aperture: Aperture | None = None,
+           out: Image | Buffer | None = None, order: str = 'rgb', threads: int = 0,
+           **fields: typing.Any) -> typing.Any:
+    """Refocus a photo, with the defaults of the command `refocus render`, to the same bytes.
+
+    `depth` are disparities, uint8 or uint16, bright near; `depth_to_disparity()` makes them of
+    distances and floats. One of `focus` (disparity, 0 farthest to 1), `focus_at` (a pixel, x and
+    y) and `focus_distance` (metres) says what is sharp; `blur` (pixels) or `f_number` by how much
+    the rest is not. Metres and f-numbers need `near_m` and `far_m`, the distances of disparities
+    1 and 0. Further arguments are those of `Settings`.
+    """
+    image = as_image(photo, order)
+    if quality not in QUALITIES:
+        raise ArgumentError(f'quality is one of {", ".join(QUALITIES)}, not {quality!r}')
+    if sum(given is not None for given in (focus, focus_at, focus_distance)) != 1:
+        raise ArgumentError('give one of focus, focus_at and focus_distance')
+    if (blur is None) == (f_number is None):
+        raise ArgumentError('give blur or f_number')
+    if f_number is not None:
+        blur = max_blur_radius(Lens(focal_length_mm=focal_length_mm, f_number=f_number,
+                                    sensor_width_mm=sensor_width_mm),
+                               DepthRange(near_m=near_m, far_m=far_m), image.width)
+        if math.isnan(blur):
+            raise ArgumentError('f_number needs near_m and far_m, 0 < near_m < far_m, and a lens')
+    if focus_distance is not None:
+        focus = disparity_of_depth(DepthRange(near_m=near_m, far_m=far_m), focus_distance)
+        if math.isnan(focus):
+            raise ArgumentError('focus_distance needs near_m and far_m, 0 < near_m < far_m')
+        focus = min(max(focus, 0.0), 1.0)
+    assert blur is not None
+    rays, thin, inpaint = QUALITIES[quality]
+    settings = Settings(0.0, blur, aperture=aperture, rays=rays, inpaint=inpaint,
+                        thin={'enabled': thin},
+                        highlights={'estimate': 1} if highlights == 'auto' else
+                        {'gain': 1 if highlights == 'off' else highlights})
+    settings.set(**fields)
+    method = int(settings.render.method)
+    goal = None if out is None else as_image(out, order)
+    with Renderer(image.width, image.height, blur, threads=threads,
+                  methods=1 << method, thin=int(settings.thin.enabled or matte is not None),
+                  textured=int(settings.render.inpaint), depth_edges=int(depth_edges),
+                  deep=int(is_deep(image) or (goal is not None and is_deep(goal)))) as renderer:
+        renderer.prepare(image, depth, depth_edges=depth_edges, matte=matte)
+        if focus_at is not None:
+            focus = _core.focus_at(renderer.get_view(View.DISPARITY), *focus_at, 0)
+        assert focus is not None
+        settings.render.focus_disparity = focus
+        if 'field' not in fields:
+            settings.field.disparity = focus
+        if goal is not None:
+            renderer.render(settings, goal)
+            return out
+        return renderer.render(settings)
+
+
+def method_name(method: Method) -> str:
+    """Name of a method on the command line."""
+    return _core.method_name(int(method))

@@ -1,0 +1,282 @@
+/* align.c: frames of a focus stack are laid on each other: scale, rotation and shift.
+ *
+ * Neighbours in focus look most alike, so each frame is aligned with the next one towards the
+ * reference, from coarse to fine, and the similarities are composed. A step is Gauss-Newton's, for
+ *
+ *     frame(W(x + d(x))) = gain reference(x) + bias
+ *
+ * with d(x) = e x + f in the complex plane. Gradients are those of the mean of both pictures, so
+ * that the sharper one does not weigh more. Residuals are clamped to three times their mean
+ * (Huber's function), so that what moves has little say. Sums are integers; the few steps in double
+ * precision are single operations that IEEE rounds alike everywhere.
+ */
+#include "focus_stack/focus_stack.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    UNKNOWNS = 6, /* e, f, gain, bias */
+    STEPS = 10,   /* at each level */
+    BORDER = 2,
+    LEAST_SIDE = 16, /* least side of a level that is used */
+};
+
+/* A level of two pictures; c is about its middle. */
+struct level {
+    const uint16_t *reference, *frame;
+    int16_t *warped; /* -1: outside of the frame */
+    int width, height;
+};
+
+struct sums {
+    int64_t left[UNKNOWNS][UNKNOWNS], right[UNKNOWNS];
+    int64_t residual, pixels;
+};
+
+static double middle(int size)
+{
+    return 0.5 * (size - 1);
+}
+
+/* Samples of the frame where the similarity puts those of the reference. */
+static void warp(const struct level *l, const struct rf_similarity *s)
+{
+    const double mx = middle(l->width), my = middle(l->height);
+    const int64_t dx = llrint(s->c[0] * 65536), dy = llrint(s->c[1] * 65536);
+
+    for (int y = 0; y < l->height; y++) {
+        const double v = y - my;
+        int64_t px = llrint((s->c[0] * -mx - s->c[1] * v + s->t[0] + mx) * 65536);
+        int64_t py = llrint((s->c[1] * -mx + s->c[0] * v + s->t[1] + my) * 65536);
+        int16_t *out = l->warped + (size_t)y * (size_t)l->width;
+
+        for (int x = 0; x < l->width; x++, px += dx, py += dy) {
+            const int64_t column = px >> 16, row = py >> 16;
+            const uint16_t *p;
+            int u, w;
+
+            out[x] = -1;
+            if (column < 0 || row < 0 || column + 1 >= l->width || row + 1 >= l->height)
+                continue;
+            u = (int)(px >> 8) & 255;
+            w = (int)(py >> 8) & 255;
+            p = l->frame + row * l->width + column;
+            out[x] = (int16_t)(((p[0] * (256 - u) + p[1] * u) * (256 - w) +
+                                (p[l->width] * (256 - u) + p[l->width + 1] * u) * w + 32768) >>
+                               16);
+        }
+    }
+}
+
+static void add_pixel(struct sums *sums, const struct level *l, int x, int y, int clamp)
+{
+    const ptrdiff_t i = (ptrdiff_t)y * l->width + x, w = l->width;
+    const uint16_t *r = l->reference + i;
+    const int16_t *f = l->warped + i;
+    int32_t row[UNKNOWNS], residual;
+
+    if (f[0] < 0 || f[-1] < 0 || f[1] < 0 || f[-w] < 0 || f[w] < 0)
+        return;
+    /* Four times the gradient, and twice the place. */
+    const int gx = f[1] - f[-1] + r[1] - r[-1], gy = f[w] - f[-w] + r[w] - r[-w];
+    const int px = 2 * x - (l->width - 1), py = 2 * y - (l->height - 1);
+
+    residual = r[0] - f[0];
+    row[0] = (gx * px + gy * py) / 8;
+    row[1] = (gy * px - gx * py) / 8;
+    row[2] = gx;
+    row[3] = gy;
+    row[4] = r[0];
+    row[5] = 64;
+    sums->residual += abs(residual);
+    sums->pixels++;
+    residual = residual < -clamp ? -clamp : residual > clamp ? clamp : residual;
+    for (int a = 0; a < UNKNOWNS; a++) {
+        for (int b = 0; b <= a; b++)
+            sums->left[a][b] += (int64_t)row[a] * row[b];
+        sums->right[a] += (int64_t)row[a] * residual;
+    }
+}
+
+static void add_up(struct sums *sums, const struct level *l, int clamp)
+{
+    memset(sums, 0, sizeof *sums);
+    for (int y = BORDER; y < l->height - BORDER; y++)
+        for (int x = BORDER; x < l->width - BORDER; x++)
+            add_pixel(sums, l, x, y, clamp);
+}
+
+/* Gauss's elimination with the diagonal as pivots: the matrix is symmetric and positive. */
+static bool solve(const struct sums *sums, double out[UNKNOWNS])
+{
+    double m[UNKNOWNS][UNKNOWNS + 1];
+
+    for (int a = 0; a < UNKNOWNS; a++) {
+        for (int b = 0; b < UNKNOWNS; b++)
+            m[a][b] = (double)(b <= a ? sums->left[a][b] : sums->left[b][a]);
+        m[a][UNKNOWNS] = (double)sums->right[a];
+    }
+    for (int a = 0; a < UNKNOWNS; a++) {
+        /* Less than 1e-9 of what it was: the picture does not say. */
+        if (!(m[a][a] > 1e-9 * (double)sums->left[a][a]))
+            return false;
+        for (int b = a + 1; b < UNKNOWNS; b++) {
+            const double factor = m[b][a] / m[a][a];
+
+            for (int c = a; c <= UNKNOWNS; c++)
+                m[b][c] = m[b][c] - factor * m[a][c];
+        }
+    }
+    for (int a = UNKNOWNS - 1; a >= 0; a--) {
+        double value = m[a][UNKNOWNS];
+
+        for (int c = a + 1; c < UNKNOWNS; c++)
+            value = value - m[a][c] * out[c];
+        out[a] = value / m[a][a];
+    }
+    return true;
+}
+
+/* first, then second: places go through `second` before. */
+static struct rf_similarity compose(const struct rf_similarity *first,
+                                    const struct rf_similarity *second)
+{
+    const double *c = first->c, *d = second->c, *t = second->t;
+    struct rf_similarity out;
+
+    out.c[0] = c[0] * d[0] - c[1] * d[1];
+    out.c[1] = c[0] * d[1] + c[1] * d[0];
+    out.t[0] = c[0] * t[0] - c[1] * t[1] + first->t[0];
+    out.t[1] = c[0] * t[1] + c[1] * t[0] + first->t[1];
+    return out;
+}
+
+double rf_similarity_reach(const struct rf_similarity *s, int width, int height)
+{
+    const double x = middle(width), y = middle(height);
+    double most = 0;
+
+    for (int i = 0; i < 4; i++) {
+        const double u = i & 1 ? x : -x, v = i & 2 ? y : -y;
+        const double dx = s->c[0] * u - s->c[1] * v + s->t[0] - u;
+        const double dy = s->c[1] * u + s->c[0] * v + s->t[1] - v;
+        const double far = sqrt(dx * dx + dy * dy);
+
+        most = far > most ? far : most;
+    }
+    return most;
+}
+
+/* Mean of the absolute residuals, in codes of Q4, or -1 where the pictures hardly overlap. */
+static double residual_of(const struct level *l, const struct rf_similarity *s, struct sums *sums,
+                          int clamp)
+{
+    warp(l, s);
+    add_up(sums, l, clamp);
+    return 4 * sums->pixels > (int64_t)l->width * l->height
+               ? (double)sums->residual / (double)sums->pixels
+               : -1;
+}
+
+/* Improves a similarity at one level; returns whether it makes sense. */
+static bool refine(const struct level *l, struct rf_similarity *s)
+{
+    int clamp = INT16_MAX;
+
+    for (int i = 0; i < STEPS; i++) {
+        struct rf_similarity step = {{1, 0}, {0, 0}};
+        double x[UNKNOWNS], mean;
+        struct sums sums;
+
+        mean = residual_of(l, s, &sums, clamp);
+        if (mean < 0 || !solve(&sums, x))
+            return false;
+        clamp = (int)(3 * mean) + 8;
+        /* row[0] is 4 * 2 / 8 = 1 of the derivative, row[2] four of it. */
+        step.c[0] += x[0];
+        step.c[1] = x[1];
+        step.t[0] = 4 * x[2];
+        step.t[1] = 4 * x[3];
+        if (!(rf_similarity_reach(&step, l->width, l->height) < 0.125 * l->width))
+            return false;
+        *s = compose(s, &step);
+        if (rf_similarity_reach(&step, l->width, l->height) < 0.004)
+            break;
+    }
+    return true;
+}
+
+static struct level level_of(const struct refocus_stack *s, const struct rf_stack_frame *reference,
+                             const struct rf_stack_frame *frame, int i)
+{
+    const struct level l = {.reference = reference->small[i],
+                            .frame = frame->small[i],
+                            .warped = (int16_t *)s->moved,
+                            .width = s->width / s->small_by >> i,
+                            .height = s->height / s->small_by >> i};
+
+    return l;
+}
+
+/* From places of the photo to those of a level: centres of pixels lie at half integers of both. */
+static void rescale(struct rf_similarity *s, double by)
+{
+    s->t[0] *= by;
+    s->t[1] *= by;
+}
+
+/* The similarity from one frame to its neighbour, of places in the finest small picture. Where it
+ * makes nothing better, frames stay as they are. */
+static struct rf_similarity between(const struct refocus_stack *s,
+                                    const struct rf_stack_frame *reference,
+                                    const struct rf_stack_frame *frame)
+{
+    const struct rf_similarity none = {{1, 0}, {0, 0}};
+    struct rf_similarity found = none;
+    struct sums sums;
+
+    for (int i = RF_STACK_LEVELS - 1; i >= 0; i--) {
+        const struct level l = level_of(s, reference, frame, i);
+        struct rf_similarity at_level = found;
+
+        if (l.width < LEAST_SIDE || l.height < LEAST_SIDE)
+            continue;
+        rescale(&at_level, 1.0 / (1 << i));
+        if (!refine(&l, &at_level))
+            continue;
+        rescale(&at_level, 1 << i);
+        found = at_level;
+    }
+
+    const struct level finest = level_of(s, reference, frame, 0);
+    const double before = residual_of(&finest, &none, &sums, INT16_MAX);
+    const double after = residual_of(&finest, &found, &sums, INT16_MAX);
+
+    return after < 0 || after >= before ? none : found;
+}
+
+/* Less than this at the corners is left alone: interpolation would cost more. */
+#define LEAST_REACH 0.2
+
+void rf_stack_align(struct refocus_stack *s, int reference)
+{
+    const struct rf_similarity none = {{1, 0}, {0, 0}};
+
+    s->frame[reference].from_reference = none;
+    for (int way = -1; way <= 1; way += 2)
+        for (int i = reference + way; i >= 0 && i < s->count; i += way) {
+            struct rf_stack_frame *frame = &s->frame[i];
+            const struct rf_stack_frame *last = &s->frame[i - way];
+            struct rf_similarity found = none;
+
+            if (s->align == REFOCUS_STACK_ALIGN_SIMILARITY)
+                found = between(s, last, frame);
+            rescale(&found, s->small_by);
+            frame->from_reference = compose(&found, &last->from_reference);
+        }
+    for (int i = 0; i < s->count; i++)
+        if (rf_similarity_reach(&s->frame[i].from_reference, s->width, s->height) < LEAST_REACH)
+            s->frame[i].from_reference = none;
+}

@@ -1,0 +1,144 @@
+/* compose.c: the photo of a focus stack that is in focus everywhere, and its depth, row by row. */
+#include "focus_stack/focus_stack.h"
+
+#include <math.h>
+#include <string.h>
+
+#define ONE_Q32 4294967296.0
+
+struct rf_stack_line rf_stack_line(const struct refocus_stack *s,
+                                   const struct rf_stack_frame *frame, double x, double y,
+                                   double step)
+{
+    const struct rf_similarity *m = &frame->from_reference;
+    const double mx = 0.5 * (s->width - 1), my = 0.5 * (s->height - 1);
+    const double u = x - mx, v = y - my;
+    const struct rf_stack_line line = {
+        .x = llrint((m->c[0] * u - m->c[1] * v + m->t[0] + mx) * ONE_Q32),
+        .y = llrint((m->c[1] * u + m->c[0] * v + m->t[1] + my) * ONE_Q32),
+        .dx = llrint(m->c[0] * step * ONE_Q32),
+        .dy = llrint(m->c[1] * step * ONE_Q32),
+    };
+
+    return line;
+}
+
+/* Weights of four pixels by the cubic of Catmull and Rom, Q9; their sum is 512. */
+static void cubic(int weight[4], int t)
+{
+    /* t is Q6. */
+    const int t2 = t * t, t3 = t2 * t;
+
+    weight[0] = (-4096 * t + 128 * t2 - t3 + 512) >> 10;
+    weight[2] = (4096 * t + 256 * t2 - 3 * t3 + 512) >> 10;
+    weight[3] = (t3 - 64 * t2 + 512) >> 10;
+    weight[1] = 512 - weight[0] - weight[2] - weight[3];
+}
+
+static uint8_t code_of(int v)
+{
+    return (uint8_t)rf_stack_clamp(v, 255);
+}
+
+/* The pixel of a frame at a place, Q32. */
+static void pixel_at(const struct refocus_stack *s, const struct rf_stack_frame *frame,
+                     uint8_t out[3], int64_t x, int64_t y)
+{
+    const int64_t px = (x + (1 << 25)) >> 26, py = (y + (1 << 25)) >> 26; /* Q6 */
+    const int column = (int)(px >> 6), row = (int)(py >> 6);
+    const int u = (int)(px & 63), v = (int)(py & 63);
+    const size_t stride = 3 * (size_t)s->width;
+    int across[4], down[4], sum[3] = {0};
+
+    if (!u && !v) {
+        memcpy(out,
+               frame->rgb + (size_t)rf_stack_clamp(row, s->height - 1) * stride +
+                   3 * (size_t)rf_stack_clamp(column, s->width - 1),
+               3);
+        return;
+    }
+    cubic(across, u);
+    cubic(down, v);
+    for (int j = 0; j < 4; j++) {
+        const uint8_t *in =
+            frame->rgb + (size_t)rf_stack_clamp(row + j - 1, s->height - 1) * stride;
+        int line[3] = {0};
+
+        for (int i = 0; i < 4; i++) {
+            const uint8_t *p = in + 3 * rf_stack_clamp(column + i - 1, s->width - 1);
+
+            for (int c = 0; c < 3; c++)
+                line[c] += across[i] * p[c];
+        }
+        for (int c = 0; c < 3; c++)
+            sum[c] += down[j] * line[c];
+    }
+    for (int c = 0; c < 3; c++)
+        out[c] = code_of((sum[c] + (1 << 17)) >> 18);
+}
+
+/* The share of the farther frame, Q8: 3 t^2 - 2 t^3, so that each counts most where it is sharp. */
+static int share_of(int t)
+{
+    return (3 * 256 * t * t - 2 * t * t * t + 32768) >> 16;
+}
+
+/* Whether a frame has the place x of a row. */
+static bool has(const struct refocus_stack *s, const struct rf_stack_line *line, int x)
+{
+    const int64_t half = INT64_C(1) << 31, one = INT64_C(1) << 32;
+    const int64_t px = line->x + x * line->dx + half, py = line->y + x * line->dy + half;
+
+    return px >= 0 && py >= 0 && px < s->width * one && py < s->height * one;
+}
+
+/* The frame next to frame k, towards the reference, that has the place: the focus breathes and
+ * hands shake, so some do not reach the border of the photo. */
+static int frame_with(const struct refocus_stack *s, const struct rf_stack_line *line, int k, int x)
+{
+    while (k != s->still && !has(s, &line[k], x))
+        k += k < s->still ? 1 : -1;
+    return k;
+}
+
+static void pixel_of(const struct refocus_stack *s, const struct rf_stack_line *line, int k, int x,
+                     uint8_t out[3])
+{
+    k = frame_with(s, line, k, x);
+    pixel_at(s, &s->frame[k], out, line[k].x + x * line[k].dx, line[k].y + x * line[k].dy);
+}
+
+void rf_stack_compose_row(const struct refocus_stack *s, uint8_t *out, const uint16_t *depth, int y)
+{
+    struct rf_stack_line line[REFOCUS_STACK_MOST_FRAMES];
+
+    for (int k = 0; k < s->count; k++)
+        line[k] = rf_stack_line(s, &s->frame[k], 0, y, 1);
+    for (int x = 0; x < s->width; x++, out += 3) {
+        const int k = rf_stack_clamp(depth[x] >> 8, s->count - 2);
+        const int share = share_of(depth[x] - 256 * k);
+        uint8_t a[3] = {0}, b[3] = {0};
+
+        if (share < 256)
+            pixel_of(s, line, k, x, a);
+        if (share > 0)
+            pixel_of(s, line, k + 1, x, b);
+        for (int c = 0; c < 3; c++)
+            out[c] = share == 0     ? a[c]
+                     : share == 256 ? b[c]
+                                    : (uint8_t)((a[c] * (256 - share) + b[c] * share + 128) >> 8);
+    }
+}
+
+void rf_stack_depth_row(const struct refocus_stack *s, uint16_t *depth, uint8_t *sure, int y)
+{
+    const int row = rf_stack_clamp(y / s->reduced, s->rows - 1);
+    const uint16_t *in = s->depth + (size_t)row * (size_t)s->columns;
+
+    for (int x = 0; x < s->width; x++) {
+        const int column = rf_stack_clamp(x / s->reduced, s->columns - 1);
+
+        depth[x] = in[column];
+        sure[x] = s->sure[(size_t)row * (size_t)s->columns + (size_t)column];
+    }
+}

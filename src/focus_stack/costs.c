@@ -1,0 +1,183 @@
+/* costs.c: what each focus of a stack costs at each sample, its guide and its confidence. */
+#include "focus_stack/focus_stack.h"
+
+#include <string.h>
+
+enum {
+    SQUARES = 3,
+    /* Squares of sharpness, in quarters of a squared code: */
+    NOISE = 1600, /* 20 codes of second differences: texture that noise hides */
+    SURE = 2560,  /* by which the sharpest frame leads the mean of all where depth is sure */
+};
+
+static const int reach[SQUARES] = {0, 4, 8};
+
+/* Sharpness of a frame as the reference sees it: bilinear, in the memory that it has. */
+static void move(struct refocus_stack *s, struct rf_stack_frame *frame)
+{
+    const struct rf_similarity *m = &frame->from_reference;
+    const int w = s->columns, h = s->rows, k = s->reduced;
+    const size_t samples = (size_t)w * (size_t)h;
+
+    if (m->c[0] == 1 && m->c[1] == 0 && m->t[0] == 0 && m->t[1] == 0)
+        return;
+    for (int y = 0; y < h; y++) {
+        const struct rf_stack_line line =
+            rf_stack_line(s, frame, 0.5 * (k - 1), y * k + 0.5 * (k - 1), k);
+        const int64_t half = (int64_t)(k - 1) << 31;
+        uint16_t *out = s->moved + (size_t)y * (size_t)w;
+
+        for (int x = 0; x < w; x++) {
+            /* Q32 pixels of the frame, to Q8 samples. */
+            const int64_t px = ((line.x + x * line.dx - half) >> 24) / k;
+            const int64_t py = ((line.y + x * line.dy - half) >> 24) / k;
+            const int u = (int)(px & 255), v = (int)(py & 255);
+            const int64_t left = px >> 8, above = py >> 8;
+            const int x0 = left < 0 ? 0 : left < w ? (int)left : w - 1;
+            const int y0 = above < 0 ? 0 : above < h ? (int)above : h - 1;
+            const int x1 = left < 0 ? 0 : rf_stack_clamp(x0 + 1, w - 1);
+            const int y1 = above < 0 ? 0 : rf_stack_clamp(y0 + 1, h - 1);
+            const uint16_t *p = frame->sharpness + (size_t)y0 * (size_t)w;
+            const uint16_t *q = frame->sharpness + (size_t)y1 * (size_t)w;
+
+            out[x] = (uint16_t)((((uint32_t)p[x0] * (uint32_t)(256 - u) +
+                                  (uint32_t)p[x1] * (uint32_t)u) /
+                                     256 * (uint32_t)(256 - v) +
+                                 ((uint32_t)q[x0] * (uint32_t)(256 - u) +
+                                  (uint32_t)q[x1] * (uint32_t)u) /
+                                     256 * (uint32_t)v) >>
+                                8);
+        }
+    }
+    memcpy(frame->sharpness, s->moved, samples * sizeof *s->moved);
+}
+
+/* Squared sharpness, Q2 codes: at most 4080^2 < 2^24, so that 17 x 17 of them fit 33 bits. */
+static uint32_t square(uint16_t sharpness)
+{
+    const uint32_t v = sharpness >> 3;
+
+    return v * v;
+}
+
+static uint32_t *columns_of(const struct refocus_stack *s, int i, int k)
+{
+    return s->column + (size_t)(i * s->count + k) * (size_t)s->columns;
+}
+
+/* The sums of columns move from row y - 1 to row y. */
+static void add_row(struct refocus_stack *s, int y)
+{
+    for (int i = 0; i < SQUARES; i++)
+        for (int k = 0; k < s->count; k++) {
+            const uint16_t *in = s->frame[k].sharpness;
+            const size_t w = (size_t)s->columns;
+            uint32_t *restrict sum = columns_of(s, i, k);
+            const int first = y ? y + reach[i] : -reach[i];
+
+            if (!y)
+                memset(sum, 0, w * sizeof *sum);
+            for (int v = first; v <= y + reach[i]; v++) {
+                const uint16_t *restrict row = in + (size_t)rf_stack_clamp(v, s->rows - 1) * w;
+
+                for (size_t x = 0; x < w; x++)
+                    sum[x] += square(row[x]);
+            }
+            if (y) {
+                const uint16_t *restrict row =
+                    in + (size_t)rf_stack_clamp(y - reach[i] - 1, s->rows - 1) * w;
+
+                for (size_t x = 0; x < w; x++)
+                    sum[x] -= square(row[x]);
+            }
+        }
+}
+
+/* Costs of one sample from means over a square: 0 of the sharpest frame, below 85. */
+static void add_costs(const struct refocus_stack *s, uint8_t *cost, const uint32_t *mean)
+{
+    uint32_t most = 0;
+
+    for (int k = 0; k < s->count; k++)
+        most = mean[k] > most ? mean[k] : most;
+    for (int k = 0; k < s->count; k++)
+        cost[k] = (uint8_t)(cost[k] + (uint64_t)(most - mean[k]) * 85 / (most + NOISE));
+}
+
+static uint8_t sure_of(const struct refocus_stack *s, const uint32_t *mean)
+{
+    uint64_t sum = 0, most = 0;
+
+    for (int k = 0; k < s->count; k++) {
+        sum += mean[k];
+        most = mean[k] > most ? mean[k] : most;
+    }
+    most -= sum / (uint64_t)s->count;
+    return (uint8_t)(most >= SURE ? 255 : most * 255 / SURE);
+}
+
+static void cost_row(struct refocus_stack *s, int y)
+{
+    const int w = s->columns, n = s->labels;
+    uint8_t *cost = s->cost + (size_t)y * (size_t)w * (size_t)n;
+    uint8_t *sure = s->sure + (size_t)y * (size_t)w;
+
+    memset(cost, 255, (size_t)w * (size_t)n);
+    for (int x = 0; x < w; x++)
+        memset(cost + (size_t)x * (size_t)n, 0, (size_t)s->count);
+    for (int i = 0; i < SQUARES; i++) {
+        const int r = reach[i];
+        const uint64_t area = (uint64_t)(2 * r + 1) * (uint64_t)(2 * r + 1);
+        uint64_t sum[REFOCUS_STACK_MOST_FRAMES] = {0};
+        uint32_t mean[REFOCUS_STACK_MOST_FRAMES];
+
+        for (int k = 0; k < s->count; k++)
+            for (int x = -r - 1; x < r; x++)
+                sum[k] += columns_of(s, i, k)[rf_stack_clamp(x, w - 1)];
+        for (int x = 0; x < w; x++) {
+            for (int k = 0; k < s->count; k++) {
+                const uint32_t *column = columns_of(s, i, k);
+
+                sum[k] += column[rf_stack_clamp(x + r, w - 1)];
+                sum[k] -= column[rf_stack_clamp(x - r - 1, w - 1)];
+                mean[k] = (uint32_t)(sum[k] / area);
+            }
+            add_costs(s, cost + (size_t)x * (size_t)n, mean);
+            if (i == 1)
+                sure[x] = sure_of(s, mean);
+        }
+    }
+}
+
+/* The colour of the frame that costs least, where depth may change. */
+static void guide_row(struct refocus_stack *s, int y)
+{
+    const double half = 0.5 * (s->reduced - 1);
+    struct rf_stack_line line[REFOCUS_STACK_MOST_FRAMES];
+
+    for (int k = 0; k < s->count; k++)
+        line[k] = rf_stack_line(s, &s->frame[k], half, y * s->reduced + half, s->reduced);
+    for (int x = 0; x < s->columns; x++) {
+        const size_t i = (size_t)y * (size_t)s->columns + (size_t)x;
+        const uint8_t *cost = s->cost + i * (size_t)s->labels;
+        int best = 0, u, v;
+
+        for (int k = 1; k < s->count; k++)
+            best = cost[k] < cost[best] ? k : best;
+        u = rf_stack_clamp((int)((line[best].x + x * line[best].dx) >> 32), s->width - 1);
+        v = rf_stack_clamp((int)((line[best].y + x * line[best].dy) >> 32), s->height - 1);
+        memcpy(s->guide + 3 * i,
+               s->frame[best].rgb + 3 * ((size_t)v * (size_t)s->width + (size_t)u), 3);
+    }
+}
+
+void rf_stack_costs(struct refocus_stack *s)
+{
+    for (int k = 0; k < s->count; k++)
+        move(s, &s->frame[k]);
+    for (int y = 0; y < s->rows; y++) {
+        add_row(s, y);
+        cost_row(s, y);
+        guide_row(s, y);
+    }
+}

@@ -1,0 +1,94 @@
+/* focus_stack.h: the frames of a focus stack and the planes that depth is made from. */
+#ifndef RF_FOCUS_STACK_H
+#define RF_FOCUS_STACK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <refocus/stack.h>
+
+enum {
+    RF_STACK_MOST_SAMPLES = 3 << 20, /* at the most, in the maps that the work is done on */
+    RF_STACK_LEVELS = 4,             /* pictures that frames are aligned by, each half the last */
+};
+
+/* z -> c z + t in the complex plane, about the middle of the picture: scale and rotation, shift in
+ * pixels. It maps places in the reference to those in a frame. */
+struct rf_similarity {
+    double c[2], t[2];
+};
+
+struct rf_stack_frame {
+    double position;
+    int added; /* number in the order that frames came in, from 1 */
+    uint8_t *rgb;
+    uint16_t *sharpness;              /* sums of second differences, Q4, of the work's size */
+    uint16_t *small[RF_STACK_LEVELS]; /* luminance in Q4 for the alignment, finest first */
+    struct rf_similarity from_reference;
+};
+
+struct refocus_stack {
+    int width, height;
+    int reduced;       /* a sample of the work is a square of so many pixels */
+    int columns, rows; /* samples of the work */
+    int small_by;      /* the finest picture of the alignment is smaller by so much */
+    int most, count, reference;
+    int still; /* the reference in the order of positions, once the stack is finished */
+    bool finished, without_positions;
+    uint32_t align;
+    int labels; /* most, rounded up so that costs of a sample fill vectors */
+    struct rf_stack_frame frame[REFOCUS_STACK_MOST_FRAMES]; /* in the order of their positions */
+
+    uint8_t *luma;    /* one frame's, of the photo's size */
+    uint16_t *smooth; /* likewise, Q4 */
+    uint16_t *moved;  /* sharpness in the geometry of the reference */
+    uint8_t *guide;   /* R, G, B of the work's size */
+    uint8_t *cost;    /* `labels` of a sample */
+    int16_t *sum;     /* aggregated, `labels` of a sample */
+    int16_t *path;    /* costs along three directions that reach the last row, and the next */
+    uint32_t *column; /* sums of a column, for each square and frame */
+    uint16_t *depth;  /* a sample each, Q8 frames */
+    uint8_t *sure;
+    uint16_t *depth_row; /* one row of the photo */
+    uint8_t *sure_row;
+    void *block;
+};
+
+/* Luminance, sharpness and the small pictures of a frame that has its pixels. */
+void rf_stack_measure(struct refocus_stack *stack, struct rf_stack_frame *frame);
+
+/* Finds from_reference of all frames; the reference is frame `reference` in order of position. */
+void rf_stack_align(struct refocus_stack *stack, int reference);
+/* How far the farthest corner is moved, in pixels. */
+double rf_similarity_reach(const struct rf_similarity *s, int width, int height);
+
+/* Costs, guide and confidence, from the sharpness. */
+void rf_stack_costs(struct refocus_stack *stack);
+/* Adds up the costs along eight directions. */
+void rf_stack_aggregate(struct refocus_stack *stack);
+/* The least sum of each sample, between frames by a parabola. */
+void rf_stack_choose(struct refocus_stack *stack);
+
+/* A row of the photo in focus everywhere; frames that do not show a place leave it to the next one
+ * towards the reference, which shows all. */
+void rf_stack_compose_row(const struct refocus_stack *stack, uint8_t *out, const uint16_t *depth,
+                          int y);
+/* Places in a frame of the places of a row of the reference: x + i dx, Q32 pixels. */
+struct rf_stack_line {
+    int64_t x, y, dx, dy;
+};
+
+/* The line of the places x, x + step, ... of row y of the reference, in pixels. */
+struct rf_stack_line rf_stack_line(const struct refocus_stack *stack,
+                                   const struct rf_stack_frame *frame, double x, double y,
+                                   double step);
+/* Depth of a row of pixels, Q8 frames, and whether it was measured, 0 to 255. */
+void rf_stack_depth_row(const struct refocus_stack *stack, uint16_t *depth, uint8_t *sure, int y);
+
+static inline int rf_stack_clamp(int v, int most)
+{
+    return v < 0 ? 0 : v > most ? most : v;
+}
+
+#endif

@@ -1,0 +1,306 @@
+/* stack.c: a focus stack: takes in frames, and makes depth and a photo that is in focus everywhere.
+ */
+#include <refocus/stack.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "focus_stack/focus_stack.h"
+#include "image/format.h"
+#include "image/read.h"
+#include "support/arena.h"
+
+enum {
+    LEAST_SIDE = 16,
+    SMALL_PIXELS = 1 << 18, /* at the most, in the finest picture of the alignment */
+    SQUARES = 3,            /* costs.c */
+    PATHS = 8,
+    BESIDE = 16,    /* aggregate.c */
+    MEASURED = 128, /* confidence from here on */
+};
+
+static void lay_out(struct refocus_stack *s, struct rf_arena *arena)
+{
+    const uint64_t pixels = (uint64_t)s->width * (uint64_t)s->height;
+    const uint64_t samples = (uint64_t)s->columns * (uint64_t)s->rows;
+    const uint64_t labels = (uint64_t)s->labels;
+    const bool aligns = s->align == REFOCUS_STACK_ALIGN_SIMILARITY;
+
+    for (int k = 0; k < s->most; k++) {
+        struct rf_stack_frame *frame = &s->frame[k];
+        uint64_t w = (uint64_t)(s->width / s->small_by), h = (uint64_t)(s->height / s->small_by);
+
+        frame->rgb = rf_arena_take(arena, pixels, 3);
+        frame->sharpness = rf_arena_take(arena, samples, 2);
+        for (int i = 0; i < RF_STACK_LEVELS && aligns; i++, w /= 2, h /= 2)
+            frame->small[i] = rf_arena_take(arena, w * h, 2);
+    }
+    s->luma = rf_arena_take(arena, pixels, 1);
+    s->smooth = rf_arena_take(arena, pixels, 2);
+    s->moved = rf_arena_take(arena, samples > SMALL_PIXELS ? samples : SMALL_PIXELS, 2);
+    s->guide = rf_arena_take(arena, samples, 3);
+    s->cost = rf_arena_take(arena, samples * labels, 1);
+    s->sum = rf_arena_take(arena, samples * labels, 2);
+    s->path = rf_arena_take(arena, (uint64_t)s->columns * PATHS * (labels + BESIDE), 2);
+    s->column = rf_arena_take(arena, (uint64_t)s->columns * SQUARES * (uint64_t)s->most, 4);
+    s->depth = rf_arena_take(arena, samples, 2);
+    s->sure = rf_arena_take(arena, samples, 1);
+    s->depth_row = rf_arena_take(arena, (uint64_t)s->width, 2);
+    s->sure_row = rf_arena_take(arena, (uint64_t)s->width, 1);
+}
+
+static bool good(const struct refocus_stack_params *p)
+{
+    return p->width >= LEAST_SIDE && p->width <= REFOCUS_MAX_SIDE && p->height >= LEAST_SIDE &&
+           p->height <= REFOCUS_MAX_SIDE && p->frames >= REFOCUS_STACK_LEAST_FRAMES &&
+           p->frames <= REFOCUS_STACK_MOST_FRAMES && p->reference >= 0 &&
+           p->reference <= p->frames && p->align < REFOCUS_STACK_ALIGN_COUNT;
+}
+
+/* The least whole number by which both sides are divided to leave at most so many samples. */
+static int reduction(int width, int height, int64_t most)
+{
+    int k = 1;
+
+    while ((int64_t)((width + k - 1) / k) * ((height + k - 1) / k) > most)
+        k++;
+    return k;
+}
+
+static void size(struct refocus_stack *s, const struct refocus_stack_params *p)
+{
+    s->width = p->width;
+    s->height = p->height;
+    s->most = p->frames;
+    s->reference = p->reference;
+    s->align = p->align;
+    s->labels = p->frames <= 8 ? 8 : p->frames <= 16 ? 16 : REFOCUS_STACK_MOST_FRAMES;
+    s->reduced = reduction(p->width, p->height, RF_STACK_MOST_SAMPLES);
+    s->columns = (p->width + s->reduced - 1) / s->reduced;
+    s->rows = (p->height + s->reduced - 1) / s->reduced;
+    s->small_by = reduction(p->width, p->height, SMALL_PIXELS);
+}
+
+int refocus_stack_create(struct refocus_stack **stack, const struct refocus_stack_params *params)
+{
+    struct rf_arena arena = {NULL, RF_ARENA_ALIGN};
+    struct refocus_stack_params own;
+    struct refocus_stack *s;
+    int status;
+
+    if (!stack)
+        return REFOCUS_ERR_ARGUMENT;
+    *stack = NULL;
+    status = refocus_struct_read(&own, sizeof own,
+                                 REFOCUS_SIZE_TO(struct refocus_stack_params, align), params);
+    if (status)
+        return status;
+    if (!good(&own))
+        return REFOCUS_ERR_ARGUMENT;
+    s = calloc(1, sizeof *s);
+    if (!s)
+        return REFOCUS_ERR_MEMORY;
+    size(s, &own);
+    lay_out(s, &arena);
+    if (arena.used > PTRDIFF_MAX) {
+        free(s);
+        return REFOCUS_ERR_SIZE;
+    }
+    s->block = malloc((size_t)arena.used);
+    if (!s->block) {
+        free(s);
+        return REFOCUS_ERR_MEMORY;
+    }
+    arena.base = (uint8_t *)s->block + (-(uintptr_t)s->block & (RF_ARENA_ALIGN - 1));
+    arena.used = 0;
+    lay_out(s, &arena);
+    *stack = s;
+    return REFOCUS_OK;
+}
+
+void refocus_stack_destroy(struct refocus_stack **stack)
+{
+    if (!stack || !*stack)
+        return;
+    free((*stack)->block);
+    free(*stack);
+    *stack = NULL;
+}
+
+static bool position_fits(const struct refocus_stack *s, double position)
+{
+    if (isinf(position) || (s->count && isnan(position) != s->without_positions))
+        return false;
+    for (int k = 0; k < s->count && !isnan(position); k++)
+        if (s->frame[k].position == position)
+            return false;
+    return true;
+}
+
+static void copy_pixels(uint8_t *out, const struct refocus_image *frame)
+{
+    const struct rf_order order = rf_order_of(frame->format);
+
+    for (int y = 0; y < frame->height; y++) {
+        const uint8_t *in = frame->plane[0] + y * frame->stride[0];
+
+        for (int x = 0; x < frame->width; x++, in += order.bytes, out += 3) {
+            out[0] = in[order.r];
+            out[1] = in[order.g];
+            out[2] = in[order.b];
+        }
+    }
+}
+
+int refocus_stack_add(struct refocus_stack *s, const struct refocus_image *given, double position)
+{
+    struct refocus_image image;
+    struct rf_stack_frame frame;
+    int status, place;
+
+    if (!s)
+        return REFOCUS_ERR_ARGUMENT;
+    status = rf_read_image(NULL, "frame", &image, given);
+    if (status)
+        return status;
+    if (image.width != s->width || image.height != s->height ||
+        refocus_format_is_yuv(image.format) || !position_fits(s, position))
+        return REFOCUS_ERR_ARGUMENT;
+    if (s->count == s->most || s->finished)
+        return REFOCUS_ERR_STATE;
+    s->without_positions = isnan(position);
+    frame = s->frame[s->count];
+    frame.position = s->without_positions ? s->count : position;
+    copy_pixels(frame.rgb, &image);
+    rf_stack_measure(s, &frame);
+    for (place = s->count; place > 0 && s->frame[place - 1].position > frame.position; place--)
+        s->frame[place] = s->frame[place - 1];
+    frame.added = s->count + 1;
+    s->frame[place] = frame;
+    s->count++;
+    return REFOCUS_OK;
+}
+
+static int reference_of(const struct refocus_stack *s)
+{
+    for (int k = 0; k < s->count && s->reference; k++)
+        if (s->frame[k].added == s->reference)
+            return k;
+    return s->reference ? -1 : s->count / 2;
+}
+
+/* Disparity of a depth in Q8 frames: on the line between the positions of two frames. */
+static uint16_t disparity_of(const struct refocus_stack *s, uint16_t depth)
+{
+    const int k = rf_stack_clamp(depth >> 8, s->count - 2);
+    const double first = s->frame[0].position, range = s->frame[s->count - 1].position - first;
+    const double below = s->frame[k].position, above = s->frame[k + 1].position;
+    const double at = below + (above - below) * (depth - 256 * k) / 256;
+    const double d = (at - first) / range * 65535 + 0.5;
+
+    return (uint16_t)(d > 0 ? d < 65535 ? d : 65535 : 0);
+}
+
+static void write_rows(struct refocus_stack *s, struct refocus_stack_result *r)
+{
+    int64_t measured = 0;
+
+    for (int y = 0; y < s->height; y++) {
+        rf_stack_depth_row(s, s->depth_row, s->sure_row, y);
+        if (r->photo)
+            rf_stack_compose_row(s, r->photo + y * r->photo_stride, s->depth_row, y);
+        if (r->confidence)
+            memcpy(r->confidence + y * r->confidence_stride, s->sure_row, (size_t)s->width);
+        for (int x = 0; x < s->width; x++)
+            measured += s->sure_row[x] >= MEASURED;
+        if (r->disparity) {
+            uint16_t *out = (uint16_t *)(void *)((char *)r->disparity + y * r->disparity_stride);
+
+            for (int x = 0; x < s->width; x++)
+                out[x] = disparity_of(s, s->depth_row[x]);
+        }
+    }
+    r->measured = (float)((double)measured / ((double)s->width * s->height));
+}
+
+/* Whether the sharpness of a sample has two peaks, and less than half of them between. */
+static bool has_two_peaks(const struct refocus_stack *s, size_t i)
+{
+    int most = 0, left = 0;
+
+    for (int k = 0; k < s->count; k++)
+        most = s->frame[k].sharpness[i] > most ? s->frame[k].sharpness[i] : most;
+    for (int k = 0; k < s->count; k++) {
+        const int here = s->frame[k].sharpness[i];
+        int right = 0;
+
+        for (int j = k + 1; j < s->count; j++)
+            right = s->frame[j].sharpness[i] > right ? s->frame[j].sharpness[i] : right;
+        const int lower = left < right ? left : right;
+
+        if (2 * here < lower && 3 * lower > most)
+            return true;
+        left = here > left ? here : left;
+    }
+    return false;
+}
+
+/* The share of samples with two peaks of those that are sure; each thirteenth is looked at. */
+static float disorder_of(const struct refocus_stack *s)
+{
+    enum { APART = 13 };
+    const size_t samples = (size_t)s->columns * (size_t)s->rows;
+    int all = 0, wrong = 0;
+
+    for (size_t i = 0; i < samples; i += APART)
+        if (s->sure[i] >= MEASURED) {
+            all++;
+            wrong += has_two_peaks(s, i);
+        }
+    return all ? (float)wrong / (float)all : 0;
+}
+
+static bool good_result(const struct refocus_stack *s, const struct refocus_stack_result *r)
+{
+    const ptrdiff_t w = s->width;
+
+    return (!r->photo || rf_good_stride(r->photo_stride, 3 * w, s->height)) &&
+           (!r->confidence || rf_good_stride(r->confidence_stride, w, s->height)) &&
+           (!r->disparity || (!((uintptr_t)r->disparity & 1) && !(r->disparity_stride & 1) &&
+                              rf_good_stride(r->disparity_stride, 2 * w, s->height))) &&
+           !r->reserved && !r->reserved2;
+}
+
+int refocus_stack_finish(struct refocus_stack *s, struct refocus_stack_result *result)
+{
+    const size_t first = REFOCUS_SIZE_TO(struct refocus_stack_result, moved);
+    struct refocus_stack_result own;
+    int status, reference;
+
+    if (!s)
+        return REFOCUS_ERR_ARGUMENT;
+    status = refocus_struct_read(&own, sizeof own, first, result);
+    if (status)
+        return status;
+    if (!good_result(s, &own))
+        return REFOCUS_ERR_ARGUMENT;
+    reference = s->finished ? -1 : reference_of(s);
+    if (s->count < REFOCUS_STACK_LEAST_FRAMES || reference < 0)
+        return REFOCUS_ERR_STATE;
+    s->finished = true;
+    s->still = reference;
+    rf_stack_align(s, reference);
+    rf_stack_costs(s);
+    own.disorder = disorder_of(s);
+    rf_stack_aggregate(s);
+    rf_stack_choose(s);
+    write_rows(s, &own);
+    own.moved = 0;
+    for (int k = 0; k < s->count; k++) {
+        const double reach = rf_similarity_reach(&s->frame[k].from_reference, s->width, s->height);
+
+        own.moved = reach > own.moved ? (float)reach : own.moved;
+    }
+    return refocus_struct_write(result, first, &own, sizeof own);
+}

@@ -1,0 +1,352 @@
+/* known.c: the light above white of photos that hold it: listed as highlights where there is room
+ * for it, and elsewhere, where much of the photo is brighter than white, left to the rays. */
+#include "highlights/known.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "highlights/clipped.h"
+#include "highlights/in_window.h"
+#include "image/border.h"
+#include "support/compare.h"
+
+enum {
+    LEAST = RF_LIGHT_MAX / 32, /* light above white that counts, Q12 */
+    REACH = 3,                 /* pixels that light left to the rays is spread over, each way */
+    PATCH = RF_TILE + 2 * REACH,
+    ALIKE = 256, /* Q7.8: how much blurs may differ that it is spread over */
+    /* The light of `boost`: a gain of RF_KNOWN_GAIN adds a third of it this many times. */
+    UNIT = (RF_KNOWN_GAIN - 1) / 3,
+};
+
+/* Light above white of pixels in and around a tile, Q12. */
+struct patch {
+    int excess[3][PATCH * PATCH];
+    bool any[PATCH * PATCH]; /* the pixel has some that counts, in any channel */
+};
+
+void rf_lay_out_known(struct rf_highlights *highlights, struct rf_arena *arena, int max_width,
+                      int max_height)
+{
+    highlights->by_rays = rf_arena_take(arena, ((uint64_t)max_width + RF_TILE - 1) / RF_TILE,
+                                        ((uint64_t)max_height + RF_TILE - 1) / RF_TILE);
+}
+
+/* Reads the pixels x0 <= x < x1 of row y. Returns how many are above white. */
+static int read_row(const struct rf_deep *photo, struct patch *patch, int at, int x0, int x1, int y)
+{
+    int count = 0;
+
+    for (int x = x0; x < x1; x++, at++) {
+        float exact[3];
+
+        patch->any[at] = false;
+        rf_deep_light(photo, x, y, exact);
+        for (int c = 0; c < 3; c++) {
+            const float light = (exact[c] - 1) * RF_LIGHT_MAX;
+            const float most = (float)UINT16_MAX * UNIT;
+
+            patch->excess[c][at] = light > 0 ? (int)((light < most ? light : most) + 0.5f) : 0;
+            patch->any[at] |= patch->excess[c][at] > LEAST;
+        }
+        count += patch->any[at];
+    }
+    return count;
+}
+
+struct listing {
+    const struct rf_executor *exec;
+    const struct rf_deep *photo;
+    struct rf_highlights *highlights;
+    int tiles_x;
+};
+
+/* The pixels of a tile. */
+static struct rf_rect tile_of(const struct rf_deep *photo, int tx, int ty)
+{
+    return (struct rf_rect){tx * RF_TILE, ty * RF_TILE,
+                            rf_smaller((tx + 1) * RF_TILE, photo->image.width),
+                            rf_smaller((ty + 1) * RF_TILE, photo->image.height)};
+}
+
+/* How many pixels above white lie side by side around one of a tile, in steps of `step`, up to its
+ * sides. */
+static int extent(const struct patch *patch, int at, int step, int from, int to)
+{
+    int count = 1;
+
+    for (int i = 1; i <= from && patch->any[at - i * step]; i++)
+        count++;
+    for (int i = 1; i < to && patch->any[at + i * step]; i++)
+        count++;
+    return count;
+}
+
+static struct rf_highlight run_of(const struct patch *patch, struct rf_rect tile, int x, int y,
+                                  int count)
+{
+    const int at = y * RF_TILE + x, middle = at + count / 2, rows = tile.y1 - tile.y0;
+    const int size = rf_smaller(count, extent(patch, middle, RF_TILE, y, rows - y));
+    struct rf_highlight run = {
+        .x = (uint16_t)(tile.x0 + x),
+        .y = (uint16_t)(tile.y0 + y),
+        .count = (uint8_t)count,
+        .size = (uint8_t)(size < RF_TILE ? size : UINT8_MAX),
+    };
+
+    for (int c = 0; c < 3; c++) {
+        int64_t sum = 0;
+
+        for (int i = 0; i < count; i++)
+            sum += patch->excess[c][at + i];
+        run.boost[c] = (uint16_t)((sum + count * UNIT / 2) / (count * UNIT));
+    }
+    return run;
+}
+
+/* Counts the runs of a tile or, if `lists`, lists them. */
+static uint32_t take_runs(const struct listing *listing, const struct patch *patch,
+                          struct rf_rect tile, bool lists)
+{
+    const int width = tile.x1 - tile.x0;
+    uint32_t runs = 0;
+
+    for (int y = 0; y < tile.y1 - tile.y0; y++)
+        for (int x = 0, count; x < width; x += count + 1) {
+            struct rf_highlight run;
+
+            for (count = 0; x + count < width && patch->any[y * RF_TILE + x + count];)
+                count++;
+            if (!count)
+                continue;
+            runs++;
+            if (!lists)
+                continue;
+            run = run_of(patch, tile, x, y, count);
+            rf_list_highlight(listing->highlights, &run);
+        }
+    return runs;
+}
+
+/* Reads a tile. Returns how many of its pixels are above white. */
+static int read_tile(const struct rf_deep *photo, struct patch *patch, struct rf_rect tile)
+{
+    int count = 0;
+
+    for (int y = tile.y0; y < tile.y1; y++)
+        count += read_row(photo, patch, (y - tile.y0) * RF_TILE, tile.x0, tile.x1, y);
+    return count;
+}
+
+/* Whether a tile is at a side of the photo, beyond which rays find it repeated, and discs do not.
+ */
+static bool is_at_side(const struct rf_deep *photo, struct rf_rect tile)
+{
+    return !tile.x0 || !tile.y0 || tile.x1 == photo->image.width || tile.y1 == photo->image.height;
+}
+
+enum choice { LISTED, LARGE_BY_RAYS, ALL_BY_RAYS };
+
+/* Lists the runs of a part, and leaves tiles that are above white as a whole, or all, to the rays:
+ * the first choice that the list has room for. */
+static void list_part(void *context, int item, int worker)
+{
+    const struct listing *listing = context;
+    const struct rf_deep *photo = listing->photo;
+    struct rf_highlight_list *list = &listing->highlights->part[item];
+    const int rows = (photo->image.height + RF_TILE - 1) / RF_TILE;
+    const int ty0 = item * (RF_HIGHLIGHT_ROWS / RF_TILE);
+    const int ty1 = rf_smaller(ty0 + RF_HIGHLIGHT_ROWS / RF_TILE, rows);
+    uint32_t runs = 0,
+             of_large = 0; /* runs of tiles that are above white in part, and as a whole */
+    enum choice choice = LISTED;
+    struct patch patch;
+
+    (void)worker;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int ty = ty0; ty < ty1; ty++)
+            for (int tx = 0; tx < listing->tiles_x && !rf_cancelled(listing->exec); tx++) {
+                const struct rf_rect tile = tile_of(photo, tx, ty);
+                uint8_t *by_rays = &listing->highlights->by_rays[ty * listing->tiles_x + tx];
+                const int pixels = (tile.x1 - tile.x0) * (tile.y1 - tile.y0);
+                const int count = read_tile(photo, &patch, tile);
+
+                *by_rays = count && choice >= (count < pixels            ? ALL_BY_RAYS
+                                               : is_at_side(photo, tile) ? LISTED
+                                                                         : LARGE_BY_RAYS);
+                if (count && !*by_rays)
+                    *(count == pixels ? &of_large : &runs) +=
+                        take_runs(listing, &patch, tile, pass > 0);
+            }
+        choice = runs > list->capacity              ? ALL_BY_RAYS
+                 : runs + of_large > list->capacity ? LARGE_BY_RAYS
+                                                    : LISTED;
+    }
+}
+
+void rf_list_known(const struct rf_executor *exec, const struct rf_deep *photo,
+                   struct rf_highlights *highlights)
+{
+    struct listing listing = {exec, photo, highlights,
+                              (photo->image.width + RF_TILE - 1) / RF_TILE};
+
+    rf_clear_highlights(highlights);
+    rf_pool_run(exec->pool, list_part, &listing,
+                (photo->image.height + RF_HIGHLIGHT_ROWS - 1) / RF_HIGHLIGHT_ROWS);
+    if (!rf_cancelled(exec))
+        rf_sort_highlights(exec, highlights);
+}
+
+bool rf_leaves_known(const struct rf_highlight_window *window)
+{
+    const struct rf_viewport *view = window->view;
+    const int tiles_x = (view->photo_width + RF_TILE - 1) / RF_TILE;
+    const int tiles_y = (view->photo_height + RF_TILE - 1) / RF_TILE;
+
+    return window->known &&
+           memchr(window->highlights->by_rays, true, (size_t)tiles_x * (size_t)tiles_y);
+}
+
+struct boost {
+    const struct rf_executor *exec;
+    const struct rf_highlight_window *window;
+    struct rf_light_q12 smooth;
+    double gap;
+    int most;
+};
+
+/* Whether a tile of the window is left to the rays. */
+static bool is_left(const struct rf_highlight_window *w, int tx, int ty)
+{
+    const struct rf_viewport *view = w->view;
+    const int tiles_x = (view->photo_width + RF_TILE - 1) / RF_TILE;
+    const int tiles_y = (view->photo_height + RF_TILE - 1) / RF_TILE;
+    const int x = view->x0 / RF_TILE + tx, y = view->y0 / RF_TILE + ty;
+
+    return x >= 0 && y >= 0 && x < tiles_x && y < tiles_y &&
+           w->highlights->by_rays[y * tiles_x + x];
+}
+
+static bool is_near_left(const struct rf_highlight_window *w, int tx, int ty)
+{
+    for (int i = 0; i < 9; i++)
+        if (is_left(w, tx + i % 3 - 1, ty + i / 3 - 1))
+            return true;
+    return false;
+}
+
+/* Reads what is left to the rays in and around a tile of the window; 0 elsewhere. */
+static void read_left(const struct rf_highlight_window *w, int tx, int ty, struct patch *patch)
+{
+    const struct rf_viewport *view = w->view;
+    const int x0 = tx * RF_TILE - REACH, y0 = ty * RF_TILE - REACH;
+
+    memset(patch, 0, sizeof *patch);
+    for (int i = 0; i < 9; i++) {
+        const int nx = tx + i % 3 - 1, ny = ty + i / 3 - 1;
+        /* The part of that tile that lies in the patch and in the window. */
+        const struct rf_rect part = {
+            rf_larger(rf_larger(nx * RF_TILE, x0), 0), rf_larger(rf_larger(ny * RF_TILE, y0), 0),
+            rf_smaller(rf_smaller((nx + 1) * RF_TILE, x0 + PATCH), view->width),
+            rf_smaller(rf_smaller((ny + 1) * RF_TILE, y0 + PATCH), view->height)};
+
+        for (int y = part.y0; y < part.y1 && part.x0 < part.x1 && is_left(w, nx, ny); y++)
+            read_row(w->known, patch, (y - y0) * PATCH + part.x0 - x0, view->x0 + part.x0,
+                     view->x0 + part.x1, view->y0 + y);
+    }
+}
+
+/* The mean of the patch over the pixels around one that are blurred as it is. */
+static void mean_around(const struct boost *b, const struct patch *patch, int x, int y, int at,
+                        int reach, int mean[3])
+{
+    const struct rf_viewport *view = b->window->view;
+    const int own = rf_window_blur(b->window, x, y);
+    int64_t sum[3] = {0, 0, 0};
+    int count = 0;
+
+    for (int v = rf_larger(-reach, -y); v <= rf_smaller(reach, view->height - 1 - y); v++)
+        for (int u = rf_larger(-reach, -x); u <= rf_smaller(reach, view->width - 1 - x); u++) {
+            if (u * u + v * v > reach * reach + 1 ||
+                abs(rf_window_blur(b->window, x + u, y + v) - own) > ALIKE)
+                continue;
+            for (int c = 0; c < 3; c++)
+                sum[c] += patch->excess[c][at + v * PATCH + u];
+            count++;
+        }
+    for (int c = 0; c < 3; c++)
+        mean[c] = (int)((sum[c] + count / 2) / count);
+}
+
+static void boost_tile(void *context, int item, int worker)
+{
+    const struct boost *b = context;
+    const struct rf_highlight_window *w = b->window;
+    const struct rf_viewport *view = w->view;
+    const int tx = item % view->tiles_x, ty = item / view->tiles_x;
+    const int x1 = rf_smaller((tx + 1) * RF_TILE, view->width);
+    const int y1 = rf_smaller((ty + 1) * RF_TILE, view->height);
+    struct patch patch;
+    int brightest = 0;
+
+    (void)worker;
+    if (!is_near_left(w, tx, ty))
+        return;
+    read_left(w, tx, ty, &patch);
+    for (int y = ty * RF_TILE; y < y1; y++)
+        for (int x = tx * RF_TILE; x < x1; x++) {
+            const int at = (y % RF_TILE + REACH) * PATCH + x % RF_TILE + REACH;
+            const int blur = abs(rf_window_blur(w, x, y));
+            const int half = (int)(b->gap * blur / 512);
+            /* as of highlights that are listed: all of it from one pixel and a half on */
+            const int ramp = rf_ramp(blur, 128, 384);
+            int mean[3];
+
+            if (!ramp)
+                continue;
+            mean_around(b, &patch, x, y, at, half < REACH ? half : REACH, mean);
+            for (int c = 0; c < 3; c++) {
+                uint16_t *light = &b->smooth.channel[c][y * b->smooth.stride + x];
+                const int64_t sum = *light + (((int64_t)mean[c] * ramp) >> 8);
+
+                *light = (uint16_t)(sum < b->most ? sum : b->most);
+                brightest = rf_larger(brightest, *light);
+            }
+        }
+    w->bins[item].brightest = (uint16_t)rf_larger(w->bins[item].brightest, brightest);
+}
+
+/* Rays read beyond the window's sides, too. */
+static void extend_band(void *context, int band, int worker)
+{
+    const struct boost *b = context;
+    const struct rf_viewport *view = b->window->view;
+
+    (void)worker;
+    for (int c = 0; c < 3; c++)
+        rf_extend_rows(view, b->smooth.channel[c], b->smooth.stride, rf_band_start(band),
+                       rf_band_end(view, band));
+}
+
+void rf_boost_known(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                    struct rf_light_q12 smooth, double gap, int most)
+{
+    struct boost boost = {exec, window, smooth, gap, most};
+
+    rf_pool_run(exec->pool, boost_tile, &boost, window->view->tiles_x * window->view->tiles_y);
+    rf_pool_run(exec->pool, extend_band, &boost, rf_bands(window->view));
+}
+
+void rf_raise_known(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                    const struct rf_foreground_cells *foreground)
+{
+    const struct rf_viewport *view = window->view;
+
+    for (int ty = 0; ty < view->tiles_y && !rf_cancelled(exec); ty++)
+        for (int tx = 0; tx < view->tiles_x; tx++)
+            if (is_left(window, tx, ty))
+                rf_force_foreground(view, foreground,
+                                    (struct rf_rect){tx * RF_TILE - REACH, ty * RF_TILE - REACH,
+                                                     (tx + 1) * RF_TILE + REACH,
+                                                     (ty + 1) * RF_TILE + REACH});
+}

@@ -1,0 +1,38 @@
+/* known.h: light above white that a photo holds, in place of an estimate of what clipping took.
+ *
+ * Runs of pixels above white are listed as highlights with just that light. Where a part of the
+ * photo has more of them than its list holds, tiles that are above white as a whole are left to the
+ * rays, or all of them if that does not suffice: rf_boost_known() adds their light to what rays hit
+ * then, spread as the pre-filter spreads light up to white.
+ */
+#ifndef RF_HIGHLIGHTS_KNOWN_H
+#define RF_HIGHLIGHTS_KNOWN_H
+
+#include "highlights/highlights.h"
+
+/* The gain that lists of known light are for: they hold up to 65535 (RF_KNOWN_GAIN - 1) / 3 of Q12
+ * above white, 336 times white. */
+enum { RF_KNOWN_GAIN = 64 };
+
+/* Gives the lists of photos up to that size the memory that known light needs beyond that of all.
+ */
+void rf_lay_out_known(struct rf_highlights *highlights, struct rf_arena *arena, int max_width,
+                      int max_height);
+
+/* Lists the light of a photo. What a cancelled run leaves is of no use. */
+void rf_list_known(const struct rf_executor *exec, const struct rf_deep *photo,
+                   struct rf_highlights *highlights);
+
+/* Whether any light of the photo is left to the rays. */
+bool rf_leaves_known(const struct rf_highlight_window *window);
+
+/* Adds the light that is left to the rays to `smooth`, up to `most` there; notes the brightest in
+ * bins. `gap` as of rf_boost_highlights(). */
+void rf_boost_known(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                    struct rf_light_q12 smooth, double gap, int most);
+
+/* Counts its tiles as foreground: see rf_raise_highlights(). */
+void rf_raise_known(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                    const struct rf_foreground_cells *foreground);
+
+#endif

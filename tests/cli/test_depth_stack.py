@@ -1,0 +1,206 @@
+#!/usr/bin/env python3
+"""The refocus command: depth and an all-in-focus photo of a focus stack.
+Usage: test_depth_stack.py REFOCUS [unittest arguments]"""
+import json
+import os
+import struct
+import unittest
+
+import pictures
+from case import Case, H, W
+
+FRAMES = 3
+
+
+def noise(x, y):
+    return (x * 7919 + y * 104729 + x * y * 31) * 2654435761 >> 16 & 255
+
+
+def mean(x, y, radius):
+    """The texture through a lens: the mean of a square."""
+    span = range(-radius, radius + 1)
+    return sum(noise(x + u, y + v) for u in span for v in span) // len(span) ** 2
+
+
+class DepthOfAStack(Case):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        # The left half is far, in focus in the first frame, the right one near.
+        for k in range(FRAMES):
+            pictures.ppm(f'{k}.ppm', W, H, lambda x, y: (
+                mean(x, y, k if x < W // 2 else FRAMES - 1 - k),) * 3)
+        cls.frames = [f'{k}.ppm' for k in range(FRAMES)]
+        cls.command = ['depth', '--focal-stack', *cls.frames, '--align', 'none']
+
+    def halves(self, name):
+        width, height, samples = pictures.read_pnm(name)
+        self.assertEqual((width, height), (W, H))
+        return [sorted(samples[y * W + x] for y in range(H) for x in range(left, left + W // 2))
+                [W * H // 4] for left in (0, W // 2)]
+
+    def test_depth_and_photo(self):
+        report = self.reports(*self.command, '-o', 'd.pgm', '--photo', 'all.ppm')
+        self.assertEqual((report['width'], report['height']), (W, H))
+        self.assertEqual(report['evidence'], ['focus stack: 3 frames, moved by up to 0.0 pixels, '
+                                              'in the geometry of frame 2'])
+        self.assertEqual(self.halves('d.pgm'), [0, 65535])
+        photo = pictures.read_pnm('all.ppm')[2]
+        right = sum(photo[3 * (y * W + x)] == noise(x, y) for y in range(H) for x in range(W))
+        self.assertGreater(right, 0.75 * W * H)
+        self.succeeds(*self.command, '-o', 'c.ppm', '--view', 'confidence')
+        os.remove('c.ppm')
+
+    def test_positions_are_dioptres_in_any_order(self):
+        self.succeeds(*self.command, '-o', 'd.pgm')
+        turned = ['depth', '--focal-stack', *self.frames[::-1], '--align', 'none']
+        with open('p.json', 'w') as file:
+            json.dump({'positions': [2, 1, 0.5]}, file)
+        for given in ('2,1,0.5', 'p.json'):
+            report = self.reports(*turned, '-o', 'e.pgm', '--positions', given)
+            self.assertEqual((report['depth']['near_m'], report['depth']['far_m']), (0.5, 2))
+        self.assertEqual(self.halves('e.pgm'), [0, 65535])
+
+    def test_a_jpeg_carries_its_depth(self):
+        result = self.run_it(*self.command, '-o', 'o.jpg', '--positions', '0,1,2')
+        if result.returncode:  # a build without expat or libpng
+            self.assertFalse(os.path.exists('o.jpg'))
+            return
+        report = self.reports('info', 'o.jpg')
+        self.assertEqual((report['depth']['width'], report['depth']['height']), (W, H))
+        self.assertEqual(report['depth']['near_m'], 0.5)
+        self.assertEqual([n for n in os.listdir('.') if n.startswith('o.') and n != 'o.jpg'], [])
+        self.succeeds('render', 'o.jpg', '--focus', '1', '--blur', '4', '-o', 'r.ppm')
+
+    CAMERA = 'replay::stack %d.ppm 3;lens 0.5 2.5'
+
+    def stack(self, more='', *arguments):
+        return ('stack', '--camera', self.CAMERA + more, '--steps', '3', *arguments)
+
+    def test_a_camera_moves_its_lens(self):
+        plan = self.reports(*self.stack('', '--dry-run'))
+        self.assertEqual(plan, {'dioptres': True, 'least': 0.5, 'greatest': 2.5, 'average': 1,
+                                'positions': [0.5, 1.5, 2.5]})
+        self.assertIn(' 2       1.5, 0.667 m\n', self.succeeds(*self.stack('', '--dry-run')))
+        self.succeeds('depth', '--focal-stack', *self.frames, '-o', 'd.pgm', '--photo', 'all.ppm')
+        report = self.reports(*self.stack(';lens-speed 0.125', '--average', '2', '-o', 'e.pgm',
+                                          '--photo', 'f.ppm', '--keep', 'kept'))
+        self.assertEqual((report['depth']['near_m'], report['depth']['far_m']), (0.4, 2))
+        for one, other in ('d.pgm', 'e.pgm'), ('all.ppm', 'f.ppm'):
+            with open(one, 'rb') as a, open(other, 'rb') as b:
+                self.same(a.read(), b.read(), other)
+        with open('kept/stack.json') as file:
+            kept = json.load(file)
+        self.assertEqual(kept['positions'], [0.5, 1.5, 2.5])
+        again = self.reports('depth', '--focal-stack', *('kept/' + f for f in kept['frames']),
+                             '--positions', 'kept/stack.json', '-o', 'g.pgm')
+        self.assertEqual(again['depth'], report['depth'])
+        self.fails(1, 'kept: it is there already; give a new folder',
+                   *self.stack('', '--keep', 'kept'))
+        self.assertEqual([f for f in os.listdir('.') if f.startswith('.refocus')], [])
+
+    def test_a_range_and_frames_alone(self):
+        self.assertEqual(self.reports(*self.stack('', '--range', '1,2', '--keep', 'two'))
+                         ['positions'], [1, 1.5, 2])
+        self.assertEqual(len(os.listdir('two')), 4)
+
+    def test_lenses_that_do_not_do_as_they_are_told(self):
+        out = ('-o', 'x.pgm')
+        sticky = self.CAMERA + ';lens-stop 1.5'
+        self.fails(1, f'{sticky}: its lens stays at 1.5 where 2.5 was asked for; give a --range '
+                   'that it can reach', *self.stack(';lens-stop 1.5', *out))
+        wrong = self.CAMERA + ';lens-error 0.5'
+        report = self.warns(f'{wrong}: its lens reports 1 where 0.5 was asked for; depth goes by '
+                            'what it reports', *self.stack(';lens-error 0.5', '-o', 'w.pgm'))
+        self.assertAlmostEqual(report['depth']['far_m'], 1)
+        slow = self.CAMERA + ';lens-speed 0.001'
+        self.fails(1, f'{slow}: its lens has not come to rest within 20 s',
+                   *self.stack(';lens-speed 0.001', *out))
+        ends = self.CAMERA + ';frames 40'
+        self.fails(1, f'{ends}: the script is at its end', *self.stack(';frames 40', *out))
+        self.fails(1, 'replay::size 64x48: its lens cannot be moved; focus by hand, and give the '
+                   'pictures to refocus depth --focal-stack', 'stack', '--camera',
+                   'replay::size 64x48', *out)
+        self.fails(2, '--range: its lens goes from 0.5 to 2.5; give the farther one first',
+                   *self.stack('', '--range', '2,1', *out))
+        self.fails(2, '--camera: none is given; refocus live --list shows those that there are',
+                   'stack', *out)
+        self.fails(2, '--photo: it goes with -o; give that too',
+                   *self.stack('', '--keep', 'no', '--photo', 'p.ppm'))
+
+    def test_exif_says_where_the_lens_was(self):
+        """The farthest of them is infinity, the greatest numerator."""
+        names = []
+        for k, metres in enumerate(((0xffffffff, 1), (4, 1), (2, 1))):
+            if self.run_it('render', f'{k}.ppm', '--depth', 'depth.pgm', '--blur', '0', '-o',
+                           'j.jpg').returncode:
+                self.skipTest('a build without JPEG')
+            tiff = struct.pack('<2sHIHHHIIIHHHIIIII', b'II', 42, 8, 1, 0x8769, 4, 1, 26, 0,
+                               1, 0x9206, 5, 1, 44, 0, *metres)
+            jpeg = pictures.read_bytes('j.jpg')
+            names.append(f'exif-{k}.jpg')
+            with open(names[-1], 'wb') as file:
+                file.write(jpeg[:2] + b'\xff\xe1' + struct.pack('>H', len(tiff) + 8) +
+                           b'Exif\0\0' + tiff + jpeg[2:])
+        self.assertEqual([self.reports('info', name)['subject_distance'] for name in names],
+                         ['infinity', 4, 2])
+        report = self.reports('depth', '--focal-stack', *names[::-1], '--align', 'none', '-o', 'x.pgm')
+        self.assertEqual((report['depth']['near_m'], report['depth']['far_m']), (2, 'infinity'))
+        self.assertEqual(report['evidence'][1], 'EXIF: the subject distances of the frames')
+        report = self.reports('depth', '--focal-stack', names[0], *names, '--align', 'none', '-o',
+                              'x.pgm')
+        self.assertEqual(len(report['evidence']), 1)
+        os.remove('x.pgm')
+
+    def test_says_when_the_order_is_wrong(self):
+        for k in range(5):
+            pictures.ppm(f'five-{k}.ppm', W, H, lambda x, y: (
+                int(128 + (noise(x, y) - 128) * 0.6 ** (k if x < W // 2 else 4 - k)),) * 3)
+        five = [f'five-{k}.ppm' for k in (3, 0, 4, 2, 1)]
+        self.warns(f'{five[2]}: frames do not follow each other in focus; give the farthest first, '
+                   'or --positions', 'depth', '--focal-stack', *five, '--align', 'none', '-o',
+                   'x.pgm')
+        self.reports('depth', '--focal-stack', *five, '--align', 'none', '-o', 'x.pgm',
+                     '--positions', '3,0,4,2,1')
+        os.remove('x.pgm')
+
+    def test_what_is_no_stack(self):
+        out = ('-o', 'x.pgm')
+        self.fails(2, '0.ppm: one frame is no focus stack; give two at least',
+                   'depth', '--focal-stack', '0.ppm', *out)
+        self.fails(1, '0.ppm: no part of the picture is sharper in one frame than in the others; '
+                   'give frames of different focus', 'depth', '--focal-stack', '0.ppm', '0.ppm',
+                   *out)
+        pictures.ppm('small.ppm', W - 1, H, lambda x, y: (x, y, 0))
+        self.fails(1, f'small.ppm: it is {W - 1}x{H}, and other frames are not; give frames of one '
+                   'size', *self.command, 'small.ppm', *out)
+        os.remove('small.ppm')
+        pictures.ppm('tiny.ppm', 8, 8, lambda x, y: (x, y, 0))
+        self.fails(1, 'tiny.ppm: it is too small; give frames of 16 x 16 pixels and more',
+                   'depth', '--focal-stack', 'tiny.ppm', 'tiny.ppm', *out)
+        os.remove('tiny.ppm')
+        self.fails(2, '2.ppm: one file too many; give refocus depth FILE [RIGHT], or --focal-stack',
+                   'depth', *self.frames, *out)
+        self.fails(2, '--reference: there are 3 frames; give 1 to 3', *self.command, *out,
+                   '--reference', '4')
+        self.fails(2, '--full: it is not for depth of a focus stack; leave it out', *self.command,
+                   *out, '--full')
+        for text, why in (('1,2', '2 positions for 3 frames; give one for each'),
+                          ('1,2,1', '1 is there twice; give each frame its own'),
+                          ('1,2,-1', '-1 is no focus in dioptres; give numbers from 0 to 1e6'),
+                          ('1,nan,2', 'nan is no focus in dioptres; give numbers from 0 to 1e6'),
+                          ('1;2;3', "'1;2;3' is no list of numbers; give dioptres with commas, "
+                           'such as 0.2,0.5,1, or a .json file')):
+            self.fails(2, '--positions: ' + why, *self.command, *out, '--positions', text)
+        for text, why in (('{"a": 1}', 'it holds no positions; give [0.2, 0.5, 1] or '
+                           '{"positions": [0.2, 0.5, 1]}, in dioptres'),
+                          ('[1, "2", 3]', 'position 2 is no number; give dioptres')):
+            with open('bad.json', 'w') as file:
+                file.write(text)
+            self.fails(1, 'bad.json: ' + why, *self.command, *out, '--positions', 'bad.json')
+        self.fails(2, '--reference: it goes with --focal-stack; give that too',
+                   'depth', 'depth.pgm', *out, '--reference', '1')
+
+
+if __name__ == '__main__':
+    unittest.main()

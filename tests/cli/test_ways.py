@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Depth in one step: --estimate, --stereo and --stereo-file of render, sheet and pull make what
+`refocus depth` and --depth make. Usage: test_ways.py REFOCUS [unittest arguments]"""
+import os
+import random
+import re
+import unittest
+
+import pictures
+from case import Case
+from onnx_file import network
+
+
+class Ways(Case):
+    def setUp(self):
+        self.opencv = 'OpenCV' in self.run_it('--version').stdout
+
+    def photos(self):
+        """A photo that is near where it is red, of the network's size, and a stereo pair."""
+        with open('red.onnx', 'wb') as file:
+            file.write(network())
+        pictures.ppm('red.ppm', 320, 192,
+                     lambda x, y: (230 if x >= 160 else 40, 90, x * y & 127))
+        rng = random.Random(3)
+        noise = [[rng.randrange(256) for _ in range(200)] for _ in range(96)]
+
+        def seen(x, y, shift):
+            near = 50 <= x + (16 if shift else 0) < 110 and 24 <= y < 72
+            return noise[y][x + 20 + ((16 if near else 4) if shift else 0)]
+        for name, shift in ('left.ppm', 0), ('right.ppm', 1):
+            pictures.ppm(name, 160, 96, lambda x, y, s=shift: (seen(x, y, s),) * 3)
+
+    def both(self, photo, way, depth_way, command, *arguments):
+        """The command by a map of `refocus depth`, and in one step."""
+        found = []
+        self.succeeds('depth', photo, *depth_way, '-o', 'map.png')
+        for depth in ('--depth', 'map.png'), way:
+            self.succeeds(command, photo, *depth, '-o', 'out.ppm', *arguments)
+            found.append(pictures.read_bytes('out.ppm'))
+        self.same(*found, (way, command))
+        self.differs(found[0], pictures.read_bytes(photo))
+
+    def test_in_one_step(self):
+        if not self.opencv:
+            self.skipTest('this build has no OpenCV')
+        self.photos()
+        for command, more in (('render', ('--focus', '0', '--blur', '4')),
+                              ('sheet', ('--focuses', '0,1', '--blur', '4')),
+                              ('sheet', ('--f-numbers', '2,8', '--focal-length', '50', '--near',
+                                         '1', '--far', '9'))):
+            self.both('red.ppm', ('--estimate', 'red.onnx'), ('--estimate', 'red.onnx'), command,
+                      *more)
+            self.both('left.ppm', ('--stereo', 'right.ppm'), ('right.ppm',), command, *more)
+        self.succeeds('pull', 'red.ppm', '--estimate', 'red.onnx', '-o', 'pull.apng', '--seconds',
+                      '0.2', '--blur', '3', '--rays', '8')
+        report = self.reports('render', 'left.ppm', '--stereo', 'right.ppm', '-o', 'out.ppm')
+        self.assertEqual((report['depth']['width'], report['depth']['height']), (160, 96))
+        self.fails(1, re.compile(r'^refocus: right.ppm: '), 'render', 'red.ppm', '--stereo',
+                   'right.ppm', '-o', 'new.ppm')
+        self.fails(1, re.compile(r'^refocus: red.ppm: it is no stereo file'), 'render',
+                   'red.ppm', '--stereo-file', '-o', 'new.ppm')
+        self.fails(1, re.compile(r'^refocus: no.onnx: '), 'render', 'red.ppm', '--estimate',
+                   'no.onnx', '-o', 'new.ppm')
+
+    def test_refused(self):
+        twice = ('depth is given twice; give one of --depth, --estimate, --stereo and '
+                 '--stereo-file')
+        for line, options in (
+                ('--estimate: ' + twice, ('--estimate', 'm.onnx')),
+                ('--stereo: ' + twice, ('--stereo', 'plain.ppm')),
+                ('--stereo: ' + twice, ('--stereo-file',)),
+                ('--network: it goes with --estimate; give that too', ('--network', 'midas-small')),
+                ('--match: it goes with --stereo; give that too',
+                 ('--match', 'plain'))):
+            self.fails(2, line, *self.render(*options))
+        one = ('render', 'photo.ppm', '-o', 'new.ppm')
+        self.fails(2, '--estimate: ' + twice, *one, '--estimate', 'm', '--stereo', 'plain.ppm')
+        self.fails(2, '--depth-unit: it is for depth that is read from a file; leave it out', *one,
+                   '--estimate', 'm.onnx', '--depth-unit', 'mm')
+        self.fails(2, '--orient-depth: it is for depth that is read from a file; leave it out',
+                   *one, '--stereo', 'plain.ppm', '--orient-depth', '90')
+        os.makedirs('folder')
+        self.fails(2, '--stereo: it is for one photo; give that alone', 'render', 'photo.ppm',
+                   'plain.ppm', '--stereo', 'plain.ppm', '-o', 'folder')
+        self.fails(2, 'plain.ppm: it is an input too and would be lost; give another name', 'render', 'photo.ppm', '--stereo', 'plain.ppm',
+                   '-o', 'plain.ppm')
+        if not self.opencv:
+            self.fails(1, 'm.onnx: this build has no OpenCV; build it with OpenCV', *one,
+                       '--estimate', 'm.onnx')
+
+
+if __name__ == '__main__':
+    unittest.main()

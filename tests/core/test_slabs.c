@@ -1,0 +1,108 @@
+/* test_slabs.c: slabs of a tile cover all blurs that reach it, and what is far out of focus shares
+ * a slab with the same blurs in every tile. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "tiles/tiles.h"
+
+enum { BLURS = 12, SETS = 400 };
+
+struct set {
+    int16_t blur[BLURS];
+    int count;
+};
+
+static uint32_t noise(uint32_t *seed)
+{
+    *seed = *seed * 1664525 + 1013904223;
+    return *seed >> 8;
+}
+
+/* The plan of a picture of one tile that has those blurs. */
+static void plan_of(const struct set *set, float largest, struct rf_tile_plan *plan)
+{
+    static struct rf_reach reach;
+    const struct rf_bin_scale scale = rf_bin_scale_of(largest, 0);
+    const struct rf_viewport view = {.width = RF_TILE,
+                                     .height = RF_TILE,
+                                     .photo_width = RF_TILE,
+                                     .photo_height = RF_TILE,
+                                     .tiles_x = 1,
+                                     .tiles_y = 1,
+                                     .pad = (int)largest + 2};
+    struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
+
+    rf_reach_init(&reach, scale, largest, view.pad, false);
+    for (int i = 0; i < set->count; i++)
+        rf_add_bin(&view, &bins, scale, 0, 0, set->blur[i]);
+    rf_plan_tile(&view, &bins, &reach, 0, 0, plan);
+    assert_in_range(plan->slabs, 1, RF_MAX_SLABS);
+}
+
+/* The slab that a blur belongs to: one before it may reach over it by an eighth. */
+static int slab_of(const struct rf_tile_plan *plan, int16_t blur)
+{
+    for (int k = 0; k < plan->slabs; k++) {
+        const int overlap = plan->slab[k].width / 10 > 32 ? plan->slab[k].width / 10 : 32;
+        const int from = blur - plan->slab[k].low - overlap + 2;
+
+        if (abs(blur) < 16 * 256 ? (uint16_t)(blur - plan->slab[k].low) <= plan->slab[k].width
+                                 : from >= 0 && from <= plan->slab[k].width - 2 * overlap + 4)
+            return k;
+    }
+    fail_msg("no slab covers a blur of %g", blur / 256.0);
+    return -1;
+}
+
+/* Two blurs that are in either tile, with whatever else. */
+static void expect_same(float largest, uint32_t seed)
+{
+    struct rf_tile_plan plan[2];
+    struct set set[2] = {{.count = BLURS}, {.count = BLURS}};
+    const int range = (int)(largest * 256);
+
+    for (int i = 0; i < BLURS; i++)
+        for (int k = 0; k < 2; k++) {
+            set[k].blur[i] = (int16_t)((int)(noise(&seed) % (uint32_t)(2 * range + 1)) - range);
+            if (i < 2)
+                set[k].blur[i] = set[0].blur[i];
+        }
+    /* the second one beside the first, 16 pixels out of focus and more, on either side of it */
+    set[0].blur[0] = (int16_t)((16 * 256 + (int)(noise(&seed) % (uint32_t)(range - 20 * 256))) *
+                               (noise(&seed) % 2 ? 1 : -1));
+    set[0].blur[1] = (int16_t)(set[0].blur[0] + (set[0].blur[0] > 0 ? 512 : -512));
+    set[1].blur[0] = set[0].blur[0];
+    set[1].blur[1] = set[0].blur[1];
+    for (int k = 0; k < 2; k++) {
+        plan_of(&set[k], largest, &plan[k]);
+        for (int i = 0; i < BLURS; i++)
+            slab_of(&plan[k], set[k].blur[i]);
+    }
+    if ((slab_of(&plan[0], set[0].blur[0]) == slab_of(&plan[0], set[0].blur[1])) !=
+        (slab_of(&plan[1], set[0].blur[0]) == slab_of(&plan[1], set[0].blur[1])))
+        fail_msg("K = %g: blurs of %g and %g share a slab in one tile alone", (double)largest,
+                 set[0].blur[0] / 256.0, set[0].blur[1] / 256.0);
+}
+
+static void same_slabs(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < SETS; i++) {
+        expect_same(30, i);
+        expect_same(60, i);
+        expect_same(115, i);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_slabs)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,91 @@
+/* test_element.c: the element's frames are the library's own, whatever the caps, times and events.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <string.h>
+#include "frames.h"
+#include "plugin.h"
+
+#define SIZE  "width=64,height=48,framerate=25/1"
+#define NV12  "video/x-raw,format=NV12," SIZE
+#define RGB   "video/x-raw,format=RGB," SIZE
+#define DEPTH "video/x-raw,format=GRAY16_LE," SIZE
+
+static struct refocus_disparity disparity_of(GstMapInfo *map, int bits, int width, int height)
+{
+    return bits == 16 ? refocus_disparity16((const uint16_t *)(void *)map->data, width, height,
+                                            GST_ROUND_UP_4(width * 2))
+                      : refocus_disparity8(map->data, width, height, GST_ROUND_UP_4(width));
+}
+
+/* One frame with one map through the element, against the library. */
+static void check_frame(const char *caps, const char *depth_caps, int bits, int width, int height)
+{
+    struct refocus_settings settings = frame_settings(0.75, 6);
+    struct refocus_disparity disparity;
+    GstBuffer *frame, *depth, *out, *expected;
+    struct bench bench;
+    GstMapInfo map;
+
+    bench_open(&bench, caps, depth_caps);
+    g_object_set(bench.element, "focus", 0.75, "blur", 6.0, "threads", 2, NULL);
+    frame = frame_make(caps, 1, 0);
+    depth = frame_make(depth_caps, 2, 0);
+    assert_int_equal(gst_harness_push(bench.depth, gst_buffer_ref(depth)), GST_FLOW_OK);
+    gst_harness_push_event(bench.depth, gst_event_new_eos());
+    assert_int_equal(gst_harness_push(bench.video, gst_buffer_ref(frame)), GST_FLOW_OK);
+    out = gst_harness_pull(bench.video);
+    assert_non_null(out);
+    gst_buffer_map(depth, &map, GST_MAP_READ);
+    disparity = disparity_of(&map, bits, width, height);
+    expected = frame_expect(caps, frame, &disparity, &settings);
+    gst_buffer_unmap(depth, &map);
+    if (!frame_same(caps, out, expected))
+        fail_msg("%s is not what the library renders", caps);
+    assert_false(frame_same(caps, out, frame));
+    assert_int_equal(GST_BUFFER_PTS(out), 0);
+    assert_int_equal(GST_BUFFER_DURATION(out), 40 * GST_MSECOND);
+    gst_buffer_unref(frame);
+    gst_buffer_unref(depth);
+    gst_buffer_unref(out);
+    gst_buffer_unref(expected);
+    bench_close(&bench);
+}
+
+static void formats(void **state)
+{
+    static const char *const names[] = {"NV12", "NV21", "I420", "YV12", "YUY2", "GRAY8",
+                                        "RGB",  "BGR",  "RGBA", "BGRA", "RGBx", "BGRx"};
+    char caps[128];
+
+    (void)state;
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+        g_snprintf(caps, sizeof caps, "video/x-raw,format=%s," SIZE, names[i]);
+        check_frame(caps, DEPTH, 16, 64, 48);
+    }
+    check_frame("video/x-raw,format=NV12,width=63,height=47,framerate=25/1", DEPTH, 16, 64, 48);
+}
+
+static void depth_of_other_kinds(void **state)
+{
+    (void)state;
+    check_frame(NV12, "video/x-raw,format=GRAY8," SIZE, 8, 64, 48);
+    check_frame(RGB, "video/x-raw,format=GRAY16_LE,width=31,height=23,framerate=5/1", 16, 31, 23);
+    check_frame(NV12, "video/x-raw,format=GRAY8,width=21,height=90,framerate=0/1", 8, 21, 90);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(formats),
+        cmocka_unit_test(depth_of_other_kinds),
+    };
+
+    gst_init(NULL, NULL);
+    if (!rf_gst_register(NULL))
+        return 1;
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,17 @@
+#!/bin/sh
+# usage: wheel.sh SOURCE WORK_FOLDER PYTHON [OPTIONS_OF_MESON]
+# Builds the wheel of the package, installs it alone, and runs the tests of the package with it.
+set -eu
+source=$1 work=$2 python=$3 options=${4-}
+rm -rf "$work"
+mkdir -p "$work"
+"$python" -m pip wheel --no-build-isolation --no-deps --config-settings "setup-args=$options" \
+    --wheel-dir "$work" "$source/platform/python"
+"$python" -m pip install --no-deps --no-index --target "$work/installed" "$work"/*.whl
+# The C library alone.
+if readelf -d "$work/installed/refocus/_core.abi3.so" | grep NEEDED |
+        grep -Ev '\[(libc|libm|libpthread|ld-linux[^]]*)\.so\.[0-9]+\]'; then
+    echo 'the wheel needs more than the C library'
+    exit 1
+fi
+"$python" "$source/tests/python/test_python.py" "$work/installed"
