@@ -66,9 +66,7 @@ build=${REFOCUS_BUILD:-$top/build}
 need_packages "${core_packages[@]}" "${feature_packages[@]}"
 configure -D{tools,jpeg,png,xmp,heic,tiff,openexr,webp,jxl,raw,v4l2,libcamera,sdl2,opencv,gstreamer}=enabled
 # The command, and what it loads when it is asked for.
-ninja --quiet -C "$build" platform/cli/refocus platform/sdl/refocus-window.so \
-    platform/view/refocus-view.so platform/libcamera/refocus-libcamera.so platform/gstreamer/libgstrefocus.so \
-    platform/file/refocus-{tiff,openexr,webp,jxl,raw}.so >&2
+ninja --quiet -C "$build" command >&2
 for focus in 0.689 0.257 0.000; do
     "$build/platform/cli/refocus" render "$scene/allfocus.png" \
         --depth "$scene/disparity.png" --focus $focus --blur 20 \

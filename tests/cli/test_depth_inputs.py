@@ -245,11 +245,11 @@ class DepthInputs(Case):
                        *(() if more[:1] == ['--reference'] else ('-o', 'x.png')))
         self.fails(2, "--upsample: this build has no OpenCV, which 'guided' is of; give core",
                    'live', '--camera', 'replay:', '--depth', 'depth.pgm', '--upsample', 'guided')
-        for name in PICTURES:
-            none = 'this build has no OpenCV'
+        none = 'this build has no OpenCV'
+        for name, why in PICTURES.items():  # a fault of the file itself may be seen first
             self.refused(name, none, 'photo.ppm', name)
-            self.refused(name, none, name, '--side-by-side')
-            self.refused(name, none, name, '--stereo-file')
+            self.refused(name, '%s|%s' % (none, why), name, '--side-by-side')
+            self.refused(name, '%s|%s' % (none, why), name, '--stereo-file')
             self.refused(name, none, 'photo.ppm', '--estimate', name)
 
 
