@@ -300,7 +300,8 @@ class Limits(Case):
                    '--tilt-line', '0,0,9,9')
         self.fails(2, '--ease: is for the way from --from to --to; leave it or --wiggle out',
                    *pull, '--wiggle', '3', '--ease', 'in')
-        self.fails(2, '--repeat: unknown option; did you mean --preset?', *pull, '--repeat', '3')
+        self.fails(2, "--repeat: unknown option; 'refocus pull --help-all' lists them", *pull, '--repeat',
+                   '3')
         self.fails(2, '--blur: --blurs is in its place; leave one of them out', *sheet, '--blur',
                    '3', '--blurs', '3')
         self.fails(2, '--aperture: --apertures is in its place; leave it out', *sheet,

@@ -42,7 +42,7 @@ const char *options_nearest(const char *text, const char *(*word)(const void *li
 {
     const int letters = (int)strlen(text) - (int)strspn(text, "-");
     const char *nearest = NULL;
-    int least = letters / 3 + 1; /* more edits than that are another word */
+    int least = (letters + 2) / 3; /* more edits than that are another word */
 
     for (int i = 0; word(list, i); i++) {
         int distance = edits(text, word(list, i));
