@@ -113,8 +113,45 @@ static void falls_off(void **state)
     picture_free(&p);
 }
 
+/* Outside of the centre of attention a near white half spreads over the black one in focus, about
+ * as far as a disc does, and no seam is left on its own side. */
+static void pyramids_fall_off(void **state)
+{
+    struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, 0);
+    struct refocus_settings params = refocus_settings_default(0, K);
+    static uint8_t out[3 * W * H];
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+    struct refocus_renderer *renderer;
+
+    (void)state;
+    for (int i = 0; i < W * H; i++) {
+        if (i % W < W / 2) {
+            memset(p.rgb + 3 * i, 200, 3);
+            p.disparity[i] = 65535;
+        }
+    }
+    renderer = prepared(&p, K, 2);
+    params.render.method = REFOCUS_METHOD_FOVEATED;
+    params.render.blend = REFOCUS_BLEND_STORED;
+    params.foveated.angle = 1;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
+    for (int x = W / 2; x < W / 2 + 5; x++) {
+        const double e = (W / 2 - 0.5 - x) / K;
+        const double share = 0.5 + (e * sqrt(1 - e * e) + asin(e)) / 3.14159265358979;
+        const int value = out[3 * (H / 4 * W + x)];
+
+        printf("%d beyond the edge: %d, %.1f by the disc's area\n", x - W / 2, value, 200 * share);
+        if (fabs(value - 200 * share) > 25)
+            fail_msg("%d at %d from the edge, %.1f by the disc's area", value, x - W / 2,
+                     200 * share);
+    }
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_plane), cmocka_unit_test(falls_off)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(one_plane), cmocka_unit_test(falls_off),
+                                       cmocka_unit_test(pyramids_fall_off)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
