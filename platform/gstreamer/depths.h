@@ -9,8 +9,8 @@
 
 struct rf_gst_depths {
     bool known;        /* there is a map */
-    bool still;        /* it is that of a file */
-    bool fresh;        /* it has not been used yet */
+    bool still;        /* the map is of a file and holds for all frames */
+    bool fresh;        /* no frame has used the map yet */
     GstClockTime time; /* running time of the map, or none */
     GstVideoFrame frame;
     bool mapped; /* `frame` is that of the map */

@@ -148,7 +148,8 @@ void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rec
     const int w = f->view->width - x0 < RF_TILE ? f->view->width - x0 : RF_TILE;
     const int h = f->view->height - y0 < RF_TILE ? f->view->height - y0 : RF_TILE;
     const int rows = (h + yuv->down) >> yuv->down;
-    const bool own = f->premultiplied || rf_is_search(f); /* else it is in the smooth light, too */
+    /* The smooth light has the luma, too, unless it is weighted or a search leaves it alone. */
+    const bool own = f->premultiplied || rf_is_search(f);
 
     job->curve = &yuv->curve;
     job->down = yuv->down;

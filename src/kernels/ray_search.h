@@ -50,7 +50,7 @@ struct rf_search_job {
     const uint16_t *weight; /* weights of `light` */
     ptrdiff_t weight_stride;
     const uint16_t *light_weight; /* weights of each Q12 light, for the background */
-    bool first_weighs;            /* it weighs as its first channel, not its brightest */
+    bool first_weighs;            /* light weighs as its first channel, not its brightest */
 };
 typedef void rf_search_fn(uint32_t *const sum[3], const struct rf_search_job *job);
 

@@ -18,7 +18,7 @@ struct rf_seen {
 struct rf_search_sums {
     struct rf_seen plain;
     vec_u32 weighted[4];
-    vec_u16 own; /* how often a pixel's own light is added */
+    vec_u16 own; /* the number of times that a pixel's own light is added */
 };
 
 /* The vector in work: pixels of the strip from `at` elements on, of weights from `weight_at` on. */

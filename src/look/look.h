@@ -40,8 +40,8 @@ struct rf_grain {
     /* number of blocks by luma and by variance, 1/16 code^2 */
     uint32_t blocks[RF_NOISE_LEVELS][RF_NOISE_BINS];
     uint16_t sigma[RF_NOISE_LEVELS]; /* standard deviation of luma, 1/256 code */
-    uint8_t lost[1024];              /* how much of the grain a blur takes, Q8, by |s| in 1/8 pixel;
-                                        the last one is of all larger ones */
+    uint8_t lost[1024]; /* the share of the grain a blur takes, Q8, by |s| in 1/8 pixel;
+                           the last one is of all larger ones */
 };
 
 /* The look of a frame. */
