@@ -70,7 +70,8 @@ struct refocus_stack_result {
     float disorder; /**< receives the share of measured samples whose sharpness has two peaks over
                          the frames: hardly any in a stack, most where the order or the positions
                          are wrong. A stack that is reversed cannot be told from one that is not. */
-    uint32_t reserved2; /**< 0 */
+    float moving;   /**< receives the share of the photo where something moved between the frames:
+                         it is as in the reference, and its depth is filled from around it */
 };
 
 static inline struct refocus_stack_result refocus_stack_result_default(void)
@@ -124,8 +125,15 @@ REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refo
  *
  * at a sample. Costs are aggregated along eight directions (semi-global matching, Hirschmueller
  * 2008), where steps of depth are cheaper across edges of the photo; the least one, with a parabola
- * through its neighbours, is the depth. So what is flat or clipped takes the depth of what is
- * around it. Integer arithmetic: the same bytes on every processor.
+ * through its neighbours, is the depth.
+ *
+ * Where the mean of colour over a window is another one than in the reference, something has moved:
+ * such a frame is not used there, and if none is left but the reference, depth is not sure.
+ *
+ * A sample is sure where the least sharp frame has less than half of the E_k of the sharpest: noise
+ * is alike in all. Each sample takes the depth of most of the sure ones around it, on its side of
+ * the photo's edges. So what is flat, clipped or grainy takes the depth of what is around it.
+ * Integer arithmetic: the same bytes on every processor.
  *
  * A stack is finished once: what aligns its frames overwrites them.
  *

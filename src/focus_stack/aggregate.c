@@ -10,7 +10,6 @@
  */
 #include "focus_stack/focus_stack.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -21,10 +20,8 @@ enum {
 
 static int jump(const uint8_t *p, const uint8_t *q)
 {
-    int most = abs(p[0] - q[0]);
+    const int most = rf_stack_difference(p, q);
 
-    most = abs(p[1] - q[1]) > most ? abs(p[1] - q[1]) : most;
-    most = abs(p[2] - q[2]) > most ? abs(p[2] - q[2]) : most;
     return JUMP * EDGE * EDGE / (EDGE * EDGE + most * most) + STEP;
 }
 

@@ -260,6 +260,18 @@ static struct rf_similarity between(const struct refocus_stack *s,
 /* Less than this at the corners is left alone: interpolation would cost more. */
 #define LEAST_REACH 0.2
 
+void rf_stack_warp(const struct refocus_stack *s, const struct rf_stack_frame *frame, int level,
+                   const uint16_t *in, int16_t *out)
+{
+    struct level l = level_of(s, frame, frame, level);
+    struct rf_similarity similarity = frame->from_reference;
+
+    l.frame = in;
+    l.warped = out;
+    rescale(&similarity, 1.0 / (s->small_by << level));
+    warp(&l, &similarity);
+}
+
 void rf_stack_align(struct refocus_stack *s, int reference)
 {
     const struct rf_similarity none = {{1, 0}, {0, 0}};

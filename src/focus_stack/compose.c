@@ -83,8 +83,14 @@ static int share_of(int t)
     return (3 * 256 * t * t - 2 * t * t * t + 32768) >> 16;
 }
 
+/* Where a row of the photo lies in a frame, and what moves there. */
+struct line {
+    struct rf_stack_line at;
+    const uint8_t *moving;
+};
+
 /* Whether a frame has the place x of a row. */
-static bool has(const struct refocus_stack *s, const struct rf_stack_line *line, int x)
+static bool reaches(const struct refocus_stack *s, const struct rf_stack_line *line, int x)
 {
     const int64_t half = INT64_C(1) << 31, one = INT64_C(1) << 32;
     const int64_t px = line->x + x * line->dx + half, py = line->y + x * line->dy + half;
@@ -93,27 +99,34 @@ static bool has(const struct refocus_stack *s, const struct rf_stack_line *line,
 }
 
 /* The frame next to frame k, towards the reference, that has the place: the focus breathes and
- * hands shake, so some do not reach the border of the photo. */
-static int frame_with(const struct refocus_stack *s, const struct rf_stack_line *line, int k, int x)
+ * hands shake, so some do not reach the border of the photo, and things move. */
+static int frame_with(const struct refocus_stack *s, const struct line *line, int k, int x)
 {
-    while (k != s->still && !has(s, &line[k], x))
+    const int column = rf_stack_moving_column(s, x);
+
+    while (k != s->still && (!reaches(s, &line[k].at, x) || rf_stack_moves(line[k].moving, column)))
         k += k < s->still ? 1 : -1;
     return k;
 }
 
-static void pixel_of(const struct refocus_stack *s, const struct rf_stack_line *line, int k, int x,
+static void pixel_of(const struct refocus_stack *s, const struct line *line, int k, int x,
                      uint8_t out[3])
 {
     k = frame_with(s, line, k, x);
-    pixel_at(s, &s->frame[k], out, line[k].x + x * line[k].dx, line[k].y + x * line[k].dy);
+
+    const struct rf_stack_line *at = &line[k].at;
+
+    pixel_at(s, &s->frame[k], out, at->x + x * at->dx, at->y + x * at->dy);
 }
 
 void rf_stack_compose_row(const struct refocus_stack *s, uint8_t *out, const uint16_t *depth, int y)
 {
-    struct rf_stack_line line[REFOCUS_STACK_MOST_FRAMES];
+    struct line line[REFOCUS_STACK_MOST_FRAMES];
 
-    for (int k = 0; k < s->count; k++)
-        line[k] = rf_stack_line(s, &s->frame[k], 0, y, 1);
+    for (int k = 0; k < s->count; k++) {
+        line[k].at = rf_stack_line(s, &s->frame[k], 0, y, 1);
+        line[k].moving = rf_stack_moving_row(s, k, y);
+    }
     for (int x = 0; x < s->width; x++, out += 3) {
         const int k = rf_stack_clamp(depth[x] >> 8, s->count - 2);
         const int share = share_of(depth[x] - 256 * k);

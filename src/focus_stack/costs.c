@@ -7,7 +7,9 @@ enum {
     SQUARES = 3,
     /* Squares of sharpness, in quarters of a squared code: */
     NOISE = 1600, /* 20 codes of second differences: texture that noise hides */
-    SURE = 2560,  /* by which the sharpest frame leads the mean of all where depth is sure */
+    /* The least sharp frame in parts of the sharpest, Q8, since noise is alike in all frames: */
+    SURE = 64,    /* depth is sure down from here; */
+    UNSURE = 128, /* depth is unknown up from here */
 };
 
 static const int reach[SQUARES] = {0, 4, 8};
@@ -106,21 +108,22 @@ static void add_costs(const struct refocus_stack *s, uint8_t *cost, const uint32
 
 static uint8_t sure_of(const struct refocus_stack *s, const uint32_t *mean)
 {
-    uint64_t sum = 0, most = 0;
+    uint64_t least = mean[0], most = mean[0];
 
-    for (int k = 0; k < s->count; k++) {
-        sum += mean[k];
+    for (int k = 1; k < s->count; k++) {
+        least = mean[k] < least ? mean[k] : least;
         most = mean[k] > most ? mean[k] : most;
     }
-    most -= sum / (uint64_t)s->count;
-    return (uint8_t)(most >= SURE ? 255 : most * 255 / SURE);
+
+    const int ratio = (int)((least + NOISE / 4) * 256 / (most + NOISE / 4));
+
+    return (uint8_t)rf_stack_clamp(255 * (UNSURE - ratio) / (UNSURE - SURE), 255);
 }
 
 static void cost_row(struct refocus_stack *s, int y)
 {
     const int w = s->columns, n = s->labels;
     uint8_t *cost = s->cost + (size_t)y * (size_t)w * (size_t)n;
-    uint8_t *sure = s->sure + (size_t)y * (size_t)w;
 
     memset(cost, 255, (size_t)w * (size_t)n);
     for (int x = 0; x < w; x++)
@@ -144,7 +147,7 @@ static void cost_row(struct refocus_stack *s, int y)
             }
             add_costs(s, cost + (size_t)x * (size_t)n, mean);
             if (i == 1)
-                sure[x] = sure_of(s, mean);
+                s->sure[(size_t)y * (size_t)w + (size_t)x] = sure_of(s, mean);
         }
     }
 }
@@ -178,6 +181,7 @@ void rf_stack_costs(struct refocus_stack *s)
     for (int y = 0; y < s->rows; y++) {
         add_row(s, y);
         cost_row(s, y);
+        rf_stack_leave_out(s, y);
         guide_row(s, y);
     }
 }

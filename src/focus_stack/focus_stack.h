@@ -5,12 +5,14 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 
 #include <refocus/stack.h>
 
 enum {
     RF_STACK_MOST_SAMPLES = 3 << 20, /* at the most, in the maps that the work is done on */
-    RF_STACK_LEVELS = 4,             /* pictures that frames are aligned by, each half the last */
+    RF_STACK_GREY = 4096,
+    RF_STACK_LEVELS = 4, /* pictures that frames are aligned by, each half the last */
 };
 
 /* z -> c z + t in the complex plane, about the middle of the picture: scale and rotation, shift in
@@ -26,6 +28,8 @@ struct rf_stack_frame {
     uint16_t *sharpness;              /* sums of second differences, Q4, of the work's size */
     uint16_t *small[RF_STACK_LEVELS]; /* luminance in Q4 for the alignment, finest first */
     struct rf_similarity from_reference;
+    uint16_t *colour[2];   /* R - G and B - G, Q4 from RF_STACK_GREY on, of level 1 of `small` */
+    const uint8_t *moving; /* places that it is not used for; NULL: of the reference */
 };
 
 struct refocus_stack {
@@ -37,7 +41,8 @@ struct refocus_stack {
     int still; /* the reference in the order of positions, once the stack is finished */
     bool finished, without_positions;
     uint32_t align;
-    int labels; /* most, rounded up so that costs of a sample fill vectors */
+    int64_t moving; /* samples where something moves */
+    int labels;     /* most, rounded up so that costs of a sample fill vectors */
     struct rf_stack_frame frame[REFOCUS_STACK_MOST_FRAMES]; /* in the order of their positions */
 
     uint8_t *luma;    /* one frame's, of the photo's size */
@@ -60,15 +65,29 @@ void rf_stack_measure(struct refocus_stack *stack, struct rf_stack_frame *frame)
 
 /* Finds from_reference of all frames; the reference is frame `reference` in order of position. */
 void rf_stack_align(struct refocus_stack *stack, int reference);
+/* A picture of a level of `small` as the reference sees it, -1 outside of the frame. */
+void rf_stack_warp(const struct refocus_stack *stack, const struct rf_stack_frame *frame, int level,
+                   const uint16_t *in, int16_t *out);
+/* `colour` of a frame that has its pixels. */
+void rf_stack_measure_colour(const struct refocus_stack *stack, struct rf_stack_frame *frame);
 /* How far the farthest corner is moved, in pixels. */
 double rf_similarity_reach(const struct rf_similarity *s, int width, int height);
 
+/* Finds what moves, in frames that are aligned. */
+void rf_stack_find_moving(struct refocus_stack *stack);
+/* A row of the photo in the mask of what moves in a frame; NULL: nothing moves. */
+const uint8_t *rf_stack_moving_row(const struct refocus_stack *stack, int k, int y);
+int rf_stack_moving_column(const struct refocus_stack *stack, int x);
+/* Frames get the highest cost in a row of samples where something moves. */
+void rf_stack_leave_out(struct refocus_stack *stack, int y);
 /* Costs, guide and confidence, from the sharpness. */
 void rf_stack_costs(struct refocus_stack *stack);
 /* Adds up the costs along eight directions. */
 void rf_stack_aggregate(struct refocus_stack *stack);
 /* The least sum of each sample, between frames by a parabola. */
 void rf_stack_choose(struct refocus_stack *stack);
+/* Depth that was not measured becomes that of the sure samples around it. */
+void rf_stack_fill(struct refocus_stack *stack);
 
 /* A row of the photo in focus everywhere; frames that do not show a place leave it to the next one
  * towards the reference, which shows all. */
@@ -86,9 +105,25 @@ struct rf_stack_line rf_stack_line(const struct refocus_stack *stack,
 /* Depth of a row of pixels, Q8 frames, and whether it was measured, 0 to 255. */
 void rf_stack_depth_row(const struct refocus_stack *stack, uint16_t *depth, uint8_t *sure, int y);
 
+enum { RF_STACK_STILL, RF_STACK_PERHAPS, RF_STACK_MOVING };
+
+static inline bool rf_stack_moves(const uint8_t *row, int column)
+{
+    return row && row[column] == RF_STACK_MOVING;
+}
+
 static inline int rf_stack_clamp(int v, int most)
 {
     return v < 0 ? 0 : v > most ? most : v;
+}
+
+/* The largest difference of two samples of the guide in a channel. */
+static inline int rf_stack_difference(const uint8_t *p, const uint8_t *q)
+{
+    int most = abs(p[0] - q[0]);
+
+    most = abs(p[1] - q[1]) > most ? abs(p[1] - q[1]) : most;
+    return abs(p[2] - q[2]) > most ? abs(p[2] - q[2]) : most;
 }
 
 #endif

@@ -179,6 +179,6 @@ void rf_stack_measure(struct refocus_stack *s, struct rf_stack_frame *frame)
     for (int row = 0; row < s->rows; row++)
         reduce(s, frame, row);
     gather(s, frame);
-    if (s->align == REFOCUS_STACK_ALIGN_SIMILARITY)
-        make_small(s, frame);
+    make_small(s, frame);
+    rf_stack_measure_colour(s, frame);
 }

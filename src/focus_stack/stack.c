@@ -25,7 +25,6 @@ static void lay_out(struct refocus_stack *s, struct rf_arena *arena)
     const uint64_t pixels = (uint64_t)s->width * (uint64_t)s->height;
     const uint64_t samples = (uint64_t)s->columns * (uint64_t)s->rows;
     const uint64_t labels = (uint64_t)s->labels;
-    const bool aligns = s->align == REFOCUS_STACK_ALIGN_SIMILARITY;
 
     for (int k = 0; k < s->most; k++) {
         struct rf_stack_frame *frame = &s->frame[k];
@@ -33,8 +32,10 @@ static void lay_out(struct refocus_stack *s, struct rf_arena *arena)
 
         frame->rgb = rf_arena_take(arena, pixels, 3);
         frame->sharpness = rf_arena_take(arena, samples, 2);
-        for (int i = 0; i < RF_STACK_LEVELS && aligns; i++, w /= 2, h /= 2)
+        for (int i = 0; i < RF_STACK_LEVELS; i++, w /= 2, h /= 2)
             frame->small[i] = rf_arena_take(arena, w * h, 2);
+        for (int c = 0; c < 2; c++)
+            frame->colour[c] = rf_arena_take(arena, SMALL_PIXELS / 4, 2);
     }
     s->luma = rf_arena_take(arena, pixels, 1);
     s->smooth = rf_arena_take(arena, pixels, 2);
@@ -269,7 +270,7 @@ static bool good_result(const struct refocus_stack *s, const struct refocus_stac
            (!r->confidence || rf_good_stride(r->confidence_stride, w, s->height)) &&
            (!r->disparity || (!((uintptr_t)r->disparity & 1) && !(r->disparity_stride & 1) &&
                               rf_good_stride(r->disparity_stride, 2 * w, s->height))) &&
-           !r->reserved && !r->reserved2;
+           !r->reserved;
 }
 
 int refocus_stack_finish(struct refocus_stack *s, struct refocus_stack_result *result)
@@ -291,11 +292,14 @@ int refocus_stack_finish(struct refocus_stack *s, struct refocus_stack_result *r
     s->finished = true;
     s->still = reference;
     rf_stack_align(s, reference);
+    rf_stack_find_moving(s);
     rf_stack_costs(s);
     own.disorder = disorder_of(s);
     rf_stack_aggregate(s);
     rf_stack_choose(s);
+    rf_stack_fill(s);
     write_rows(s, &own);
+    own.moving = (float)((double)s->moving / ((double)s->columns * s->rows));
     own.moved = 0;
     for (int k = 0; k < s->count; k++) {
         const double reach = rf_similarity_reach(&s->frame[k].from_reference, s->width, s->height);

@@ -255,6 +255,10 @@ static int finish(struct input *input, struct refocus_stack *stack, const struct
              "focus stack: %d frames, moved by up to %.1f pixels, in the geometry of frame %d",
              frames->count, (double)result.moved, frames->reference + 1);
     input->made_info.evidence_count = 1;
+    if (result.moving > 0)
+        snprintf(input->made_info.evidence[input->made_info.evidence_count++], REFOCUS_INFO_LENGTH,
+                 "focus stack: something moves in %.1f %% of the picture, which is as in frame %d",
+                 100 * (double)result.moving, frames->reference + 1);
     if (frames->of_files)
         snprintf(input->made_info.evidence[input->made_info.evidence_count++], REFOCUS_INFO_LENGTH,
                  "EXIF: the subject distances of the frames");

@@ -1,0 +1,157 @@
+/* fill.c: each sample takes the depth that most of the sure samples around it have.
+ *
+ * A sure sample votes for its depth, with its confidence. Votes are handed on from sample to
+ * sample, along rows first and then along columns; each step keeps KEEP / 256 of them, and less
+ * across edges of the photo. The depth with the most votes is taken, between frames in proportion
+ * to the votes of its neighbours. A sample counts its own vote OWN times, so that speckles go and
+ * thin things stay. No vote comes from where nothing is sure: depth stays as it was chosen.
+ *
+ * Votes of a row are below OWN 255 + 2 * 255 * 128 < 2^17, those of a column 128 times as much,
+ * 2^24, so that a product with KEEP fits 32 bits. Costs, sums and paths lend their memory.
+ */
+#include "focus_stack/focus_stack.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+enum {
+    KEEP = 254,
+    OWN = 16,
+    EDGE = 16 /* codes of difference that halve what is kept */
+};
+
+static uint32_t kept(const uint8_t *p, const uint8_t *q)
+{
+    const int most = rf_stack_difference(p, q);
+
+    return (uint32_t)(KEEP * EDGE * EDGE / (EDGE * EDGE + most * most));
+}
+
+/* The vote of each sample, 0 to 255 in all, shared by the two frames that its depth lies between;
+ * it takes the place of its costs. */
+static void vote(struct refocus_stack *s)
+{
+    const size_t samples = (size_t)s->columns * (size_t)s->rows, n = (size_t)s->labels;
+
+    memset(s->cost, 0, samples * n);
+    for (size_t i = 0; i < samples; i++) {
+        const int k = s->depth[i] >> 8, t = s->depth[i] & 255;
+        uint8_t *own = s->cost + i * n + k;
+
+        own[0] = (uint8_t)(s->sure[i] * (256 - t) >> 8);
+        if (t)
+            own[1] = (uint8_t)(s->sure[i] * t >> 8);
+    }
+}
+
+/* Votes that reach each sample of row y along it. n is known to the compiler. */
+static inline void along_row(const struct refocus_stack *s, int y, uint32_t *restrict votes, int n)
+{
+    const int w = s->columns;
+    const size_t row = (size_t)y * (size_t)w;
+    uint32_t sum[REFOCUS_STACK_MOST_FRAMES];
+
+    for (int way = 1; way >= -1; way -= 2) {
+        memset(sum, 0, sizeof sum);
+        for (int i = 0; i < w; i++) {
+            const size_t x = (size_t)(way > 0 ? i : w - 1 - i);
+            const uint8_t *own = s->cost + (row + x) * (size_t)n;
+            const uint8_t *guide = s->guide + 3 * (row + x);
+            const uint32_t keep = i ? kept(guide, guide - 3 * way) : 0;
+            uint32_t *to = votes + x * (size_t)n;
+
+            for (int k = 0; k < n; k++) {
+                const uint32_t here = sum[k] * keep >> 8;
+
+                to[k] = way > 0 ? here + (uint32_t)own[k] * OWN : to[k] + here;
+                sum[k] = here + own[k];
+            }
+        }
+    }
+}
+
+/* The depth with the most votes, Q8 frames; as it was where there are none. */
+static uint16_t elected(const uint32_t *votes, int count, uint16_t depth)
+{
+    uint64_t all = 0, sum = 0;
+    int best = 0;
+
+    for (int k = 1; k < count; k++)
+        best = votes[k] > votes[best] ? k : best;
+    if (!votes[best])
+        return depth;
+
+    const int first = best ? best - 1 : 0;
+
+    for (int k = first; k <= best + 1 && k < count; k++) {
+        all += votes[k];
+        sum += (uint64_t)votes[k] * (uint64_t)(k - first);
+    }
+    return (uint16_t)(256 * first + (int)(256 * sum / all));
+}
+
+/* Sums of the votes that reach a sample from above, in 16 bits; returns by how many bits they are
+ * less. */
+static inline uint16_t store(uint16_t *stored, const uint32_t *votes, int n)
+{
+    uint32_t most = 0;
+    uint16_t shift = 0;
+
+    for (int k = 0; k < n; k++)
+        most |= votes[k];
+    while (most >> shift > UINT16_MAX)
+        shift++;
+    for (int k = 0; k < n; k++)
+        stored[k] = (uint16_t)(votes[k] >> shift);
+    return shift;
+}
+
+/* Votes of row y and of the rows before it, on the way down or up. */
+static inline void next_row(struct refocus_stack *s, int y, int way, bool first, int n)
+{
+    const int w = s->columns;
+    const size_t row = (size_t)y * (size_t)w;
+    uint32_t *votes = (uint32_t *)(void *)s->path, *sums = votes + (size_t)w * (size_t)n;
+
+    along_row(s, y, votes, n);
+    for (int x = 0; x < w; x++) {
+        const size_t i = row + (size_t)x;
+        const uint8_t *guide = s->guide + 3 * i;
+        const uint32_t keep = first ? 0 : kept(guide, guide - (ptrdiff_t)3 * way * w);
+        uint16_t *stored = (uint16_t *)s->sum + i * (size_t)n;
+        uint32_t *sum = sums + (size_t)x * (size_t)n, *vote = votes + (size_t)x * (size_t)n;
+        uint32_t all[REFOCUS_STACK_MOST_FRAMES];
+
+        for (int k = 0; k < n; k++)
+            sum[k] = sum[k] * keep >> 8;
+        if (way < 0) {
+            for (int k = 0; k < n; k++)
+                all[k] = sum[k] + ((uint32_t)stored[k] << s->moved[i]);
+            s->depth[i] = elected(all, s->count, s->depth[i]);
+        }
+        for (int k = 0; k < n; k++)
+            sum[k] += vote[k];
+        if (way > 0)
+            s->moved[i] = store(stored, sum, n);
+    }
+}
+
+static inline void along_columns(struct refocus_stack *s, int n)
+{
+    for (int way = 1; way >= -1; way -= 2) {
+        memset(s->path, 0, 2 * sizeof(uint32_t) * (size_t)s->columns * (size_t)n);
+        for (int i = 0; i < s->rows; i++)
+            next_row(s, way > 0 ? i : s->rows - 1 - i, way, i == 0, n);
+    }
+}
+
+void rf_stack_fill(struct refocus_stack *s)
+{
+    vote(s);
+    if (s->labels == 8)
+        along_columns(s, 8);
+    else if (s->labels == 16)
+        along_columns(s, 16);
+    else
+        along_columns(s, REFOCUS_STACK_MOST_FRAMES);
+}
