@@ -1,5 +1,6 @@
 /* test_dynamic.c: Google's Dynamic Depth, and depth in the directory of Ultra HDR. */
 #include "check.h"
+#include "dynamic_write.h"
 
 #include <math.h>
 
@@ -23,6 +24,7 @@ static void check_samples(const struct refocus_photo *photo)
     assert_int_equal(photo->depth->width, 6);
     assert_int_equal(photo->depth->height, 4);
     assert_non_null(photo->confidence);
+    assert_true(has_evidence(photo, "weighs it"));
     for (int i = 0; i < 24; i++) {
         assert_int_equal(sample_at(photo->depth, i % 6, i / 6), pattern(i % 6, i / 6, 0, 255));
         assert_int_equal(photo->confidence[i], pattern(i % 6, i / 6, 0, 255));
@@ -227,6 +229,36 @@ static void damaged(void **state)
     bytes_free(&file);
 }
 
+/* Beside the directory by URIs there is one by meanings: each counts the same bytes by itself. */
+static void two_directories(void **state)
+{
+    struct bytes jpeg = make_jpeg(48, 32, false, false), png = make_png(6, 4, 0, 8);
+    struct refocus_photo *photo;
+    char text[1200];
+
+    (void)state;
+    snprintf(text, sizeof text,
+             "<x xmlns:C=\"http://ns.google.com/photos/1.0/container/\" "
+             "xmlns:I=\"http://ns.google.com/photos/1.0/container/item/\" "
+             "xmlns:c=\"http://ns.google.com/photos/dd/1.0/container/\" "
+             "xmlns:i=\"http://ns.google.com/photos/dd/1.0/item/\" "
+             "xmlns:m=\"http://ns.google.com/photos/dd/1.0/camera/\" "
+             "xmlns:d=\"http://ns.google.com/photos/dd/1.0/depthmap/\">"
+             "<C:Directory><C:Item I:Semantic=\"Primary\"/>"
+             "<C:Item I:Semantic=\"Other\" I:Length=\"%zu\"/></C:Directory>"
+             "<c:Directory><c:Item i:DataURI=\"primary\"/>"
+             "<c:Item i:DataURI=\"depth\" i:Length=\"%zu\"/></c:Directory>"
+             "<m:DepthMap d:Format=\"RangeInverse\" d:DepthURI=\"depth\"/></x>",
+             png.size, png.size);
+    jpeg_insert_xmp(&jpeg, text);
+    bytes_join(&jpeg, png);
+    bytes_text(&jpeg, "something");
+    photo = read_photo(jpeg, REFOCUS_OK);
+    assert_int_equal(photo->depth->width, 6);
+    assert_int_equal(sample_at(photo->depth, 3, 2), pattern(3, 2, 0, 255));
+    refocus_photo_free(&photo);
+}
+
 static void check_items(const char *items, int count, int expected)
 {
     struct bytes jpeg = make_jpeg(16, 16, false, false), text = {NULL, 0};
@@ -261,6 +293,41 @@ static void hostile_directories(void **state)
     check_items("<c:Item i:Semantic=\"Depth\"/>", 1, REFOCUS_OK);         /* the main picture */
 }
 
+/* Metres are written where both ends are known and in order. */
+static void metres_are_written(void **state)
+{
+    static const struct {
+        double near, far;
+        bool written;
+    } cases[] = {{2, 8, true},  {2, INFINITY, true}, {0, 8, false},
+                 {2, 0, false}, {2, 2, false},       {0, 0, false}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct refocus_depth_write depth = refocus_depth_write_default();
+        struct rf_text text = {NULL, 0, 0, false};
+        struct rf_behind behind = {.count = 0};
+
+        depth.near_m = cases[i].near;
+        depth.far_m = cases[i].far;
+        rf_behind_add(&behind, "Depth", "depth", (struct refocus_blob){NULL, 0});
+        rf_dynamic_put(&text, &behind, &depth);
+        rf_text_put(&text, "", 1);
+        assert_false(text.failed);
+        assert_int_equal(!!strstr(text.data, "DepthMap:Near=\"2\""), cases[i].written);
+        assert_int_equal(!!strstr(text.data, "DepthMap:Near"), cases[i].written);
+        assert_int_equal(!!strstr(text.data, "DepthMap:Far=\"8\""),
+                         cases[i].far == 8 && cases[i].written);
+        assert_int_equal(!!strstr(text.data, "Meters"), cases[i].written);
+        free(text.data);
+        behind.count = 0;
+        text = (struct rf_text){NULL, 0, 0, false};
+        rf_dynamic_put(&text, &behind, &depth); /* no depth is there */
+        assert_int_equal(text.size, 0);
+        free(text.data);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -272,6 +339,8 @@ int main(void)
         cmocka_unit_test(confidence_of_all_kinds),
         cmocka_unit_test(damaged),
         cmocka_unit_test(hostile_directories),
+        cmocka_unit_test(metres_are_written),
+        cmocka_unit_test(two_directories),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

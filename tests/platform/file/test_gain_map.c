@@ -115,9 +115,9 @@ static void light_of_maps(void **state)
     }
 }
 
-/* A lamp of one pixel has all of the light that the sample of its block stands for, and what is
- * beside it has none of that. */
-static void lamp(void **state)
+/* A lamp of one pixel, in one channel or with only < 0 in all, has all of the light that the sample
+ * of its block stands for, and what is beside it has none of that. */
+static void lamp_of(int only)
 {
     enum { SIDE = 16, BLOCKS = 4, X = 5, Y = 6 };
     const double dark = pow((60 / 255.0 + 0.055) / 1.055, 2.4), offset = 1 / 64.0;
@@ -131,10 +131,9 @@ static void lamp(void **state)
                                           .sample = REFOCUS_SAMPLE_U8,
                                           .max_value = 255}};
 
-    (void)state;
     memset(codes, 60, sizeof codes);
-    memset(codes + 3 * (Y * SIDE + X), 255, 3);
     for (int c = 0; c < 3; c++) {
+        codes[3 * (Y * SIDE + X) + c] = only < 0 || c == only ? 255 : 60;
         map.values.gamma[c] = 1;
         map.values.base_offset[c] = map.values.other_offset[c] = offset;
         map.values.greatest[c] =
@@ -143,18 +142,32 @@ static void lamp(void **state)
     rf_gain_make_curves(&map);
     for (map.samples.channels = 1; map.samples.channels <= 3; map.samples.channels += 2) {
         memset(samples, 0, sizeof samples);
-        memset(samples + map.samples.channels * (Y / 4 * BLOCKS + X / 4), 255,
-               (size_t)map.samples.channels);
+        for (int c = 0; c < map.samples.channels; c++)
+            if (map.samples.channels == 1 || only < 0 || c == only)
+                samples[map.samples.channels * (Y / 4 * BLOCKS + X / 4) + c] = 255;
         assert_int_equal(rf_gain_apply(&map, &base, halves), REFOCUS_OK);
         for (int i = 0; i < 3 * SIDE * SIDE; i++) {
-            const double expected = i / 3 == Y * SIDE + X ? 8 : dark;
+            const bool lamp = i / 3 == Y * SIDE + X, lit = lamp && (only < 0 || i % 3 == only);
+            const double expected = lit ? 8 : dark;
 
+            if (lamp && !lit && map.samples.channels == 1) { /* it keeps its hue */
+                assert_true((double)rf_half_value(halves[i]) > 2 * dark);
+                assert_true((double)rf_half_value(halves[i]) < 8 * dark);
+                continue;
+            }
             if (fabs((double)rf_half_value(halves[i]) / expected - 1) > 0.01) {
                 fail_msg("%d channels, value %d: %g, expected %g", (int)map.samples.channels, i,
                          (double)rf_half_value(halves[i]), expected);
             }
         }
     }
+}
+
+static void lamp(void **state)
+{
+    (void)state;
+    for (int only = -1; only < 3; only++)
+        lamp_of(only);
 }
 
 /* The map is turned with its photo: quarter 0 of the upright one was quarter 2. */
@@ -301,6 +314,15 @@ static void passed_over(void **state)
     expect_passed_over(
         with_part(make_auxiliary("urn:com:apple:photo:2020:aux:hdrgainmap", NULL), true, 1),
         "does not say its headroom");
+    for (size_t tag = 61; tag <= 73; tag += 12) { /* one of the iPhone's two numbers alone */
+        struct bytes exif = iphone_exif(150, 100);
+
+        exif.data[tag] = 0x7f;
+        file = make_jpeg(64, 32, false, false);
+        jpeg_insert_exif(&file, exif);
+        part = make_auxiliary("urn:com:apple:photo:2020:aux:hdrgainmap", NULL);
+        expect_passed_over(make_mpf(file, &part, 1, true), "does not say its headroom");
+    }
     part = iso_part(1, one_channel); /* pixels are damaged */
     memset(part.data + part.size - 20, 0, 18);
     expect_passed_over(with_part(part, true, 1), "gain map: passed over, it is damaged");

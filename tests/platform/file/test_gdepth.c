@@ -267,6 +267,7 @@ static void original_replaces_a_blurred_picture(void **state)
     photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
     assert_int_equal(photo->info->original_used, 0);
     assert_int_equal(photo->image->width, 48);
+    assert_true(has_evidence(photo, "original passed over"));
     refocus_photo_free(&photo);
 }
 

@@ -1,5 +1,6 @@
 /* test_jpeg.c: JPEG photos: orientation, EXIF, ICC. */
 #include "check.h"
+#include "original.h"
 
 #ifdef RF_HAVE_PNG
 static void orientation_of_png(void **state)
@@ -155,6 +156,29 @@ static void grey_jpeg_is_depth(void **state)
     read_depth(make_jpeg(32, 16, false, false), NULL, REFOCUS_ERR_NO_DEPTH);
 }
 
+/* The original of an editable result says how its pixels lie, as the photo did. */
+static void original_says_how_it_lies(void **state)
+{
+    (void)state;
+    for (int orientation = 1; orientation <= 8; orientation++) {
+        struct bytes file = make_jpeg(32, 16, false, false);
+        struct rf_text out = {NULL, 0, 0, false};
+        struct refocus_photo *photo;
+        bool is_png = true;
+
+        jpeg_insert_exif(&file, make_exif(true, orientation));
+        photo = read_photo(file, REFOCUS_OK);
+        assert_int_equal(rf_original_put(&out, photo, &is_png, NULL), REFOCUS_OK);
+        refocus_photo_free(&photo);
+        assert_false(is_png || out.failed);
+        photo = read_photo(bytes_copy(out.data, out.size), REFOCUS_OK);
+        assert_int_equal(photo->info->orientation, orientation);
+        assert_int_equal(photo->image->width, orientation < 5 ? 32 : 16);
+        refocus_photo_free(&photo);
+        free(out.data);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -163,7 +187,7 @@ int main(void)
 #endif
         cmocka_unit_test(icc_in_chunks),      cmocka_unit_test(exif_facts),
         cmocka_unit_test(exif_without_sense), cmocka_unit_test(bytes_too_many),
-        cmocka_unit_test(grey_jpeg_is_depth),
+        cmocka_unit_test(grey_jpeg_is_depth), cmocka_unit_test(original_says_how_it_lies),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -240,7 +240,53 @@ static void writers(void **state)
 }
 
 #if defined(RF_HAVE_JPEG) && defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
-static int write_kept(const char *path, const struct refocus_photo *photo, long fail)
+static int write_depth(const char *path, const char *original, long fail)
+{
+    const uint16_t samples[6] = {1, 2, 3, 4, 5, 6};
+    struct refocus_depth_write depth = refocus_depth_write_default();
+    int status;
+
+    depth.disparity = samples;
+    depth.width = 3;
+    depth.height = 2;
+    depth.stride = 6;
+    failing.calls = failing.live = 0;
+    failing.fail_at = fail;
+    status = refocus_photo_write_depth(path, original, &depth, NULL);
+    failing.fail_at = 0;
+    /* A PNG is made in memory; see write_kept(). */
+    assert_true(failing.live == -1 || (fail && failing.live == 0));
+    return status;
+}
+
+static void depth_writers(void **state)
+{
+    struct bytes jpeg = make_jpeg(16, 8, false, false);
+    char original[64], path[64];
+    FILE *file;
+    long total;
+
+    (void)state;
+    snprintf(original, sizeof original, "/tmp/refocus-memory-%ld-o.jpg", (long)getpid());
+    snprintf(path, sizeof path, "/tmp/refocus-memory-%ld.jpg", (long)getpid());
+    file = fopen(original, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(jpeg.data, 1, jpeg.size, file), jpeg.size);
+    assert_int_equal(fclose(file), 0);
+    bytes_free(&jpeg);
+    assert_int_equal(write_depth(path, original, 0), REFOCUS_OK);
+    total = failing.calls;
+    assert_true(total > 4);
+    assert_int_equal(unlink(path), 0);
+    for (long k = 1; k <= total; k++) {
+        if (write_depth(path, original, k) != REFOCUS_ERR_MEMORY || access(path, F_OK) == 0) {
+            fail_msg("%s: allocation %ld", path, k);
+        }
+    }
+    assert_int_equal(unlink(original), 0);
+}
+
+static int write_kept(const char *path, const struct refocus_photo *photo, long fail, int streams)
 {
     uint8_t pixels[12 * 3] = {0};
     uint16_t halves[12 * 3] = {0};
@@ -268,7 +314,7 @@ static int write_kept(const char *path, const struct refocus_photo *photo, long 
     status = refocus_image_write(path, &image, &options, NULL);
     failing.fail_at = 0;
     /* The C library gets the memory of files in memory, which is not counted until it is freed. */
-    if (failing.live > 0 || failing.live < (options.editable ? -5 : options.light ? -1 : 0)) {
+    if (failing.live > 0 || failing.live < -streams || (!fail && failing.live != -streams)) {
         fail_msg("%s: allocation %ld keeps %ld", path, fail, failing.live);
     }
     return status;
@@ -293,8 +339,8 @@ static void become(struct refocus_photo *photo, const char *container)
 }
 
 /* The photo's packets lose depth and keep other properties, in an extended packet too; one without
- * an original becomes editable. */
-static void keepers_of(bool has_original, const char *container)
+ * an original becomes editable. `streams` JPEGs are written in memory on the way to a JPEG. */
+static void keepers_of(bool has_original, const char *container, int streams)
 {
     static const char *const endings[] = {".jpg", ".png"};
     struct gdepth gdepth = {.format = "RangeInverse",
@@ -310,16 +356,18 @@ static void keepers_of(bool has_original, const char *container)
         become(photo, container);
     }
     for (int i = 0; i < 2; i++) {
+        const int in_memory = i == 0 ? streams : 0;
         char path[64];
         long total;
 
         snprintf(path, sizeof path, "/tmp/refocus-memory-%ld%s", (long)getpid(), endings[i]);
-        assert_int_equal(write_kept(path, photo, 0), REFOCUS_OK);
+        assert_int_equal(write_kept(path, photo, 0, in_memory), REFOCUS_OK);
         total = failing.calls;
         assert_true(total > 4);
         assert_int_equal(unlink(path), 0);
         for (long k = 1; k <= total; k++) {
-            if (write_kept(path, photo, k) != REFOCUS_ERR_MEMORY || access(path, F_OK) == 0) {
+            if (write_kept(path, photo, k, in_memory) != REFOCUS_ERR_MEMORY ||
+                access(path, F_OK) == 0) {
                 fail_msg("%s: allocation %ld", path, k);
             }
         }
@@ -330,10 +378,10 @@ static void keepers_of(bool has_original, const char *container)
 static void keepers(void **state)
 {
     (void)state;
-    keepers_of(true, NULL);
-    keepers_of(false, NULL);
-    keepers_of(false, "HEIC");
-    keepers_of(false, "PPM");
+    keepers_of(true, NULL, 1);
+    keepers_of(false, NULL, 2);
+    keepers_of(false, "HEIC", 4);
+    keepers_of(false, "PPM", 3);
 }
 #endif
 
@@ -384,6 +432,7 @@ int main(void)
         cmocka_unit_test(stated_peak),
         cmocka_unit_test(writers),
 #if defined(RF_HAVE_JPEG) && defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
+        cmocka_unit_test(depth_writers),
         cmocka_unit_test(keepers),
 #endif
         cmocka_unit_test(files),

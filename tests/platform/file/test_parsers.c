@@ -4,9 +4,12 @@
 #include "base64.h"
 #include "depth_values.h"
 #include "exif.h"
+#include "formats.h"
 #include "heif_boxes.h"
+#include "md5.h"
 #include "mpf.h"
 #include "number.h"
+#include "png_format.h"
 
 #include <math.h>
 
@@ -208,13 +211,113 @@ static void heif_orientations(void **state)
     }
 }
 
+/* A main picture whose number is cut off, at the end of the boxes: what lies behind it is no
+ * number. Without the cut the same bytes turn the picture. */
+static void heif_short_primary(void **state)
+{
+    const struct heif_property turned = {"irot", 1};
+    struct bytes boxes = make_heif_boxes(&turned, 1, false);
+    const size_t meta = 20, pitm = meta + 12, iprp = pitm + 14, all = boxes.size - iprp;
+    uint8_t *const file = calloc(1, boxes.size);
+
+    (void)state;
+    assert_memory_equal(boxes.data + iprp + 4, "iprp", 4);
+    memcpy(file, boxes.data, pitm);
+    memcpy(file + pitm, boxes.data + iprp, all);
+    memcpy(file + pitm + all, boxes.data + pitm, 14);
+    assert_int_equal(rf_heif_orientation((struct rf_bytes){file, boxes.size}, 0), 8);
+    for (uint8_t size = 8; size < 14; size++) {
+        file[pitm + all + 3] = size;
+        assert_int_equal(rf_heif_orientation((struct rf_bytes){file, boxes.size}, 0), 1);
+    }
+    free(file);
+    bytes_free(&boxes);
+}
+
+/* RFC 1321, A.5, and lengths around a block of 64 bytes. */
+static void md5_of_the_rfc(void **state)
+{
+    static const struct {
+        const char *text, *hex;
+    } known[] = {
+        {"", "D41D8CD98F00B204E9800998ECF8427E"},
+        {"a", "0CC175B9C0F1B6A831C399E269772661"},
+        {"message digest", "F96B697D7CB7938D525A2F31AAF161D0"},
+        {"abcdefghijklmnopqrstuvwxyz", "C3FCD3D76192E4007DFB496CCA67E13B"},
+        {"12345678901234567890123456789012345678901234567890123456789012345678901234567890",
+         "57EDF4A22BE3C955AC49DA2E2107B67A"},
+    };
+    static const char *const of_length[] = {
+        "04364420E25C512FD958A70738AA8F72", "668A72D5BA17F08E62DABCAFAD6DB14B",
+        "693037871C4A9D3D8685018905CB530A", "7DC2CA208106A2F703567BDFF99D8981",
+        "C1BB4F81D892B2D57947682AEB252456", "1BC932052302D074BDEC39795FE00CF6",
+    };
+    static const size_t lengths[] = {55, 56, 57, 63, 64, 65};
+    uint8_t same[65];
+    char hex[33];
+
+    (void)state;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        const struct rf_bytes text = {(const uint8_t *)known[i].text, strlen(known[i].text)};
+
+        rf_md5_hex(text, hex);
+        assert_string_equal(hex, known[i].hex);
+    }
+    memset(same, 'x', sizeof same);
+    for (size_t i = 0; i < sizeof of_length / sizeof *of_length; i++) {
+        rf_md5_hex((struct rf_bytes){same, lengths[i]}, hex);
+        assert_string_equal(hex, of_length[i]);
+    }
+}
+
+/* Four letters are a brand, whatever follows; there are files of other things with a brand, too. */
+static void heif_brands(void **state)
+{
+    static const struct {
+        const char *begin;
+        bool known;
+    } files[] = {{"\0\0\0\20ftypheicx", true},  {"\0\0\0\20ftypavisx", true},
+                 {"\0\0\0\20ftypmif1x", true},  {"\0\0\0\20ftypmp42x", false},
+                 {"\0\0\0\20ftypheiXx", false}, {"\0\0\0\20freeheicx", false}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        const uint8_t *const begin = (const uint8_t *)files[i].begin;
+
+        for (size_t size = 11; size <= 13; size++) {
+            const struct rf_format *format = rf_format_of_content((struct rf_bytes){begin, size});
+
+            assert_int_equal(format != NULL, files[i].known && size >= 12);
+            assert_true(!format || strcmp(format->name, "HEIC") == 0);
+        }
+    }
+}
+
+static void png_signature(void **state)
+{
+    static const uint8_t begin[] = "\x89PNG\r\n\x1a\n\xff";
+
+    (void)state;
+    assert_false(rf_is_png((struct rf_bytes){begin, 7}));
+    assert_true(rf_is_png((struct rf_bytes){begin, 8}));
+    assert_true(rf_is_png((struct rf_bytes){begin, 9}));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers),        cmocka_unit_test(base64_text),
-        cmocka_unit_test(exif_offsets),   cmocka_unit_test(exif_texts_are_clean),
-        cmocka_unit_test(heif_sequences), cmocka_unit_test(heif_orientations),
-        cmocka_unit_test(mpf_bounds),     cmocka_unit_test(disparity_ranges),
+        cmocka_unit_test(numbers),
+        cmocka_unit_test(base64_text),
+        cmocka_unit_test(exif_offsets),
+        cmocka_unit_test(exif_texts_are_clean),
+        cmocka_unit_test(heif_sequences),
+        cmocka_unit_test(heif_orientations),
+        cmocka_unit_test(heif_short_primary),
+        cmocka_unit_test(md5_of_the_rfc),
+        cmocka_unit_test(png_signature),
+        cmocka_unit_test(heif_brands),
+        cmocka_unit_test(mpf_bounds),
+        cmocka_unit_test(disparity_ranges),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

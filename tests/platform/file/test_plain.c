@@ -492,6 +492,15 @@ static void modules_are_missed_in_words(void **state)
         assert_true(status == REFOCUS_ERR_FORMAT || status == REFOCUS_ERR_UNSUPPORTED);
         assert_true(status == REFOCUS_ERR_FORMAT || strstr(reason.text, formats[i].library));
     }
+    /* A sound is in a file of the same kind as WebP. */
+    for (size_t size = 4; size <= 12; size++) {
+        struct refocus_photo *photo = NULL;
+        struct refocus_reason reason;
+
+        assert_int_equal(refocus_photo_read_memory(&photo, "RIFF\4\0\0\0WAVE", size, NULL, &reason),
+                         REFOCUS_ERR_FORMAT);
+        assert_non_null(strstr(reason.text, "no known format"));
+    }
 }
 
 #ifdef RF_HAVE_JPEG

@@ -213,6 +213,23 @@ static void keeps_exif_and_icc(const char *name, size_t icc_size)
     bytes_free(&icc);
 }
 
+#ifdef RF_HAVE_JPEG
+/* JFIF's segment follows the first marker at once, and EXIF the whole of it. */
+static void jfif_is_first(const char *name)
+{
+    static const uint8_t jfif[] = {0xff, 0xd8, 0xff, 0xe0, 0, 16, 'J', 'F', 'I', 'F', 0};
+    uint8_t begin[24];
+    FILE *const file = fopen(in_folder(name), "rb");
+
+    assert_non_null(file);
+    assert_int_equal(fread(begin, 1, sizeof begin, file), sizeof begin);
+    fclose(file);
+    assert_memory_equal(begin, jfif, sizeof jfif);
+    assert_int_equal(begin[20], 0xff);
+    assert_int_equal(begin[21], 0xe1);
+}
+#endif
+
 static void exif_and_icc(void **state)
 {
     (void)state;
@@ -221,6 +238,7 @@ static void exif_and_icc(void **state)
 #endif
 #ifdef RF_HAVE_JPEG
     keeps_exif_and_icc("e.jpg", 1000);
+    jfif_is_first("e.jpg");
     keeps_exif_and_icc("e.jpg", 65519);
     keeps_exif_and_icc("e.jpeg", 200000);
 #endif

@@ -1,0 +1,122 @@
+/* test_keep.c: what a PNG holds beside its pixels is in the picture that is made from it: each
+ * chunk as it was, and of XMP what still holds. */
+#include "check.h"
+#include "png_chunks.h"
+#include "read.h"
+
+#include <unistd.h>
+
+/* A PNG with chunks between its header and its pixels; the packet is freed. */
+static struct bytes png_with(struct bytes packet, bool has_text)
+{
+    struct bytes plain = make_png(8, 4, 2, 8), png = bytes_copy(plain.data, 33);
+    struct bytes xmp = bytes_copy(rf_png_xmp_head, RF_PNG_XMP_HEAD);
+
+    if (has_text) {
+        png_chunk(&png, "tEXt", "Author\0somebody", 15);
+    }
+    if (packet.data) {
+        bytes_join(&xmp, packet);
+        png_chunk(&png, "iTXt", xmp.data, xmp.size);
+    }
+    bytes_free(&xmp);
+    if (has_text) {
+        png_chunk(&png, "pHYs", "\0\0\1\0\0\0\2\0\1", 9);
+    }
+    bytes_add(&png, plain.data + 33, plain.size - 33);
+    bytes_free(&plain);
+    return png;
+}
+
+static struct bytes rewritten(struct bytes file)
+{
+    struct refocus_write_options options = refocus_write_options_default();
+    struct refocus_photo *photo = read_photo(file, REFOCUS_OK);
+    struct bytes out = {NULL, 0};
+    char path[64];
+    int byte;
+    FILE *in;
+
+    snprintf(path, sizeof path, "/tmp/refocus-keep-%ld.png", (long)getpid());
+    options.keep = photo;
+    assert_int_equal(refocus_image_write(path, photo->image, &options, NULL), REFOCUS_OK);
+    refocus_photo_free(&photo);
+    in = fopen(path, "rb");
+    assert_non_null(in);
+    while ((byte = fgetc(in)) != EOF) {
+        bytes_number(&out, (uint64_t)byte, 1, false);
+    }
+    fclose(in);
+    assert_int_equal(unlink(path), 0);
+    return out;
+}
+
+/* Chunks of a type; the last one's content is *found. */
+static int count(const struct bytes *png, const char *type, struct rf_png_chunk *found)
+{
+    struct rf_bytes rest = {png->data + 8, png->size - 8};
+    struct rf_png_chunk chunk;
+    int n = 0;
+
+    while (rf_png_next_chunk(&rest, &chunk)) {
+        if (memcmp(chunk.type, type, 4) == 0) {
+            *found = chunk;
+            n++;
+        }
+    }
+    return n;
+}
+
+static void chunks(void **state)
+{
+    (void)state;
+    for (int has_xmp = 0; has_xmp < 2; has_xmp++) {
+        struct bytes packet = {NULL, 0}, png;
+        struct rf_png_chunk chunk;
+
+        if (has_xmp) {
+            packet = make_xmp("xmlns:q=\"q:\" q:a=\"kept\" GDepth:Near=\"1\"");
+        }
+        png = rewritten(png_with(packet, true));
+        assert_int_equal(count(&png, "tEXt", &chunk), 1);
+        assert_int_equal(chunk.content.size, 15);
+        assert_memory_equal(chunk.content.data, "Author\0somebody", 15);
+        assert_int_equal(count(&png, "pHYs", &chunk), 1);
+        assert_memory_equal(chunk.content.data, "\0\0\1\0\0\0\2\0\1", 9);
+        assert_int_equal(count(&png, "iTXt", &chunk), has_xmp);
+        if (has_xmp) {
+            struct bytes text = bytes_copy(chunk.content.data, chunk.content.size);
+
+            bytes_add(&text, "", 1);
+            assert_non_null(strstr((char *)text.data + RF_PNG_XMP_HEAD, "kept"));
+            assert_null(strstr((char *)text.data + RF_PNG_XMP_HEAD, "Near"));
+            bytes_free(&text);
+        }
+        bytes_free(&png);
+    }
+}
+
+/* A checksum that belongs to the chunk, and no chunk where there was none. */
+static void nothing_is_made_up(void **state)
+{
+    struct bytes png = rewritten(png_with((struct bytes){NULL, 0}, false));
+    struct rf_png_chunk chunk;
+    struct refocus_photo *photo;
+
+    (void)state;
+    assert_int_equal(count(&png, "tEXt", &chunk), 0);
+    assert_int_equal(count(&png, "iTXt", &chunk), 0);
+    assert_int_equal(count(&png, "IHDR", &chunk), 1);
+    photo = read_photo(png, REFOCUS_OK);
+    assert_int_equal(photo->image->width, 8);
+    refocus_photo_free(&photo);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(chunks),
+        cmocka_unit_test(nothing_is_made_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
