@@ -80,8 +80,31 @@ static void same_as_c(void **state)
     assert_true(sets >= 2); /* auto and c at least */
 }
 
+/* `auto` is the last of the sets in enum refocus_cpu that work here. */
+static void auto_is_the_best(void **state)
+{
+    struct picture p = picture_make(20, 20, 7);
+    struct refocus_renderer_info info = refocus_renderer_info_default();
+    uint32_t best = REFOCUS_CPU_AUTO, cpu = REFOCUS_CPU_AUTO;
+    struct refocus_renderer *renderer;
+
+    (void)state;
+    for (uint32_t i = REFOCUS_CPU_AUTO + 1; refocus_cpu_name(i); i++) {
+        renderer = with_cpu(&p, 8, i);
+        best = renderer ? i : best;
+        refocus_renderer_destroy(&renderer);
+    }
+    renderer = with_cpu(&p, 8, REFOCUS_CPU_AUTO);
+    refocus_renderer_get_info(renderer, &info);
+    cpu = info.cpu;
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+    assert_int_equal(cpu, best);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_as_c)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(auto_is_the_best),
+                                       cmocka_unit_test(same_as_c)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
