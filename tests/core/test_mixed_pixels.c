@@ -98,6 +98,39 @@ static void others(void **state)
     free(s);
 }
 
+/* Pixels at the disc that the nearer surface gets where the farther one, or the nearer, is `off`
+ * nearer than at the edge from some pixels away from it on. */
+static int taken_where(int off, bool far_side)
+{
+    enum { NEARER = 60000, FARTHER = 30000 };
+    struct stage *s = make();
+    int taken = 0;
+
+    draw(s, 6, 120);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const bool near = outside(i) < 0;
+        const bool away = near ? !far_side && outside(i) < -4 : far_side && outside(i) > 4;
+
+        s->before[i] = s->map[i] = (uint16_t)((near ? NEARER : FARTHER) + (away ? off : 0));
+    }
+    run(s, 1);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        taken += outside(i) < 3 && s->map[i] != s->before[i];
+    free(s);
+    return taken;
+}
+
+/* A surface goes on if it stays within half of what lies between the two. Where an edge lies
+ * slantwise, no pixel that is looked at is away from it. */
+static void surfaces_that_go_on(void **state)
+{
+    (void)state;
+    assert_true(taken_where(0, true) > 2 * 3 * RADIUS);
+    assert_true(taken_where(-14999, true) > 2 * taken_where(-15000, true));
+    assert_true(taken_where(14999, true) > 2 * taken_where(15000, true));
+    assert_true(taken_where(-14999, false) > 2 * taken_where(-15000, false));
+}
+
 static void threads(void **state)
 {
     struct stage *one = make(), *three = make();
@@ -115,6 +148,7 @@ static void threads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(soft_photo), cmocka_unit_test(others),
+                                       cmocka_unit_test(surfaces_that_go_on),
                                        cmocka_unit_test(threads)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -204,6 +204,31 @@ static void weighs_confidence(void **state)
     end(&s);
 }
 
+/* A map that has the photo's size comes out as it is, of 8 and 16 bits and bottom-up. */
+static void same_size(void **state)
+{
+    struct refocus_upsample_params params = refocus_upsample_params_default();
+    struct scene s = make(31, 22, 31, 22);
+    const struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, s.rgb, 31, 22, 3 * 31);
+    uint8_t bytes[31 * 22];
+    struct refocus_disparity map = refocus_disparity16(s.map + 31 * 21, 31, 22, -2 * 31);
+
+    (void)state;
+    assert_int_equal(run(&s, &params, s.out), REFOCUS_OK);
+    assert_memory_equal(s.out, s.map, 2 * 31 * 22);
+    assert_int_equal(refocus_upsample(&photo, &map, &params, s.out, 2 * 31), REFOCUS_OK);
+    for (int y = 0; y < 22; y++)
+        assert_memory_equal(s.out + 31 * y, s.map + 31 * (21 - y), 2 * 31);
+    for (int k = 0; k < 31 * 22; k++)
+        bytes[k] = (uint8_t)(s.map[k] >> 8);
+    map = refocus_disparity8(bytes, 31, 22, 31);
+    assert_int_equal(refocus_upsample(&photo, &map, &params, s.out, 2 * 31), REFOCUS_OK);
+    for (int k = 0; k < 31 * 22; k++)
+        assert_int_equal(s.out[k], bytes[k] * 257);
+    end(&s);
+}
+
 /* refocus_prepare() and formats, strides and 8 bits come to the same. */
 static void same_by_other_ways(void **state)
 {
@@ -338,10 +363,15 @@ static void repair(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_everywhere),   cmocka_unit_test(invents_nothing),
-        cmocka_unit_test(keeps_planes),      cmocka_unit_test(follows_the_photo),
-        cmocka_unit_test(weighs_confidence), cmocka_unit_test(same_by_other_ways),
-        cmocka_unit_test(bad_arguments),     cmocka_unit_test(repair),
+        cmocka_unit_test(same_everywhere),
+        cmocka_unit_test(invents_nothing),
+        cmocka_unit_test(keeps_planes),
+        cmocka_unit_test(follows_the_photo),
+        cmocka_unit_test(weighs_confidence),
+        cmocka_unit_test(same_size),
+        cmocka_unit_test(same_by_other_ways),
+        cmocka_unit_test(bad_arguments),
+        cmocka_unit_test(repair),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
