@@ -10,6 +10,8 @@
 #include <cmocka.h>
 #include <refocus/depth.h>
 
+#include "depth/holes.h"
+
 static struct refocus_depth_map map_of(uint32_t sample, const void *samples, int width, int height)
 {
     static const int bytes[] = {0, 1, 2, 4};
@@ -178,6 +180,34 @@ static void test_unknown_samples(void **state)
     static const uint8_t zeros[12] = {0};
     map = distances_of(REFOCUS_SAMPLE_U8, zeros, 4, 3);
     assert_int_equal(refocus_depth_to_disparity(&map, out, 8, &report), REFOCUS_ERR_NO_DEPTH);
+}
+
+/* A round hole in a slope is filled from its sides and smoothed: what lies farthest off the slope
+ * is a seventh of what it rises by from the hole's middle to its side. */
+static void holes_in_slopes(void **state)
+{
+    enum { W = 140, H = 110, X = 70, Y = 55, SLOPE = 30 };
+    static uint16_t map[W * H];
+    static uint8_t known[W * H];
+
+    (void)state;
+    for (int radius = 10; radius <= 40; radius += 10) {
+        int most = 0;
+
+        for (int i = 0; i < W * H; i++) {
+            const double off = hypot(i % W - X, (double)(i / W) - Y);
+
+            map[i] = (uint16_t)(off < radius ? 0 : 20000 + SLOPE * (i % W));
+            known[i] = off < radius ? RF_SAMPLE_UNKNOWN : RF_SAMPLE_KNOWN;
+        }
+        rf_fill_holes(map, 2 * W, W, H, known);
+        for (int i = 0; i < W * H; i++) {
+            const int off = abs(map[i] - 20000 - SLOPE * (i % W));
+
+            most = off > most ? off : most;
+        }
+        assert_in_range(most, 1, SLOPE * radius / 7);
+    }
 }
 
 /* Large maps of whole numbers go by a table: the same as their rows by themselves. */
@@ -499,6 +529,7 @@ int main(void)
         cmocka_unit_test(test_strides),
         cmocka_unit_test(test_bad_arguments),
         cmocka_unit_test(test_long_rows),
+        cmocka_unit_test(holes_in_slopes),
         cmocka_unit_test(test_large_maps),
         cmocka_unit_test(test_fill_takes_the_farther_side),
         cmocka_unit_test(test_fill_leaves_no_streaks),

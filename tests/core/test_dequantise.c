@@ -186,11 +186,42 @@ static void ends_and_small_maps(void **state)
         }
 }
 
+/* A few pixels by themselves are as in the whole map: at its corners, sides and within, and without
+ * a step as they came. */
+static void patches(void **state)
+{
+    enum { SIDE = RF_DEQUANTISE_PATCH };
+    static const int at[][4] = {
+        {0, 0, SIDE, SIDE}, {8, 24, SIDE, SIDE},           {96, 64, SIDE, SIDE},
+        {101, 3, 5, 1},     {WIDTH - 3, HEIGHT - 7, 3, 7}, {WIDTH - SIDE, 0, SIDE, SIDE}};
+    static uint16_t map[PIXELS], whole[PIXELS];
+    const struct refocus_disparity d = map_of(map);
+    struct rf_kernels kernels;
+    uint32_t cpu = REFOCUS_CPU_AUTO;
+    uint16_t patch[SIDE * SIDE];
+
+    (void)state;
+    assert_true(rf_kernels_select(&kernels, &cpu));
+    draw(map, 257);
+    memcpy(whole, map, sizeof whole);
+    run(whole, 257, cpu, 1);
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++)
+        for (int step = 0; step <= 257; step += 257) {
+            const uint16_t *from = (step ? whole : map) + at[i][1] * WIDTH + at[i][0];
+
+            rf_dequantised_patch(&kernels, &d, step, at[i][0], at[i][1], at[i][2], at[i][3], patch);
+            for (int y = 0; y < at[i][3]; y++)
+                assert_memory_equal(patch + y * at[i][2], from + y * WIDTH,
+                                    (size_t)at[i][2] * sizeof *patch);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_of_maps), cmocka_unit_test(boards_stay),
-        cmocka_unit_test(slopes_come_back), cmocka_unit_test(ends_and_small_maps)};
+        cmocka_unit_test(slopes_come_back), cmocka_unit_test(ends_and_small_maps),
+        cmocka_unit_test(patches)};
 
     return cmocka_run_group_tests_name("dequantise", tests, NULL, NULL);
 }

@@ -180,28 +180,35 @@ static void follows_the_photo(void **state)
 }
 
 /* A wrong sample that is not to be trusted does not show; a trusted one does. */
-static void weighs_confidence(void **state)
+static void weighs_confidence_at(int u, int v)
 {
     struct refocus_upsample_params params = refocus_upsample_params_default();
     struct scene s = make(96, 96, 12, 12);
 
-    (void)state;
     memset(s.rgb, 100, 3 * 96 * 96);
-    for (int y = 49; y < 56; y++)
-        memset(s.rgb + 3 * (96 * y + 49), 180, 3 * 7);
+    for (int y = 8 * v + 1; y < 8 * v + 8; y++)
+        memset(s.rgb + 3 * (96 * y + 8 * u + 1), 180, 3 * 7);
     memset(s.confidence, 255, 144);
     for (int k = 0; k < 144; k++)
         s.map[k] = 10000;
-    s.map[6 * 12 + 6] = 50000;
+    s.map[v * 12 + u] = 50000;
     assert_int_equal(run(&s, &params, s.out), REFOCUS_OK);
-    assert_int_equal(s.out[52 * 96 + 52], 50000);
+    assert_int_equal(s.out[(8 * v + 4) * 96 + 8 * u + 4], 50000);
     params.confidence = s.confidence;
     params.confidence_stride = 12;
-    s.confidence[6 * 12 + 6] = 0;
+    s.confidence[v * 12 + u] = 0;
     assert_int_equal(run(&s, &params, s.out), REFOCUS_OK);
     for (int k = 0; k < 96 * 96; k++)
         assert_int_equal(s.out[k], 10000);
     end(&s);
+}
+
+static void weighs_confidence(void **state)
+{
+    (void)state;
+    weighs_confidence_at(6, 6);
+    weighs_confidence_at(2, 9);
+    weighs_confidence_at(9, 3);
 }
 
 /* A map that has the photo's size comes out as it is, of 8 and 16 bits and bottom-up. */
