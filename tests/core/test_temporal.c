@@ -9,6 +9,8 @@
 #include <cmocka.h>
 #include <refocus/refocus.h>
 
+#include "depth/temporal.h"
+
 enum { W = 80, H = 60, SIDE = 20, SCALE = 4, NOISE = 900 };
 
 struct video {
@@ -301,6 +303,39 @@ static void bad_arguments(void **state)
     refocus_temporal_destroy(&filter);
 }
 
+/* Noise that moved as a whole, which no search finds: a block knows of it by its own vector of the
+ * last frame or by those of blocks that come before it, and by nothing that lies around the list.
+ */
+static void vectors_spread(void **state)
+{
+    enum { COLUMNS = W / RF_BLOCK, ROWS = (H + RF_BLOCK - 1) / RF_BLOCK, FIRST = 3 };
+    static uint16_t near[2][W * H];
+    static uint8_t guide[2][W * H];
+    const struct rf_frame now = {near[0], guide[0]}, last = {near[1], guide[1]};
+    const struct rf_motion moved = {7, 5};
+    struct rf_motion list[(ROWS + 2) * COLUMNS], *const motion = list + COLUMNS;
+
+    (void)state;
+    v.seed = 3;
+    for (int i = 0; i < W * H; i++)
+        guide[1][i] = (uint8_t)noise(127);
+    for (int i = 0; i < W * H; i++)
+        guide[0][i] = i % W < W - 7 && i / W < H - 5 ? guide[1][i + 5 * W + 7] : 0;
+    for (int known = 0; known < 2; known++) {
+        for (int i = 0; i < (ROWS + 2) * COLUMNS; i++)
+            list[i] = moved;
+        memset(motion, 0, ROWS * COLUMNS * sizeof *motion);
+        if (known)
+            motion[FIRST] = moved;
+        rf_find_motion(motion, &now, &last, W, H);
+        for (int i = 0; i < COLUMNS - 1; i++)
+            assert_int_equal(motion[i].x == 7 && motion[i].y == 5, known && i >= FIRST);
+        for (int y = 1; known && y < ROWS - 1; y++) /* and leftwards from row to row */
+            for (int i = FIRST - y > 0 ? FIRST - y : 0; i < COLUMNS - 1; i++)
+                assert_true(motion[y * COLUMNS + i].x == 7 && motion[y * COLUMNS + i].y == 5);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -312,6 +347,7 @@ int main(void)
         cmocka_unit_test(any_photo),
         cmocka_unit_test(follows_the_range),
         cmocka_unit_test(bad_arguments),
+        cmocka_unit_test(vectors_spread),
     };
 
     return cmocka_run_group_tests_name("temporal", tests, NULL, NULL);
