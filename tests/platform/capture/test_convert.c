@@ -5,6 +5,7 @@
 #include <refocus/platform/convert.h>
 #include <refocus/platform/file.h>
 #include "layout.h"
+#include "replay_scene.h"
 #include "rgb_to_yuv.h"
 #ifdef RF_HAVE_JPEG
 #include <turbojpeg.h>
@@ -495,6 +496,34 @@ static void registering_onto_more_pixels_leaves_no_gaps(void **state)
             assert_int_equal(to[y * 96 + x], 1500);
 }
 
+/* The made-up scene of replay: at any size the first of five discs that has a pixel, before a wall
+ * and a floor that comes nearer; the sensor misses the left edges of discs. */
+static void made_up_depth(void **state)
+{
+    static uint16_t mm[960 * 720];
+
+    (void)state;
+    rf_scene_draw((uint8_t *)mm, REFOCUS_FRAME_Z16, 2 * 960, 960, 720);
+    for (int y = 0; y < 720; y++)
+        for (int x = 0; x < 960; x++) {
+            int expected = y > 440 ? 4000 - (y - 440) * 9 : 4000;
+
+            for (int i = 4; i >= 0; i--) {
+                const int dx = x - 100 - 190 * i, dy = y - 200 - 67 * i % 190,
+                          radius = 110 - 12 * i;
+
+                if (hypot(dx, dy) < radius && (expected == 0 || 700 + 520 * i < expected))
+                    expected = dx < -radius * 0.875 ? 0 : 700 + 520 * i;
+            }
+            if (mm[960 * y + x] != expected)
+                fail_msg("%d mm at (%d, %d), should be %d", mm[960 * y + x], x, y, expected);
+        }
+    rf_scene_draw((uint8_t *)mm, REFOCUS_FRAME_Z16, 2 * 96, 96, 72);
+    assert_int_equal(mm[96 * 20 + 10], 700);
+    assert_int_equal(mm[96 * 1 + 1], 4000);
+    assert_int_equal(mm[96 * 71 + 1], 4000 - (710 - 440) * 9);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -510,6 +539,7 @@ int main(void)
 #endif
         cmocka_unit_test(registering_onto_itself_is_nothing),
         cmocka_unit_test(registering_shifts_near_things_more),
+        cmocka_unit_test(made_up_depth),
         cmocka_unit_test(registering_onto_more_pixels_leaves_no_gaps),
     };
 

@@ -393,6 +393,9 @@ static void a_lens_is_slow_sticks_and_errs(void **state)
                   REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_source_set_focus(source, REFOCUS_SOURCE_FOCUS_ONCE, 9, &reason),
                   REFOCUS_OK);
+    for (int i = 0; i < 8; i++)
+        look(source, &position);
+    assert_true(position == 2 + 0.25); /* the middle is the subject */
     assert_status(refocus_source_lock_exposure(source, 1, &reason), REFOCUS_OK);
     refocus_source_close(&source);
 }
