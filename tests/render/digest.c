@@ -389,19 +389,21 @@ static void effects(void **state)
     picture_free(&p);
 }
 
-/* Thin things that are drawn. */
+/* Thin things that are drawn, before a background whose texture goes on behind them or not. */
 static void thin(void **state)
 {
     static const struct {
         int width, height, rays, blades;
         float blur, focus, sigma;
-        uint32_t blend;
-    } shots[] = {{150, 101, 64, 0, 15, 0.03f, 400, REFOCUS_BLEND_LINEAR},
-                 {97, 130, 64, 6, 40, 0.2f, INFINITY, REFOCUS_BLEND_STORED},
-                 {160, 64, 32, 0, 9.5f, 0, 200, REFOCUS_BLEND_GAMMA}};
+        uint32_t blend, inpaint;
+    } shots[] = {{150, 101, 64, 0, 15, 0.03f, 400, REFOCUS_BLEND_LINEAR, REFOCUS_INPAINT_SMOOTH},
+                 {97, 130, 64, 6, 40, 0.2f, INFINITY, REFOCUS_BLEND_STORED, REFOCUS_INPAINT_SMOOTH},
+                 {160, 64, 32, 0, 9.5f, 0, 200, REFOCUS_BLEND_GAMMA, REFOCUS_INPAINT_SMOOTH},
+                 {151, 102, 64, 0, 15, 0.03f, 400, REFOCUS_BLEND_LINEAR, REFOCUS_INPAINT_TEXTURED},
+                 {98, 131, 48, 6, 30, 0, INFINITY, REFOCUS_BLEND_GAMMA, REFOCUS_INPAINT_TEXTURED}};
 
     (void)state;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 5; i++) {
         const int w = shots[i].width, h = shots[i].height;
         struct picture p = picture_fence(w, h, 31u + (uint32_t)i);
         const struct refocus_image photo = picture_image(&p);
@@ -417,6 +419,8 @@ static void thin(void **state)
         char name[80];
 
         limits.thin = params.thin.enabled = 1;
+        limits.textured = shots[i].inpaint == REFOCUS_INPAINT_TEXTURED;
+        params.render.inpaint = shots[i].inpaint;
         params.render.rays = shots[i].rays;
         params.render.blend = shots[i].blend;
         params.render.sigma = shots[i].sigma;
@@ -427,7 +431,8 @@ static void thin(void **state)
         assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
         assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
         assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
-        snprintf(name, sizeof name, "thin: %d x %d, K = %g", w, h, (double)shots[i].blur);
+        snprintf(name, sizeof name, "thin: %d x %d, K = %g%s", w, h, (double)shots[i].blur,
+                 limits.textured ? ", textured" : "");
         check_golden(hash(out, 3 * (size_t)w * (size_t)h), name);
         refocus_renderer_destroy(&renderer);
         refocus_aperture_destroy(&aperture);
