@@ -70,6 +70,7 @@ class Bench:
         if not (self.build / 'build.ninja').exists():
             subprocess.run(['meson', 'setup', self.build, self.tree, *OPTIONS], check=True)
         self.ninja = ['ninja', '-C', str(self.build), '-j', str(os.cpu_count())]
+        subprocess.run(self.ninja + ['build.ninja'], check=True)  # tests may be new
         made = {one['id']: [os.path.relpath(name, self.build) for name in one['filename']]
                 for one in self.introspect('targets')}
         self.tests = {}

@@ -218,6 +218,39 @@ static void gdepth_own_blur(void **state)
     assert_near(own_blur(POINT "GDepth:Near=\"2\" GDepth:Far=\"10\""), 0);
 }
 
+/* A focus point is both numbers, within the picture; else there is none. */
+static void focus_point(void **state)
+{
+    static const char *const none[] = {
+        "GFocus:FocalPointX=\"0.5\"",
+        "GFocus:FocalPointY=\"0.5\"",
+        "GFocus:FocalPointX=\"1.01\" GFocus:FocalPointY=\"0.5\"",
+        "GFocus:FocalPointX=\"-0.01\" GFocus:FocalPointY=\"0.5\"",
+        "GFocus:FocalPointX=\"0.5\" GFocus:FocalPointY=\"1.01\"",
+        "GFocus:FocalPointX=\"0.5\" GFocus:FocalPointY=\"-0.01\"",
+    };
+    struct gdepth gdepth = {.format = "RangeInverse", .depth = make_png(6, 4, 0, 8)};
+    struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
+    const double x = photo->info->focus_x, y = photo->info->focus_y;
+
+    (void)state;
+    refocus_photo_free(&photo);
+    assert_false(x >= 0 && x <= 1);
+    for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
+        gdepth.extra = none[i];
+        gdepth.depth = make_png(6, 4, 0, 8);
+        photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
+        assert_memory_equal(&photo->info->focus_x, &x, sizeof x);
+        assert_memory_equal(&photo->info->focus_y, &y, sizeof y);
+        refocus_photo_free(&photo);
+    }
+    gdepth.extra = "GFocus:FocalPointX=\"1\" GFocus:FocalPointY=\"0\"";
+    gdepth.depth = make_png(6, 4, 0, 8);
+    photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
+    assert_true(photo->info->focus_x == 1 && photo->info->focus_y == 0);
+    refocus_photo_free(&photo);
+}
+
 static void gdepth_damaged(void **state)
 {
     const struct gdepth bad[] = {
@@ -341,6 +374,7 @@ int main(void)
         cmocka_unit_test(gdepth_units_absent_are_told),
         cmocka_unit_test(gdepth_linear_without_metres),
         cmocka_unit_test(gdepth_own_blur),
+        cmocka_unit_test(focus_point),
         cmocka_unit_test(gdepth_damaged),
         cmocka_unit_test(original_replaces_a_blurred_picture),
         cmocka_unit_test(extended_in_any_order),

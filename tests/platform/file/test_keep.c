@@ -112,11 +112,51 @@ static void nothing_is_made_up(void **state)
     refocus_photo_free(&photo);
 }
 
+/* Depth that is written into a photo does not make its main picture blurred: the original of the
+ * packet before is used where that says that it is, and only there. */
+static void depth_beside_an_original(void **state)
+{
+    static const uint16_t disparity[4] = {0, 1000, 40000, 65535};
+    struct refocus_depth_write depth = refocus_depth_write_default();
+    char path[64];
+
+    (void)state;
+    depth.disparity = disparity;
+    depth.width = depth.height = 2;
+    depth.stride = 4;
+    snprintf(path, sizeof path, "/tmp/refocus-keep-%ld.jpg", (long)getpid());
+    for (int blurred = 0; blurred < 2; blurred++) {
+        struct bytes file =
+            make_gdepth((struct gdepth){.format = "RangeInverse",
+                                        .extra = blurred ? "GFocus:BlurAtInfinity=\"0.01\""
+                                                         : "GFocus:BlurAtInfinity=\"0\"",
+                                        .depth = make_png(2, 2, 0, 8),
+                                        .original = make_png(9, 7, 2, 8)},
+                        0);
+        struct refocus_photo *photo;
+        FILE *const out = fopen(path, "wb");
+
+        assert_non_null(out);
+        assert_int_equal(fwrite(file.data, 1, file.size, out), file.size);
+        assert_int_equal(fclose(out), 0);
+        bytes_free(&file);
+        assert_int_equal(refocus_photo_write_depth(path, path, &depth, NULL), REFOCUS_OK);
+        assert_int_equal(refocus_photo_read(&photo, path, NULL, NULL), REFOCUS_OK);
+        assert_int_equal(photo->info->original_used, blurred);
+        assert_int_equal(photo->image->width, blurred ? 9 : 48);
+        assert_int_equal(photo->depth->width, 2);
+        assert_int_equal(sample_at(photo->depth, 0, 0), photo->depth->value_far);
+        refocus_photo_free(&photo);
+        assert_int_equal(unlink(path), 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(chunks),
         cmocka_unit_test(nothing_is_made_up),
+        cmocka_unit_test(depth_beside_an_original),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
