@@ -347,6 +347,15 @@ static void links_stay(void **state)
     place = refocus_file_place("link.ppm");
     assert_string_equal(place, "sub/a.ppm");
     free(place);
+    /* A link is read from its folder on, unless it begins at the root. */
+    assert_int_equal(symlink("a.ppm", "sub/beside.ppm"), 0);
+    assert_int_equal(symlink("/none/a.ppm", "sub/root.ppm"), 0);
+    place = refocus_file_place("sub/beside.ppm");
+    assert_string_equal(place, "sub/a.ppm");
+    free(place);
+    place = refocus_file_place("sub/root.ppm");
+    assert_string_equal(place, "/none/a.ppm");
+    free(place);
 }
 
 /* Temporary files for others to write: each is new, lies where a link points, is as open as the
