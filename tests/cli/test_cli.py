@@ -69,7 +69,8 @@ class Usage(Case):
                     '--focal-length --sensor-width --method --rays --iterations --quality '
                     '--aperture --blend --sigma --highlights --mirror --background --no-thin --fill --threads '
                     '--cpu --json --config --preset --settings --size --fullscreen --seconds -h --help --help-all',
-            'info': '--max-side --max-pixels --raw-preview --max-memory --json -h --help --help-all',
+            'info': '--near --far --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
+                    '--focal-length --sensor-width --max-side --max-pixels --raw-preview --max-memory --json -h --help --help-all',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
                        '--depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --upsample --depth-edges --orient-depth --matte --gain-map --no-dither --focus --focus-at --focus-rectangle '
                        '--focus-distance --blur --f-number --focal-length --sensor-width --rays --iterations '
@@ -123,8 +124,8 @@ class Usage(Case):
         self.fails(2, 'two.ppm: one file too many; give refocus sheet PHOTO -o OUT [options]',
                    'sheet', 'photo.ppm', 'two.ppm')
         self.fails(2, 'render: no file; give refocus render PHOTO... -o OUT [options]', 'render')
-        self.fails(2, 'info: no file; give refocus info FILE|- [--json]', 'info')
-        self.fails(2, 'info: a file name is empty; give refocus info FILE|- [--json]', 'info', '')
+        self.fails(2, 'info: no file; give refocus info FILE|- [options]', 'info')
+        self.fails(2, 'info: a file name is empty; give refocus info FILE|- [options]', 'info', '')
         self.fails(2, '-o: the output has no name; give -o OUT', 'render', 'photo.ppm')
         self.fails(2, re.compile("^refocus: --method: 'swep' is not one of " + ', '.join(METHODS) +
                                  ".*; did you mean 'sweep'\\?"),

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <refocus/refocus.h>
 #include "commands/commands.h"
+#include "commands/depth_of_field.h"
 #include "inputs/edges.h"
 #include "inputs/lens.h"
 #include "inputs/limits.h"
@@ -13,13 +14,15 @@
 
 struct settings {
     bool json;
-    struct limit_settings limits;
+    struct depth_settings depth;
+    struct lens_settings lens;
 };
 
 /* Findings from the pictures of a file. */
 struct findings {
     struct refocus_depth_report depth;
     struct refocus_depth_edges_report edges; /* struct_size 0: there is no photo, or no depth */
+    struct depth_of_field field;
 };
 
 static const struct option options[] = {
@@ -28,7 +31,11 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, json),
      .brief = "print it as one JSON object",
      .help = "print it as one JSON object; what is not known is null"},
-    LIMIT_OPTIONS(struct settings, limits),
+    DEPTH_RANGE_OPTIONS(struct settings, depth),
+    LIMIT_OPTIONS(struct settings, depth.limits),
+    {.kind = OPTION_HEADING, .help = "The lens whose depth of field is told"},
+    FOCUS_OPTIONS(struct settings, lens),
+    LENS_OPTIONS(struct settings, lens),
     {.help = NULL},
 };
 
@@ -204,6 +211,7 @@ static void print_text(const char *file, const struct refocus_photo *photo,
         printf("matte         %dx%d, the portrait's; render uses it unless told --matte none\n",
                (int)photo->matte->width, (int)photo->matte->height);
     print_defaults(photo, found);
+    depth_of_field_print(&found->field);
     for (int i = 0; i < info->evidence_count && i < REFOCUS_INFO_LINES; i++) {
         report_clean(clean, sizeof clean, info->evidence[i]);
         printf("%s %s\n", i == 0 ? "because      " : "             ", clean);
@@ -248,7 +256,7 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
     }
     return json_pack(
         "{s:o, s:s, s:o, s:o, s:i, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, "
-        "s:o, s:o, s:i, s:o}",
+        "s:o, s:o, s:i, s:o, s:o}",
         "file", report_text_json(file), "container", info->container, "picture",
         photo->image->plane[0] ? size_json(photo->image->width, photo->image->height) : json_null(),
         "stored",
@@ -263,7 +271,8 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
         "depth", depth, "matte",
         photo->matte->samples ? size_json(photo->matte->width, photo->matte->height) : json_null(),
         "evidence", evidence_json(info), "views", (int)info->views, "subject_distance",
-        report_metres_json(info->subject_distance));
+        report_metres_json(info->subject_distance), "depth_of_field",
+        depth_of_field_json(&found->field));
 }
 
 static int read_any(struct refocus_photo **photo, const char *file)
@@ -277,73 +286,103 @@ static int read_any(struct refocus_photo **photo, const char *file)
     return EXIT_DONE;
 }
 
-static int find_edges(const char *file, const struct refocus_image *photo,
-                      const uint16_t *disparity, const struct refocus_depth_map *map,
-                      struct refocus_depth_edges_report *edges)
+static bool lens_is_given(const struct lens_settings *lens)
 {
-    const struct refocus_disparity given =
-        refocus_disparity16(disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
-    uint16_t *placed = NULL;
-    const int status = edges_place(photo, &given, &placed, edges, file);
+    return input_focus_is_given(lens) || !isnan(lens->blur) || !isnan(lens->f_number);
+}
 
+/* The edges of the map on the photo's, and the depth of field that it has then. */
+static int measure_photo(struct input *input, const struct lens_settings *lens,
+                         struct findings *found)
+{
+    const struct refocus_depth_map *map = input->photo->depth;
+    const struct refocus_disparity given =
+        refocus_disparity16(input->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
+    uint16_t *placed = NULL;
+    int status =
+        edges_place(input->photo->image, &given, &placed, &found->edges, input->photo_name);
+
+    input->report = found->depth;
+    if (status == EXIT_DONE)
+        status = depth_of_field_find(input, lens, placed, &found->field);
     free(placed);
     return status;
 }
 
 /* The range of the depth map, its holes and its edges; a map of nothing but holes is worth
  * telling. */
-static int measure_depth(const char *file, const struct refocus_photo *photo,
+static int measure_depth(struct input *input, const struct settings *settings,
                          struct findings *found)
 {
-    const struct refocus_depth_map *map = photo->depth;
+    const struct refocus_repair_params params = refocus_repair_params_default();
+    const struct refocus_depth_map *map = input->photo->depth;
     struct refocus_depth_report *report = &found->depth;
     const uint64_t samples = (uint64_t)map->width * (uint64_t)map->height;
-    uint16_t *disparity = samples <= SIZE_MAX / 2 ? malloc((size_t)samples * 2) : NULL;
-    int status = disparity
-                     ? refocus_depth_to_disparity(map, disparity, (ptrdiff_t)map->width * 2, report)
-                     : REFOCUS_ERR_MEMORY;
-    int code = EXIT_DONE;
+    int status = input_settle_embedded(input, &settings->depth);
 
-    if (status == REFOCUS_OK && photo->image->plane[0])
-        code = find_edges(file, photo->image, disparity, map, &found->edges);
-    free(disparity);
-    if (status == REFOCUS_ERR_NO_DEPTH) {
-        report->unknown = samples;
-        status = REFOCUS_OK;
-    }
-    if (status != REFOCUS_OK)
-        return report_failure(EXIT_FAILED, file, "the depth map: %s", refocus_strerror(status));
-    return code;
+    if (status != EXIT_DONE)
+        return status;
+    input->disparity = samples <= SIZE_MAX / 2 ? malloc((size_t)samples * 2) : NULL;
+    status = input->disparity ? refocus_depth_repair(map, &params, input->disparity,
+                                                     (ptrdiff_t)map->width * 2, report)
+                              : REFOCUS_ERR_MEMORY;
+    if (status == REFOCUS_OK)
+        return input->photo->image->plane[0] ? measure_photo(input, &settings->lens, found)
+                                             : EXIT_DONE;
+    if (status != REFOCUS_ERR_NO_DEPTH)
+        return report_failure(EXIT_FAILED, input->photo_name, "the depth map: %s",
+                              refocus_strerror(status));
+    report->unknown = samples;
+    return EXIT_DONE;
+}
+
+static int measure(struct input *input, const struct settings *settings, struct findings *found)
+{
+    int status = EXIT_DONE;
+
+    if (input->photo->depth->samples)
+        status = measure_depth(input, settings, found);
+    if (status == EXIT_DONE && !found->field.known && lens_is_given(&settings->lens))
+        status = report_failure(EXIT_FAILED, input->photo_name,
+                                "it is no photo with depth, so that it has no depth of field; "
+                                "leave focus and blur out");
+    return status;
 }
 
 static int run(int argc, char **argv)
 {
-    struct settings settings = {.limits = LIMIT_SETTINGS_NONE};
-    struct refocus_photo *photo = NULL;
+    struct settings settings = {.depth = DEPTH_SETTINGS_NONE, .lens = LENS_SETTINGS_NONE};
     struct findings found = {.depth = refocus_depth_report_default()};
+    struct input input = {.width = 0};
     const char *files[2];
     int status;
 
     status = options_parse(&info_command, argc, argv, &settings, files);
     if (status != OPTIONS_PARSED)
         return status;
-    limits_take(&settings.limits);
-    status = read_any(&photo, files[0]);
-    if (status == EXIT_DONE && photo->depth->samples)
-        status = measure_depth(files[0], photo, &found);
+    status = input_check_depth(&settings.depth);
+    if (status == EXIT_DONE)
+        status = input_check_lens(&settings.lens);
+    if (status == EXIT_DONE)
+        status = read_any(&input.photo, files[0]);
+    if (status == EXIT_DONE) {
+        input.photo_name = input.depth_name = files[0];
+        input.depth_from = input.photo;
+        status = measure(&input, &settings, &found);
+    }
     if (status == EXIT_DONE && settings.json) {
-        status = report_print_json(make_json(files[0], photo, &found));
+        status = report_print_json(make_json(files[0], input.photo, &found));
     } else if (status == EXIT_DONE) {
-        print_text(files[0], photo, &found);
+        print_text(files[0], input.photo, &found);
         status = report_end_output();
     }
-    refocus_photo_free(&photo);
+    input_free(&input);
     return status;
 }
 
 const struct command info_command = {
     .name = "info",
-    .usage = "FILE|- [--json]",
+    .usage = "FILE|- [options]",
     .summary = "what depth, lens and orientation data a file carries, and why it is "
                "believed",
     .options = options,

@@ -85,8 +85,17 @@ int input_check_depth(const struct depth_settings *settings)
     return upsample_check(settings->upsample);
 }
 
-/* Put --near, --far and --depth-unit over what the photo says about its own depth. */
-static int settle_embedded(struct input *input, const struct depth_settings *settings)
+static int check_range(const struct input *input, const struct refocus_depth_map *map)
+{
+    if (map->near_m > 0 && map->far_m > 0 && map->near_m >= map->far_m)
+        return report_failure(EXIT_WRONG, input->depth_name,
+                              "near %g m is not nearer than far %g m; give --near and "
+                              "--far",
+                              map->near_m, map->far_m);
+    return EXIT_DONE;
+}
+
+int input_settle_embedded(struct input *input, const struct depth_settings *settings)
 {
     struct refocus_depth_map *map = input->photo->depth;
 
@@ -101,7 +110,7 @@ static int settle_embedded(struct input *input, const struct depth_settings *set
         map->near_m = settings->near_m;
     if (given(settings->far_m))
         map->far_m = settings->far_m;
-    return EXIT_DONE;
+    return check_range(input, map);
 }
 
 /* Follow the photo's edges to its size, with filled samples counting least. */
@@ -231,12 +240,8 @@ int input_convert(struct input *input, const struct depth_settings *settings)
 
     find_codes(settings->invalid, &flags);
     map->flags |= flags;
-
-    if (map->near_m > 0 && map->far_m > 0 && map->near_m >= map->far_m)
-        return report_failure(EXIT_WRONG, input->depth_name,
-                              "near %g m is not nearer than far %g m; give --near and "
-                              "--far",
-                              map->near_m, map->far_m);
+    if (check_range(input, map) != EXIT_DONE)
+        return EXIT_WRONG;
     if (bytes <= SIZE_MAX) {
         input->disparity = malloc((size_t)bytes);
         input->confidence = malloc((size_t)bytes / 2);
@@ -469,7 +474,7 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
             return report_no_depth(photo, input->photo);
         input->depth_name = photo;
         input->depth_from = input->photo;
-        status = settle_embedded(input, settings);
+        status = input_settle_embedded(input, settings);
     }
     if (status == EXIT_DONE && !settings->make)
         status = settle_shape(input, settings);

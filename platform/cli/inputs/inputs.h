@@ -66,6 +66,21 @@ struct depth_settings {
         .help = "depth map: PNG, PGM or JPEG of 8 or 16 bits, PFM, or a photo that "               \
                 "carries one; without it the depth that the photo itself carries"                  \
     }
+#define DEPTH_RANGE_OPTIONS(type, member)                                                          \
+    {.kind = OPTION_NUMBER,                                                                        \
+     .name = "--near",                                                                             \
+     .argument = "M",                                                                              \
+     .offset = offsetof(type, member.near_m),                                                      \
+     .least = 0,                                                                                   \
+     .above = true,                                                                                \
+     .greatest = 1e9,                                                                              \
+     .help = "metres of disparity 1; default: what the file says, else what is "                   \
+             "measured in distances"},                                                             \
+    {                                                                                              \
+        .kind = OPTION_NUMBER, .name = "--far", .argument = "M",                                   \
+        .offset = offsetof(type, member.far_m), .least = 0, .above = true, .greatest = INFINITY,   \
+        .help = "metres of disparity 0, also 'inf'; default as for --near"                         \
+    }
 #define DEPTH_UNIT_OPTIONS(type, member)                                                           \
     {.kind = OPTION_TEXT,                                                                          \
      .name = "--depth-unit",                                                                       \
@@ -75,20 +90,7 @@ struct depth_settings {
      .help = "what its samples are: disparity (bright = near), inverse (dark = "                   \
              "near), mm, m, or a number per metre such as 5000/m; default: what the "              \
              "file says, else disparity"},                                                         \
-        {.kind = OPTION_NUMBER,                                                                    \
-         .name = "--near",                                                                         \
-         .argument = "M",                                                                          \
-         .offset = offsetof(type, member.near_m),                                                  \
-         .least = 0,                                                                               \
-         .above = true,                                                                            \
-         .greatest = 1e9,                                                                          \
-         .help = "metres of disparity 1; default: what the file says, else what is "               \
-                 "measured in distances"},                                                         \
-    {                                                                                              \
-        .kind = OPTION_NUMBER, .name = "--far", .argument = "M",                                   \
-        .offset = offsetof(type, member.far_m), .least = 0, .above = true, .greatest = INFINITY,   \
-        .help = "metres of disparity 0, also 'inf'; default as for --near"                         \
-    }
+        DEPTH_RANGE_OPTIONS(type, member)
 #define DEPTH_WAYS_OPTIONS(type, member)                                                           \
     ESTIMATE_OPTIONS(type, member.model, member.network, NULL),                                    \
         {.kind = OPTION_TEXT,                                                                      \
@@ -196,6 +198,9 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
 
 /* Read a depth file, or the depth of a photo; input->photo is NULL afterwards. */
 int input_read_depth(struct input *input, const char *file, const struct depth_settings *settings);
+/* Put --near, --far and --depth-unit over what the photo says about its own depth. */
+int input_settle_embedded(struct input *input, const struct depth_settings *settings);
+
 /* Whether edges of the disparities go to the photo's: where there is a photo, unless the settings
  * say otherwise. */
 bool input_has_edges_placed(const struct input *input, const struct depth_settings *settings);

@@ -60,9 +60,8 @@ struct refocus_lens input_given_lens(const struct lens_settings *settings, int w
                                                         : 36 * width / larger};
 }
 
-/* The lens of --f-number; see the help of LENS_OPTIONS for what stands in for what. */
-static bool choose_lens(const struct input *input, const struct lens_settings *settings,
-                        struct refocus_lens *lens)
+bool input_lens(const struct input *input, const struct lens_settings *settings,
+                struct refocus_lens *lens)
 {
     const double width = input->photo->image->width, height = input->photo->image->height;
 
@@ -141,7 +140,7 @@ static void choose_default(const struct input *input, struct blur_choice *choice
     if (info && info->own_blur > 0) {
         choice->asked = info->own_blur * larger_side(input->photo->image);
     } else if (is_f_number(simulated.f_number) && range_is_known(input) &&
-               choose_lens(input, &simulated, &lens)) {
+               input_lens(input, &simulated, &lens)) {
         choice->f_number = simulated.f_number;
         choice->asked = refocus_max_blur_radius(&lens, &range, input->photo->image->width);
     } else {
@@ -190,7 +189,7 @@ static int choose_blur(const struct input *input, const struct lens_settings *se
     }
     if (range_is_known(input)) {
         choice->from = "lens";
-        if (choose_lens(input, settings, &lens))
+        if (input_lens(input, settings, &lens))
             choice->asked = refocus_max_blur_radius(&lens, &range, input->photo->image->width);
         else
             blur_without_lens(input, settings->f_number, choice);

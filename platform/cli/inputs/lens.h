@@ -108,6 +108,11 @@ int input_check_lens(const struct lens_settings *settings);
 /* The lens of --f-number and --focal-length, for pictures of this size. */
 struct refocus_lens input_given_lens(const struct lens_settings *settings, int width, int height);
 
+/* The lens of --f-number; see the help of LENS_OPTIONS for what stands in for what. Returns false
+ * where no focal length is known: then it has none. */
+bool input_lens(const struct input *input, const struct lens_settings *settings,
+                struct refocus_lens *lens);
+
 /* Whether the settings say what is in focus. */
 bool input_focus_is_given(const struct lens_settings *settings);
 
