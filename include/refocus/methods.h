@@ -107,9 +107,12 @@ struct refocus_scatter_params {
     uint32_t spread;      /**< enum refocus_spread; default evenly */
     float airy_radius;    /**< Lommel: first dark ring of a point in focus, 0.25 to 16 pixels,
                                default 1; in eq. 13 v = 3.8317 rho / airy_radius at rho pixels
-                               from the middle and u = 3.8317 r / airy_radius */
+                               from the middle and u = 3.8317 r / airy_radius. These are v and u of
+                               eq. 17 and 18 where it is 1.22 lambda N: 1.9 micrometres at f/2.8,
+                               15 at f/22, by the size of a pixel on the sensor */
     float depth_ratio;    /**< z1 / z0, 1 to 1000, for the 1 / z^2 of eq. 20; 1 = all samples
-                               count the same, the default */
+                               count the same, the default, for the library does not know metres;
+                               the command takes them of the depth map */
 };
 
 static inline struct refocus_scatter_params refocus_scatter_params_default(void)
@@ -147,7 +150,8 @@ static inline struct refocus_interpolated_params refocus_interpolated_params_def
  *  refocus_foveated_params_default(). */
 struct refocus_foveated_params {
     uint32_t struct_size; /**< sizeof(struct refocus_foveated_params) */
-    float x, y;           /**< centre of attention, 0 to 1 of width and height; default 0.5 */
+    float x, y;           /**< centre of attention, 0 to 1 of width and height; default 0.5. The
+                             paper's is where the focus is found, which the caller knows */
     float angle;          /**< across the volume of attention, 0 to 170 degrees; default 10 */
     float picture_angle;  /**< the angle that the picture's width is seen at, 1 to 170 degrees;
                              default 50 */

@@ -33,6 +33,49 @@ class Controls(Case):
                        *self.render(option, value, *more))
 
 
+class OfThePhoto(Controls):
+    """What single methods take of the photo where no option says it."""
+    def of(self, depth, *arguments):
+        self.succeeds('render', 'photo.ppm', '--depth', depth, '-o', 'out.ppm', '--blur', '6', *arguments)
+        return pictures.read_bytes('out.ppm')
+
+    def test_scatter_by_metres(self):
+        """1 / z^2 by near and far, where they are metres: 0.5 and 2 m are a ratio of 4."""
+        scatter = ('--method', 'scatter', '--focus', '0.4')
+        of_metres = self.of('metres.pfm', *scatter, '--depth-unit', 'm')
+        self.same(of_metres, self.of('metres.pfm', *scatter, '--depth-unit', 'm', '--depth-ratio', '4'))
+        self.differs(of_metres,
+                     self.of('metres.pfm', *scatter, '--depth-unit', 'm', '--depth-ratio', '1'))
+        relative = self.of('depth.pgm', *scatter)
+        self.same(relative, self.of('depth.pgm', *scatter, '--depth-ratio', '1'))
+        self.same(self.of('depth.pgm', *scatter, '--near', '0.5', '--far', '5'),
+                  self.of('depth.pgm', *scatter, '--depth-ratio', '10'))
+        self.same(self.of('depth.pgm', *scatter, '--near', '0.5', '--far', 'inf'),
+                  self.of('depth.pgm', *scatter, '--depth-ratio', '1000'))
+        scores = self.reports('compare', 'photo.ppm', '--depth', 'metres.pfm', '--depth-unit', 'm',
+                              '--reference', 'out.ppm', '--blur', '6', '--focus', '0.4', '--methods',
+                              'scatter,scatter:depth-ratio=4,scatter:depth-ratio=1')['methods']
+        self.assertEqual(scores[1]['rmse'], scores[2]['rmse'])
+        self.assertNotEqual(scores[1]['rmse'], scores[3]['rmse'])
+
+    def test_attention_follows_the_focus(self):
+        """What is focused on is what is looked at, unless it is said."""
+        foveated = ('--method', 'foveated', '--attention-angle', '8')
+        at = self.of('ramp.pgm', *foveated, '--focus-at', '36,9')
+        focus = str(self.reports('render', 'photo.ppm', '--depth', 'ramp.pgm', '-o', 'out.ppm',
+                                 '--focus-at', '36,9')['focus'])
+        self.same(at, self.of('ramp.pgm', *foveated, '--focus', focus, '--attention', '36,9'))
+        middle = self.of('ramp.pgm', *foveated, '--focus', focus)
+        self.differs(at, middle)
+        self.same(self.of('ramp.pgm', *foveated, '--focus-at', '36,9', '--attention', '3,3'),
+                  self.of('ramp.pgm', *foveated, '--focus', focus, '--attention', '3,3'))
+        rectangle = ('--focus-rectangle', '30,4,13,11')
+        focus = str(self.reports('render', 'photo.ppm', '--depth', 'ramp.pgm', '-o', 'out.ppm',
+                                 *rectangle)['focus'])
+        self.same(self.of('ramp.pgm', *foveated, *rectangle),
+                  self.of('ramp.pgm', *foveated, '--focus', focus, '--attention', '36,9'))
+
+
 class Limits(Controls):
     def test_numbers(self):
         nonsense = ['x', '1x', '0x1', 'nan', ' 1', '1,5', '-', 'inf']

@@ -215,7 +215,8 @@ class Live(unittest.TestCase):
         focused = [['--focus', '0.4', '--blur', '5', *look] for look in looks]
         focused += [['--focus-distance', '2', '--blur', '5'],
                     ['--focus-distance', '2', '--f-number', '2', '--focal-length', '90'],
-                    ['--focus-at', '9,9', '--tilt-angle', '30', '--blur', '5']]
+                    ['--focus-at', '9,9', '--tilt-angle', '30', '--blur', '5'],
+                    ['--focus-at', '9,9', '--method', 'foveated', '--blur', '5']]
         pictures = set()
         for look in focused:
             done = subprocess.run([REFOCUS, 'render', 'photo.ppm', *common, '--quality', 'preview',

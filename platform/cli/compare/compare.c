@@ -7,6 +7,7 @@
 #include "compare/compare_picture.h"
 #include "compare/compare_list.h"
 #include "shot/engine.h"
+#include "shot/shot.h"
 #include "inputs/inputs.h"
 #include "inputs/matte.h"
 #include "inputs/lens.h"
@@ -156,9 +157,10 @@ static int score(struct comparison *c, const uint8_t *mask, int border)
 }
 
 static int render_all(struct engine *engine, struct comparison *c, const struct variants *variants,
-                      const struct refocus_image *photo, int repeat)
+                      const struct input *input, const struct settings *settings)
 {
     const struct refocus_settings lens = engine->params;
+    const struct refocus_image *photo = input->photo->image;
 
     for (int i = 0; i < variants->count; i++) {
         const struct variant *variant = &variants->variant[i];
@@ -174,10 +176,11 @@ static int render_all(struct engine *engine, struct comparison *c, const struct 
             status = papers_place(&variant->settings.papers, params, photo->width, photo->height);
         if (status != EXIT_DONE)
             return status;
+        shot_suit_papers(input, &settings->lens, &variant->settings.papers, params);
         out.plane[0] = c->item[c->count - 1].rgb;
         out.stride[0] = (ptrdiff_t)photo->width * 3;
         report_progress(refocus_method_name(params->render.method), (i + 0.5) / variants->count);
-        status = engine_render(engine, &out, repeat);
+        status = engine_render(engine, &out, (int)settings->engine.repeat);
         if (status != EXIT_DONE)
             return status;
         c->item[c->count - 1].ms = engine->render_ms;
@@ -286,7 +289,7 @@ static int compare(struct engine *engine, struct input *input, struct comparison
     if (status == EXIT_DONE)
         status = add(c, "photo", photo, true);
     if (status == EXIT_DONE)
-        status = render_all(engine, c, variants, photo, (int)settings->engine.repeat);
+        status = render_all(engine, c, variants, input, settings);
     if (status == EXIT_DONE &&
         quality_edge_mask(prepared, c->width, c->height, focus, blur, mask) != 0)
         status = report_failure(EXIT_FAILED, "compare", "not enough memory");

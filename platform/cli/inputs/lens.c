@@ -312,12 +312,35 @@ static int focus_at_distance(const struct input *input, double metres, double *f
     return EXIT_DONE;
 }
 
+void input_focus_point(const struct input *input, const struct lens_settings *settings,
+                       double at[2])
+{
+    const int width = input->photo->image->width, height = input->photo->image->height;
+    const struct refocus_photo_info *info = input->photo->info;
+    const double *const rectangle = settings->focus_rectangle;
+
+    at[0] = at[1] = NAN;
+    if (given(settings->focus) || given(settings->focus_distance))
+        return;
+    if (given(rectangle[0])) {
+        at[0] = fmin(floor(rectangle[0] + rectangle[2] / 2), width - 1);
+        at[1] = fmin(floor(rectangle[1] + rectangle[3] / 2), height - 1);
+    } else if (given(settings->focus_at[0])) {
+        at[0] = settings->focus_at[0];
+        at[1] = settings->focus_at[1];
+    } else if (info->focus_x >= 0 && info->focus_x <= 1 && info->focus_y >= 0 &&
+               info->focus_y <= 1 && (info->focus_x > 0 || info->focus_y > 0)) {
+        at[0] = fmin(info->focus_x * width, width - 1);
+        at[1] = fmin(info->focus_y * height, height - 1);
+    }
+}
+
 int input_focus(const struct input *input, const struct lens_settings *settings,
                 const uint16_t *prepared, double *focus)
 {
     const int width = input->photo->image->width, height = input->photo->image->height;
     const struct refocus_photo_info *info = input->photo->info;
-    double x = width / 2, y = height / 2;
+    double at[2];
 
     if (given(settings->focus)) {
         *focus = settings->focus;
@@ -327,24 +350,24 @@ int input_focus(const struct input *input, const struct lens_settings *settings,
         return focus_at_distance(input, settings->focus_distance, focus);
     if (given(settings->focus_rectangle[0]))
         return focus_in_rectangle(input, settings->focus_rectangle, prepared, focus);
+    input_focus_point(input, settings, at);
     if (given(settings->focus_at[0])) {
-        x = settings->focus_at[0];
-        y = settings->focus_at[1];
-        if (!(x >= 0 && x < width && y >= 0 && y < height))
+        if (!(at[0] >= 0 && at[0] < width && at[1] >= 0 && at[1] < height))
             return report_failure(EXIT_WRONG, "--focus-at",
-                                  "%g,%g lies outside of %s; give 0,0 to %d,%d", x, y,
+                                  "%g,%g lies outside of %s; give 0,0 to %d,%d", at[0], at[1],
                                   input->photo_name, width - 1, height - 1);
-    } else if (info->focus_x >= 0 && info->focus_x <= 1 && info->focus_y >= 0 &&
-               info->focus_y <= 1 && (info->focus_x > 0 || info->focus_y > 0)) {
-        x = fmin(info->focus_x * width, width - 1);
-        y = fmin(info->focus_y * height, height - 1);
+    } else if (given(at[0])) {
+        /* the file says where */
     } else if (info->focus_distance > 0 && input->depth_from == input->photo &&
                range_is_known(input)) {
         const struct refocus_depth_range range = {input->report.near_m, input->report.far_m};
 
         *focus = fmin(fmax(refocus_disparity_of_depth(&range, info->focus_distance), 0), 1);
         return EXIT_DONE;
+    } else {
+        at[0] = width / 2;
+        at[1] = height / 2;
     }
-    *focus = input_surface_at(prepared, width, height, (int)x, (int)y);
+    *focus = input_surface_at(prepared, width, height, (int)at[0], (int)at[1]);
     return EXIT_DONE;
 }

@@ -134,6 +134,11 @@ json_t *input_blur_json(const struct input *input, const struct lens_settings *s
 int input_focus(const struct input *input, const struct lens_settings *settings,
                 const uint16_t *prepared, double *focus);
 
+/* The pixel where the focus is found, by the settings or the file; NAN: it is not found at one, or
+ * at the centre because nothing says where. */
+void input_focus_point(const struct input *input, const struct lens_settings *settings,
+                       double at[2]);
+
 /* The disparity of the surface at a pixel: refocus_focus_at_point(). */
 double input_surface_at(const uint16_t *disparity, int width, int height, int x, int y);
 

@@ -154,6 +154,13 @@ bool live_focus_point(struct live_focus *focus, double point[2])
     return wanted;
 }
 
+void live_focus_looked_at(struct live_focus *focus, double point[2])
+{
+    pthread_mutex_lock(&focus->lock);
+    memcpy(point, focus->to.point, sizeof focus->to.point);
+    pthread_mutex_unlock(&focus->lock);
+}
+
 static bool same_point(const double a[2], const double b[2])
 {
     return (a[0] == b[0] && a[1] == b[1]) || (isnan(a[0]) && isnan(b[0]));
@@ -237,7 +244,7 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest, 
 {
     const bool point = strcmp(word, "focus-at") == 0 || strcmp(word, "pull-at") == 0;
     double values[2] = {0, 0}, seconds = strncmp(word, "pull", 4) == 0 ? 1 : 0;
-    struct live_target target = {.known = !point};
+    struct live_target target = {.known = !point, .point = {NAN, NAN}};
 
     if (strcmp(word, "blur") != 0 && strcmp(word, "focus") != 0 && strcmp(word, "pull") != 0 &&
         !point) {

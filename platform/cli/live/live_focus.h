@@ -44,6 +44,8 @@ void live_focus_frame(struct live_focus *focus, int64_t now_ns, double lens_diop
                       struct live_range *range);
 /* Whether there is a point to look up in that frame, for live_focus_found(). */
 bool live_focus_point(struct live_focus *focus, double point[2]);
+/* The pixel that is focused on, or will be after the pull; NAN: none was said. */
+void live_focus_looked_at(struct live_focus *focus, double point[2]);
 void live_focus_found(struct live_focus *focus, const double point[2], double disparity);
 /* The disparity in focus and the blur that hold for that frame. */
 void live_focus_get(struct live_focus *focus, double *disparity, double *blur);

@@ -68,15 +68,21 @@ int live_look_place(struct live *live, int width, int height)
     return status;
 }
 
-int live_look_aim(const struct live *live, const struct refocus_image *photo,
+int live_look_aim(struct live *live, const struct refocus_image *photo,
                   struct refocus_settings *params)
 {
     const struct engine *const engine = live->engine;
+    const struct live_range *const range = &live->range;
     const double *const at = live->settings->lens.focus_at;
     const struct refocus_disparity size =
         refocus_disparity16(NULL, photo->width, photo->height, 2 * (ptrdiff_t)photo->width);
     struct controls aimed = engine->controls;
+    double looked_at[2];
 
+    live_focus_looked_at(&live->focus, looked_at);
+    papers_suit(&live->settings->engine.papers,
+                live_range_is_known(range) ? range->near / range->far : NAN, looked_at,
+                photo->width, photo->height, params);
     params->field.disparity = isnan(engine->field_disparity) ? params->render.focus_disparity
                                                              : (float)engine->field_disparity;
     if (!isnan(at[0]))

@@ -14,7 +14,7 @@ int live_look_check_method(const struct live *live);
 /* The pixels that options name in pictures of this size, and the blur of the lens. */
 int live_look_place(struct live *live, int width, int height);
 /* The settings of one frame, whose focus and blur are in them. */
-int live_look_aim(const struct live *live, const struct refocus_image *photo,
+int live_look_aim(struct live *live, const struct refocus_image *photo,
                   struct refocus_settings *params);
 
 /* Whether focus or blur need a depth in metres, and what to say where it is in none. */

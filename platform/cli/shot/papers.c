@@ -136,6 +136,12 @@ int papers_apply(const struct paper_settings *settings, struct refocus_settings 
     return read_map(settings, params, map);
 }
 
+/* A pixel's place along a side, 0 to 1; one beyond the picture is taken for its border. */
+static float part_of(double at, int side)
+{
+    return (float)(side > 1 ? fmin(fmax(at / (side - 1), 0), 1) : 0.5);
+}
+
 static int place(const char *name, const double at[2], int width, int height, float *x, float *y)
 {
     if (isnan(at[0]))
@@ -144,9 +150,20 @@ static int place(const char *name, const double at[2], int width, int height, fl
         return report_failure(EXIT_WRONG, name,
                               "%g,%g lies outside of the picture; give 0,0 to %d,%d", at[0], at[1],
                               width - 1, height - 1);
-    *x = (float)(width > 1 ? at[0] / (width - 1) : 0.5);
-    *y = (float)(height > 1 ? at[1] / (height - 1) : 0.5);
+    *x = part_of(at[0], width);
+    *y = part_of(at[1], height);
     return EXIT_DONE;
+}
+
+void papers_suit(const struct paper_settings *settings, double depth_ratio,
+                 const double looked_at[2], int width, int height, struct refocus_settings *params)
+{
+    if (isnan(settings->depth_ratio) && depth_ratio >= 1)
+        params->scatter.depth_ratio = (float)fmin(depth_ratio, 1000);
+    if (!isnan(settings->attention[0]) || isnan(looked_at[0]))
+        return;
+    params->foveated.x = part_of(looked_at[0], width);
+    params->foveated.y = part_of(looked_at[1], height);
 }
 
 int papers_place(const struct paper_settings *settings, struct refocus_settings *params, int width,

@@ -64,7 +64,7 @@ const char *papers_solver_name(uint32_t index);
                      .needs = "--spread"),                                                         \
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--depth-ratio", "Q", depth_ratio, 1, 1000,      \
                      "scatter: far / near metres, for light that falls with the square "           \
-                     "of the distance; default 1, not at all",                                     \
+                     "of the distance; default: by the photo's metres; 1, not at all, without",    \
                      OF_METHODS(type, method, OF_SCATTER)),                                        \
         PAPER_NUMBER(type, member, OPTION_INTEGER, "--star", "N", star, 0, 16,                     \
                      "sweep, scatter: spikes of a star filter, 0 or 2 to 16; default 0",           \
@@ -88,9 +88,11 @@ const char *papers_solver_name(uint32_t index);
                      "interpolated: r2, radius of the last picture / c0, above 1; "                \
                      "default: the largest blur",                                                  \
                      OF_METHODS(type, method, OF_INTERPOLATED)),                                   \
-        PAPER_NUMBER(type, member, OPTION_NUMBERS, "--attention", "X,Y", attention, 0, 65535,      \
-                     "foveated: pixel that is looked at; default the centre",                      \
-                     OF_METHODS(type, method, OF_FOVEATED)),                                       \
+        PAPER_NUMBER(                                                                              \
+            type, member, OPTION_NUMBERS, "--attention", "X,Y", attention, 0, 65535,               \
+            "foveated: pixel that is looked at; default: where the focus is found, as by "         \
+            "--focus-at, else the centre",                                                         \
+            OF_METHODS(type, method, OF_FOVEATED)),                                                \
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--attention-angle", "DEG", attention_angle, 0,  \
                      170, "foveated: across the exact part; default 10",                           \
                      OF_METHODS(type, method, OF_FOVEATED)),                                       \
@@ -140,6 +142,11 @@ int papers_apply(const struct paper_settings *settings, struct refocus_settings 
 /* The parts that need the photo's size. */
 int papers_place(const struct paper_settings *settings, struct refocus_settings *params, int width,
                  int height);
+
+/* Set what single methods take of a photo where no option says it: `scatter` far / near metres,
+ * `foveated` the pixel where the focus is. NAN: not known. */
+void papers_suit(const struct paper_settings *settings, double depth_ratio,
+                 const double looked_at[2], int width, int height, struct refocus_settings *params);
 
 /* A grey picture from a file, one byte a pixel and no padding, to be freed. */
 uint8_t *papers_read_grey(const char *file, int *width, int *height);

@@ -27,6 +27,18 @@ int shot_aim(const struct input *input, const struct lens_settings *lens,
     return controls_aim(&aimed, params, &map);
 }
 
+void shot_suit_papers(const struct input *input, const struct lens_settings *lens,
+                      const struct paper_settings *papers, struct refocus_settings *params)
+{
+    const struct refocus_image *photo = input->photo->image;
+    const double near_m = input->report.near_m, far_m = input->report.far_m;
+    double looked_at[2];
+
+    input_focus_point(input, lens, looked_at);
+    papers_suit(papers, near_m > 0 ? far_m / near_m : NAN, looked_at, photo->width, photo->height,
+                params);
+}
+
 static int choose_focus(struct shot *shot, const struct lens_settings *lens)
 {
     const struct refocus_image *photo = shot->input.photo->image;
@@ -144,6 +156,7 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     status = engine_create(&shot->engine, &settings->engine, image->width, image->height,
                            fmax(blur, most_blur));
     shot->engine.params.render.max_blur_radius = (float)blur;
+    shot_suit_papers(&shot->input, &settings->lens, &settings->engine.papers, &shot->engine.params);
     if (status == EXIT_DONE)
         status = engine_prepare(&shot->engine, &scene);
     return status == EXIT_DONE ? choose_focus(shot, &settings->lens) : status;

@@ -62,6 +62,10 @@ enum { SHOT_INPUTS = 13 };
 int shot_inputs(const struct shot_settings *settings, const char *photo,
                 const char *inputs[SHOT_INPUTS]);
 
+/* Set what single methods take of the photo where no option says it: papers_suit(). */
+void shot_suit_papers(const struct input *input, const struct lens_settings *lens,
+                      const struct paper_settings *papers, struct refocus_settings *params);
+
 /* Focus by the settings and packed disparities of the photo's size, and the plane of
  * focus through it. */
 int shot_aim(const struct input *input, const struct lens_settings *lens,
