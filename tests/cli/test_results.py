@@ -760,6 +760,8 @@ class Papers(Case):
         self.assertAlmostEqual(sum(report['found_after']) + report['never'], 1)
         self.assertGreater(report['found_after'][0], 0.5)
         self.assertGreater(report['hidden'], 0)
+        for set_of_all, own in zip(report['in_set'], report['front_most']):
+            self.assertGreaterEqual(set_of_all, own)  # both may lie a pixel beside
         text = self.succeeds('bench', '--rays', '--size', '60x40', '--blur', '3')
         self.assertRegex(text, r'(?m)^ +1 +\d+\.\d+ %')
         report = self.reports('bench', '--rays', '5', '--size', '60x40', '--repeat', '1')

@@ -211,12 +211,42 @@ static void test_bad_arguments(void **state)
     assert_true(isnan(refocus_max_blur_radius(&good, NULL, 100)));
 }
 
+/* Mulder & van Liere 2000, section 2: the circle on the retina, and as large on a screen as it has
+ * to look. A pupil of E is the lens with f / N = E whose picture is seen at the same angle; the
+ * distances of retina and screen do not matter. */
+static void test_pupil(void **state)
+{
+    const double pupil = 0.008, retina = 0.017, angle = 50 * 3.14159265358979323846 / 180;
+    const double screen_m[] = {0.4, 2}, depth_m[] = {0.33, 0.9, 1.47}, width = 512;
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        for (int j = 0; j < 3; j++) {
+            const double focus = 0.83, d = depth_m[j];
+            const double power = 1 / (1 / focus + 1 / retina); /* P */
+            const double vd = power * d / (d - power), vf = power * focus / (focus - power);
+            const double on_retina = fabs(vd - vf) * pupil / vd;
+            const double on_screen = screen_m[i] / retina * on_retina;
+            const double pixels = on_screen * width / (2 * screen_m[i] * tan(angle / 2));
+            const double focal_length_mm = 18 / tan(angle / 2);
+            const struct refocus_lens lens = {focal_length_mm, focal_length_mm / 1000 / pupil, 36};
+            const struct refocus_depth_range range = {fmin(d, focus), fmax(d, focus)};
+
+            assert_close(2 * refocus_max_blur_radius(&lens, &range, width), pixels, 1e-12);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_potmesil_table),   cmocka_unit_test(test_hyperfocal),
-        cmocka_unit_test(test_reference_scenes), cmocka_unit_test(test_circle_of_confusion),
-        cmocka_unit_test(test_round_trips),      cmocka_unit_test(test_bad_arguments),
+        cmocka_unit_test(test_potmesil_table),
+        cmocka_unit_test(test_hyperfocal),
+        cmocka_unit_test(test_reference_scenes),
+        cmocka_unit_test(test_circle_of_confusion),
+        cmocka_unit_test(test_round_trips),
+        cmocka_unit_test(test_bad_arguments),
+        cmocka_unit_test(test_pupil),
     };
     return cmocka_run_group_tests_name("lens", tests, NULL, NULL);
 }

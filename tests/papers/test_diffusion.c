@@ -140,9 +140,126 @@ static void terms(void **state)
     }
 }
 
+/* Eq. 3 of the paper, over every edge pixel. */
+static double extrapolated(const struct rf_diffusion_layer *layer, int count, int x, int y)
+{
+    double sum = 0, weight = 0;
+
+    for (int i = 0; i < count; i++) {
+        const double dx = (double)layer->edge_x[i] - x, dy = (double)layer->edge_y[i] - y;
+        const double g = 1 / (dx * dx + dy * dy);
+
+        sum += g * (double)layer->edge_radius[i];
+        weight += g;
+    }
+    return sum / weight;
+}
+
+/* Edge pixels farther than a tile count together, a tile of them at a time: how far that is from
+ * eq. 3. Two objects, the one with blur that goes up and down along its edge. */
+static void lumped_edges(void **state)
+{
+    enum { W = 150, H = 110, TILES_X = (W + 15) / 16, TILES_Y = (H + 15) / 16 };
+    static uint8_t member[W * H];
+    static uint16_t rings[W * H];
+    static float radius[W * H], outside[W * H], x[W * H], y[W * H], blur[W * H];
+    static struct rf_edge_tile tile[TILES_X * TILES_Y];
+    static struct rf_span span[H];
+    const struct rf_viewport view = {.width = W, .height = H, .stride = W};
+    const struct rf_executor exec = {.run = NULL};
+    const struct rf_frame f = {.exec = &exec, .view = &view};
+    struct rf_diffusion_layer layer = {.f = &f,
+                                       .member = member,
+                                       .number = 1,
+                                       .radius = radius,
+                                       .outside = outside,
+                                       .rings = rings,
+                                       .span = span,
+                                       .stride = W,
+                                       .edge_x = x,
+                                       .edge_y = y,
+                                       .edge_radius = blur,
+                                       .tile = tile,
+                                       .tiles_x = TILES_X,
+                                       .tiles_y = TILES_Y};
+    double worst = 0, sum = 0;
+    int count = 0, pixels = 0;
+
+    (void)state;
+    for (int i = 0; i < W * H; i++) {
+        const int px = i % W, py = i / W;
+
+        member[i] = hypot(px - 40, py - 50) < 25 || (px > 95 && px < 130 && py > 30 && py < 80);
+        radius[i] = px < 75 ? 10 + 8 * sinf((float)py / 6) : 25;
+    }
+    assert_true(rf_layer_grow(&layer));
+    rf_layer_list_edge(&layer);
+    for (int i = 0; i < TILES_X * TILES_Y; i++)
+        count += tile[i].count;
+    for (int i = 0; i < TILES_X * TILES_Y; i++)
+        rf_layer_extrapolate_tile(&layer, i);
+    for (int i = 0; i < W * H; i++) {
+        if (rings[i] == 0 || rings[i] > layer.reach)
+            continue;
+        const double exact = extrapolated(&layer, count, i % W, i / W);
+        const double error = fabs((double)outside[i] / exact - 1);
+
+        worst = fmax(worst, error);
+        sum += error;
+        pixels++;
+    }
+    printf("diffusion, eq. 3 with lumped edges: %d pixels, %.3f %% off in the mean, %.2f %% at "
+           "most\n",
+           pixels, 100 * sum / pixels, 100 * worst);
+    assert_true(pixels > W * H / 2);
+    assert_true(worst > 0); /* they are lumped */
+    assert_true(worst < 0.05 && sum / pixels < 0.006);
+}
+
+/* What a blurred object uncovers is the layer below, which counts as whole wherever there is any of
+ * it: a red strip of 13 pixels before a green wall, both blurred, gives red of 13 pixels to a row,
+ * though the wall, cut out behind the strip, flows into the gap and is thin there. */
+static void under_layer(void **state)
+{
+    enum { SIDE = 96, STRIP = 13, RED = 240 };
+    struct picture p = picture_flat(SIDE, SIDE, (uint8_t[3]){0, RED, 0}, 0);
+    static uint8_t out[3 * SIDE * SIDE];
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, SIDE, SIDE, 3 * SIDE);
+    struct refocus_settings params = refocus_settings_default(0.4f, 12);
+    struct refocus_renderer *renderer;
+    int red = 0, mixed = 0;
+
+    (void)state;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        if (abs(i % SIDE - SIDE / 2) > STRIP / 2)
+            continue;
+        p.disparity[i] = 65535;
+        memcpy(p.rgb + 3 * i, (uint8_t[3]){RED, 0, 0}, 3);
+    }
+    renderer = prepared(&p, 12, 2);
+    params.render.method = REFOCUS_METHOD_DIFFUSION;
+    params.render.blend = REFOCUS_BLEND_STORED;
+    params.diffusion.layers = 2;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
+    for (int x = 0; x < SIDE; x++) {
+        const uint8_t *at = out + 3 * (SIDE / 2 * SIDE + x);
+
+        assert_true(abs(at[0] + at[1] - RED) <= 2); /* no black between them */
+        red += at[0];
+        mixed += at[0] > 30 && at[1] > 30;
+    }
+    printf("diffusion: red of %.2f pixels in a row, the strip has %d\n", (double)red / RED, STRIP);
+    assert_true(mixed >= 12);
+    assert_true(abs(red - STRIP * RED) < STRIP * RED * 3 / 100);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(figure_2), cmocka_unit_test(solvers),
-                                       cmocka_unit_test(terms)};
+                                       cmocka_unit_test(terms), cmocka_unit_test(lumped_edges),
+                                       cmocka_unit_test(under_layer)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

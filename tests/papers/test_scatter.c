@@ -82,6 +82,35 @@ static void airy(void **state)
     assert_true(fabs(rf_lommel(0.01, 0.009) - 1) < 1e-4);
 }
 
+/* Eq. 17 to 19 by the paper's quantities: lambda = 550 nm, N = F / d = 22, pixels of 2 micrometres.
+ * Where V_p lies z beyond the image plane at F, u = k (d / 2F)^2 z and the circle's radius is
+ * z / 2N; the middle is dark where u = 4 pi, and bright at half of that. */
+static void quantities(void **state)
+{
+    enum { REACH = 25 };
+    const double lambda = 0.55, N = 22, pixel = 2, k = 2 * pi / lambda;
+    const double airy_radius = 1.2197 * lambda * N / pixel; /* J1(3.8317) = 0 in eq. 12 */
+    double middle[2], around;
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        const double z = (i ? 2 : 4) * pi / (k / (4 * N * N));
+        uint32_t share[(2 * REACH + 1) * (REACH + 1)];
+        struct rf_spread_table table = {z / (2 * N) / pixel, REACH, share};
+
+        assert_true(table.radius > 10 && table.radius < REACH);
+        rf_spread_fill(&table, REFOCUS_SPREAD_LOMMEL, airy_radius, NULL);
+        middle[i] = share[REACH];
+        around = share[REACH + (int)(airy_radius + 0.5)];
+        /* eq. 18: v = k rho / 2N is 3.8317 a ring of Airy's from the middle */
+        if (i == 0)
+            assert_true(middle[0] < 0.1 * around);
+    }
+    assert_true(middle[1] > 10 * middle[0]);
+    for (int i = 1; i < 4; i++)
+        assert_true(fabs(k * i / (2 * N) / (3.8317 * i / (airy_radius * pixel)) - 1) < 1e-3);
+}
+
 /* The light of a circle that lands in pixels, of all of it: 1, for every table. */
 static void energy(void **state)
 {
@@ -175,8 +204,8 @@ static void point(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(lommel), cmocka_unit_test(airy),
-                                       cmocka_unit_test(energy), cmocka_unit_test(uniform_shares),
-                                       cmocka_unit_test(point)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(lommel),         cmocka_unit_test(airy),
+                                       cmocka_unit_test(quantities),     cmocka_unit_test(energy),
+                                       cmocka_unit_test(uniform_shares), cmocka_unit_test(point)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -70,9 +70,22 @@ static int search(const struct scene *s, struct hit p, double u, double v, int t
     return 0;
 }
 
-static uint8_t *mark(uint8_t set[SIDE][SIDE], struct hit p, struct hit q)
+static uint8_t *in_set(uint8_t set[SIDE][SIDE], struct hit p, struct hit q)
 {
     return &set[q.y - p.y + SIDE / 2][q.x - p.x + SIDE / 2];
+}
+
+/* Rounding may put the same surface a pixel away: a hit counts for its neighbours too. */
+static void mark(uint8_t set[SIDE][SIDE], struct hit p, struct hit q)
+{
+    for (int y = -1; y <= 1; y++)
+        for (int x = -1; x <= 1; x++)
+            *in_set(set, p, (struct hit){q.x + x, q.y + y}) = 1;
+}
+
+static bool is_beside(struct hit a, struct hit b)
+{
+    return abs(a.x - b.x) <= 1 && abs(a.y - b.y) <= 1;
 }
 
 static void look(const struct scene *s, struct hit p, const struct refocus_ray *ray, int rays,
@@ -81,7 +94,7 @@ static void look(const struct scene *s, struct hit p, const struct refocus_ray *
     memset(set, 0, (size_t)SIDE * SIDE);
     for (int n = 0; n < rays; n++) {
         if (trace(s, p, ray[n].u / 32768.0, ray[n].v / 32768.0, &front[n])) {
-            *mark(set, p, front[n]) = 1;
+            mark(set, p, front[n]);
         } else {
             front[n] = (struct hit){INT16_MIN, INT16_MIN};
             all->hidden++;
@@ -99,11 +112,10 @@ static void look(const struct scene *s, struct hit p, const struct refocus_ray *
         for (int T = 1; T <= RAYS_TESTS; T++) {
             const int valid = search(s, p, u, v, T, &q);
 
-            /* rounding may put the same surface a pixel away */
-            all->first[T - 1] += abs(q.x - front[n].x) <= 1 && abs(q.y - front[n].y) <= 1;
+            all->first[T - 1] += is_beside(q, front[n]);
             if (!valid && d_at(s, q) < d_at(s, p))
                 q = p;
-            all->in_set[T - 1] += *mark(set, p, q);
+            all->in_set[T - 1] += *in_set(set, p, q);
         }
     }
     all->rays += rays;

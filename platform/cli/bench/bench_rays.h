@@ -15,8 +15,8 @@ struct ray_statistics {
     long found[RAYS_TESTS];  /* first found after i + 1 tests */
     long never;              /* not within RAYS_TESTS */
     long first[RAYS_TESTS];  /* with i + 1 tests the result is the front-most hit, or beside it */
-    long in_set[RAYS_TESTS]; /* or it is the hit of another ray of p, once farther invalid ones are
-                                replaced */
+    long in_set[RAYS_TESTS]; /* or it is that of another ray of p, or beside it, once farther
+                                invalid ones are replaced */
 };
 
 /* disparity: packed. Returns 0, or -1 without memory. */
