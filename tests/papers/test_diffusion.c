@@ -216,9 +216,9 @@ static void lumped_edges(void **state)
     assert_true(worst < 0.05 && sum / pixels < 0.006);
 }
 
-/* What a blurred object uncovers is the layer below, which counts as whole wherever there is any of
- * it: a red strip of 13 pixels before a green wall, both blurred, gives red of 13 pixels to a row,
- * though the wall, cut out behind the strip, flows into the gap and is thin there. */
+/* The layer that a blurred object uncovers counts as whole wherever there is any of it: a red strip
+ * of 13 pixels before a green wall, both blurred, gives red of 13 pixels to a row, though the wall,
+ * cut out behind the strip, flows into the gap and is thin there. */
 static void under_layer(void **state)
 {
     enum { SIDE = 96, STRIP = 13, RED = 240 };
