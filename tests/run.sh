@@ -225,7 +225,7 @@ thread_stage() {
     say "thread sanitizer: $([ "$mode" = long ] && echo all tests || echo the tests with threads)"
     [ "$mode" = long ] || suites=(threads)
     CC=gcc CXX=g++ build tsan --buildtype=debugoptimized -Db_sanitize=thread -Db_lundef=false \
-        -Dopencv=disabled -Dlibcamera=disabled -Dgstreamer=disabled -Dexamples=false \
+        -Dopencv=disabled -Dlibcamera=disabled -Dgstreamer=disabled -Dgegl=disabled -Dexamples=false \
         "${one_set[@]}" || return
     # gcc 12's run time does not know kernels that place memory more randomly.
     if setarch -R true 2>/dev/null; then
@@ -348,6 +348,7 @@ need_packages python3-dev python3-numpy python3-distributed ||
     skip 'the package for Python' 'Python.h, numpy or Dask is missing'
 need_packages libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev gstreamer1.0-tools \
     gstreamer1.0-plugins-base gstreamer1.0-plugins-good || skip 'the element of GStreamer' 'GStreamer is missing'
+need_packages libgegl-dev gegl gimp || skip 'the operation of GEGL' 'GEGL or GIMP is missing'
 need_packages cmake || skip 'a program built by CMake' 'no cmake'
 need_packages abigail-tools || skip 'the ABI of the last release' 'no abidiff'
 need_packages clang-format || skip 'the layout of the source' 'no clang-format'

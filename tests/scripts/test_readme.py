@@ -139,6 +139,7 @@ class Readme(unittest.TestCase):
                   r'meson setup build && ninja -C build && meson test': 'headers/installed.sh',
                   r'cc program\.c ': 'headers/installed.sh',
                   r'gst-launch-1\.0 ': 'gstreamer/test_lines.py',
+                  r'gegl ': 'gegl/test_lines.py',
                   r'pip install \./platform/python': 'python/wheel.sh'}
         with open(os.path.join(ROOT, 'README.md'), encoding='utf-8') as file:
             text = re.sub(r'(?s)```.*?```', '', file.read())
