@@ -1,12 +1,18 @@
 #!/usr/bin/env bash
-# usage: gallery.sh BUILD
+# usage: gallery.sh BUILD [page [FOLDER]]
 # Makes the pictures of examples/gallery.md from the two scenes in examples/data: tilt-shift, two
 # focus bands, a field of blur, a focus pull, bokeh on night lights, sigma. Needs ImageMagick to crop and to put
-# pictures side by side.
+# pictures side by side. Then the page gallery.html, or with `page` that alone, here or in FOLDER, which needs
+# nothing but the command.
 set -eu -o pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$(cd "$1" && pwd)
 out=$top/examples/gallery
+. "$top/examples/gallery_page.sh"
+if [ "${2-}" = page ]; then
+    page_all "${3-$top/examples}"
+    exit
+fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$out"
@@ -77,3 +83,5 @@ for blend in stored gamma linear; do
 done
 night lamps --sigma off --highlight-stops 3
 save averaging $lights 300x200 blendstored.png blendgamma.png blendlinear.png lamps.png
+
+page_all "$top/examples"
