@@ -72,7 +72,7 @@ static void chunks(void **state)
     (void)state;
     for (int has_xmp = 0; has_xmp < 2; has_xmp++) {
         struct bytes packet = {NULL, 0}, png;
-        struct rf_png_chunk chunk;
+        struct rf_png_chunk chunk = {0};
 
         if (has_xmp) {
             packet = make_xmp("xmlns:q=\"q:\" q:a=\"kept\" GDepth:Near=\"1\"");
