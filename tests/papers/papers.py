@@ -71,8 +71,8 @@ LISTED = """\
 - NVIDIA: that the quick preview is the cheapest is measured, not claimed: the table has where it
   takes less time than `sweep` with 32 rays.
 - Mulder: level 3 spreads a pixel over 29x29 by the 5x5 filters alone; the paper counts 31x31. The
-  volume of attention is about the place where the focus is found (`--focus-at`, the file's focus
-  point, a tap), else the middle; an object's outline is not looked for. There are no options for
+  volume of attention is about the place where the focus is found (`--focus-at`, also of `live`, the
+  file's focus point), else the middle; an object's outline is not looked for. There are no options for
   pupil and screen, because they are a lens: a pupil of E mm is `--f-number F/E --focal-length F`, F =
   18 mm / tan(half the angle that the picture's larger side is seen at), wherever the screen is.
   Outside of the volume each pixel reads both pyramids, and what lies before the focus is composited

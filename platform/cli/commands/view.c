@@ -130,7 +130,6 @@ static void aim(void *of, const struct rf_view_state *state, struct refocus_sett
     const struct viewing *v = of;
     const struct refocus_image *photo = v->input.photo->image;
     const struct refocus_disparity size = {.width = photo->width, .height = photo->height};
-    const double looked_at[2] = {state->tap_x, state->tap_y};
     struct controls controls = v->engine.controls;
 
     if (!isnan(v->engine.field_disparity))
@@ -138,8 +137,6 @@ static void aim(void *of, const struct rf_view_state *state, struct refocus_sett
     if (state->focus_tap == 0)
         return;
     take_tap(&controls, photo, state);
-    papers_suit(&v->settings.shot.engine.papers, NAN, looked_at, photo->width, photo->height,
-                params);
     params->focus.tilt_x = params->focus.tilt_y = 0.5f;
     params->focus.tilt_across = params->focus.tilt_down = 0;
     controls_aim(&controls, params, &size); /* a line within the photo needs no depth */
@@ -158,14 +155,6 @@ static int save_settings(void *of, const struct rf_view_result *result, const ch
         take_tap(&aimed, v->input.photo->image, result->state);
     else if (!isnan(v->settings.shot.lens.focus_at[0]))
         controls_turn_about(&aimed, v->input.photo->image, v->settings.shot.lens.focus_at[1]);
-    if (lens->render.method == REFOCUS_METHOD_FOVEATED) {
-        const struct refocus_image *photo = v->input.photo->image;
-
-        settings.shot.engine.papers.attention[0] =
-            floor((double)lens->foveated.x * (photo->width - 1) + 0.5);
-        settings.shot.engine.papers.attention[1] =
-            floor((double)lens->foveated.y * (photo->height - 1) + 0.5);
-    }
     memcpy(controls->focus_plane, aimed.focus_plane, sizeof controls->focus_plane);
     memcpy(controls->tilt_line, aimed.tilt_line, sizeof controls->tilt_line);
     settings.shot.lens = (struct lens_settings)LENS_SETTINGS_NONE;
@@ -191,7 +180,6 @@ static int choose_state(struct viewing *v, struct rf_view_state *state)
     params->render.max_blur_radius = (float)blur;
     if (status == EXIT_DONE)
         status = papers_place(&shot->engine.papers, params, photo->width, photo->height);
-    shot_suit_papers(&v->input, &shot->lens, &shot->engine.papers, params);
     if (status == EXIT_DONE)
         status = shot_aim(&v->input, &shot->lens, &v->engine.controls, disparity, params);
     if (status == EXIT_DONE)

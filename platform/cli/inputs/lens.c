@@ -330,8 +330,8 @@ void input_focus_point(const struct input *input, const struct lens_settings *se
         at[1] = settings->focus_at[1];
     } else if (info->focus_x >= 0 && info->focus_x <= 1 && info->focus_y >= 0 &&
                info->focus_y <= 1 && (info->focus_x > 0 || info->focus_y > 0)) {
-        at[0] = fmin(info->focus_x * width, width - 1);
-        at[1] = fmin(info->focus_y * height, height - 1);
+        at[0] = floor(fmin(info->focus_x * width, width - 1));
+        at[1] = floor(fmin(info->focus_y * height, height - 1));
     }
 }
 
