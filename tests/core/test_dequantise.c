@@ -44,7 +44,7 @@ static void steps_of_maps(void **state)
     assert_int_equal(rf_code_step(&d), 0);
     draw(map, 257);
     assert_int_equal(rf_code_step(&d), 257);
-    for (int y = 0; y < HEIGHT; y++) /* Samples behind its rows are not of the map. */
+    for (int y = 0; y < HEIGHT; y++) /* samples behind its rows are not of the map */
         map[y * WIDTH + WIDTH - 1] = (uint16_t)(53000 + 500 * (y % 25));
     d.width = WIDTH - 1;
     assert_int_equal(rf_code_step(&d), 257);

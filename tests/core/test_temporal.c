@@ -330,8 +330,7 @@ static void vectors_spread(void **state)
         rf_find_motion(motion, &now, &last, W, H);
         for (int i = 0; i < COLUMNS - 1; i++)
             assert_int_equal(motion[i].x == 7 && motion[i].y == 5, known && i >= FIRST);
-        for (int y = 1; known && y < ROWS - 1;
-             y++) /* It spreads leftwards, too, from row to row. */
+        for (int y = 1; known && y < ROWS - 1; y++) /* leftwards from row to row */
             for (int i = FIRST - y > 0 ? FIRST - y : 0; i < COLUMNS - 1; i++)
                 assert_true(motion[y * COLUMNS + i].x == 7 && motion[y * COLUMNS + i].y == 5);
     }

@@ -80,6 +80,32 @@ static void sources_of_nothing(void **state)
     refocus_source_close(&source);
 }
 
+/* Each number of what is wanted by itself out of its range. */
+static void wishes_out_of_range(void **state)
+{
+    struct refocus_source *source = NULL;
+    const struct refocus_source_config good = refocus_source_config_default();
+    struct refocus_source_config bad[9];
+
+    (void)state;
+    for (int i = 0; i < 9; i++)
+        bad[i] = good;
+    bad[0].format = REFOCUS_FRAME_FORMAT_COUNT;
+    bad[1].width = -1;
+    bad[2].width = REFOCUS_MAX_SIDE + 1;
+    bad[3].height = -1;
+    bad[4].height = REFOCUS_MAX_SIDE + 1;
+    bad[5].fps = -1;
+    bad[6].fps = (double)NAN;
+    bad[7].buffers = 1;
+    bad[8].flags = 16;
+    assert_status(refocus_source_open(&source, "replay::size 16x12", NULL), REFOCUS_OK);
+    for (int i = 0; i < 9; i++)
+        assert_status(refocus_source_start(source, &bad[i], NULL, NULL), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_start(source, &good, NULL, NULL), REFOCUS_OK);
+    refocus_source_close(&source);
+}
+
 static void sinks_of_nothing(void **state)
 {
     static const uint32_t formats[] = {REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_NV12,
@@ -403,10 +429,11 @@ static void registering_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sources_of_nothing),    cmocka_unit_test(sinks_of_nothing),
-        cmocka_unit_test(converters_of_nothing), cmocka_unit_test(modes_of_any_size),
-        cmocka_unit_test(counters_of_any_size),  cmocka_unit_test(frames_of_any_size),
-        cmocka_unit_test(frames_of_sources),     cmocka_unit_test(registering_nothing),
+        cmocka_unit_test(sources_of_nothing),  cmocka_unit_test(wishes_out_of_range),
+        cmocka_unit_test(sinks_of_nothing),    cmocka_unit_test(converters_of_nothing),
+        cmocka_unit_test(modes_of_any_size),   cmocka_unit_test(counters_of_any_size),
+        cmocka_unit_test(frames_of_any_size),  cmocka_unit_test(frames_of_sources),
+        cmocka_unit_test(registering_nothing),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -151,11 +151,30 @@ static void depth_beside_an_original(void **state)
     }
 }
 
+/* A picture with transparency says that it is dropped, another does not. */
+static void transparency(void **state)
+{
+    static const int types[] = {0, 2, 4, 6};
+
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        struct refocus_photo *photo = read_photo(make_png(6, 4, types[i], 8), REFOCUS_OK);
+        bool told = false;
+
+        for (int k = 0; k < photo->info->evidence_count; k++) {
+            told |= strstr(photo->info->evidence[k], "transparency") != NULL;
+        }
+        assert_int_equal(told, types[i] >= 4);
+        refocus_photo_free(&photo);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(chunks),
         cmocka_unit_test(nothing_is_made_up),
+        cmocka_unit_test(transparency),
         cmocka_unit_test(depth_beside_an_original),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -10,6 +10,7 @@
 #include "mpf.h"
 #include "number.h"
 #include "png_format.h"
+#include "reason.h"
 
 #include <math.h>
 
@@ -293,6 +294,29 @@ static void heif_brands(void **state)
     }
 }
 
+/* What is left out is told behind what was told before, as far as there is room. */
+static void reasons_end(void **state)
+{
+    struct {
+        struct refocus_reason reason;
+        char behind[8];
+    } told;
+    const size_t room = sizeof told.reason.text;
+
+    (void)state;
+    for (size_t used = 0; used < room; used++) {
+        memset(&told, 'a', sizeof told);
+        told.reason.text[used] = '\0';
+        rf_leave_out(&told.reason, "%s", "bc");
+        assert_memory_equal(told.behind, "aaaaaaaa", 8);
+        assert_int_equal(strspn(told.reason.text, "a"), used);
+        if (used + 4 < room)
+            assert_string_equal(told.reason.text + used, used ? "; bc" : "bc");
+        else
+            assert_true(strlen(told.reason.text) < room);
+    }
+}
+
 static void png_signature(void **state)
 {
     static const uint8_t begin[] = "\x89PNG\r\n\x1a\n\xff";
@@ -315,6 +339,7 @@ int main(void)
         cmocka_unit_test(heif_short_primary),
         cmocka_unit_test(md5_of_the_rfc),
         cmocka_unit_test(png_signature),
+        cmocka_unit_test(reasons_end),
         cmocka_unit_test(heif_brands),
         cmocka_unit_test(mpf_bounds),
         cmocka_unit_test(disparity_ranges),
