@@ -77,6 +77,20 @@ static void icc_in_chunks(void **state)
     refocus_photo_free(&photo);
 }
 
+/* One part of no bytes. */
+static void icc_of_nothing(void **state)
+{
+    struct bytes jpeg = make_jpeg(32, 16, false, false);
+    struct refocus_photo *photo;
+
+    (void)state;
+    jpeg_insert(&jpeg, 0xe2, "ICC_PROFILE\0\1\1", 14, "", 0);
+    photo = read_photo(jpeg, REFOCUS_OK);
+    assert_null(photo->icc.data);
+    assert_true(has_evidence(photo, "ICC profile: damaged"));
+    refocus_photo_free(&photo);
+}
+
 static void exif_facts(void **state)
 {
     (void)state;
@@ -185,9 +199,13 @@ int main(void)
 #ifdef RF_HAVE_PNG
         cmocka_unit_test(orientation_of_png),
 #endif
-        cmocka_unit_test(icc_in_chunks),      cmocka_unit_test(exif_facts),
-        cmocka_unit_test(exif_without_sense), cmocka_unit_test(bytes_too_many),
-        cmocka_unit_test(grey_jpeg_is_depth), cmocka_unit_test(original_says_how_it_lies),
+        cmocka_unit_test(icc_in_chunks),
+        cmocka_unit_test(icc_of_nothing),
+        cmocka_unit_test(exif_facts),
+        cmocka_unit_test(exif_without_sense),
+        cmocka_unit_test(bytes_too_many),
+        cmocka_unit_test(grey_jpeg_is_depth),
+        cmocka_unit_test(original_says_how_it_lies),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

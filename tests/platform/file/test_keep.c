@@ -28,18 +28,22 @@ static struct bytes png_with(struct bytes packet, bool has_text)
     return png;
 }
 
-static struct bytes rewritten(struct bytes file)
+/* The upper rows of the photo of a file, so many columns. */
+static struct bytes rewritten(struct bytes file, int32_t width, int32_t height)
 {
     struct refocus_write_options options = refocus_write_options_default();
     struct refocus_photo *photo = read_photo(file, REFOCUS_OK);
     struct bytes out = {NULL, 0};
+    struct refocus_image image = *photo->image;
     char path[64];
     int byte;
     FILE *in;
 
     snprintf(path, sizeof path, "/tmp/refocus-keep-%ld.png", (long)getpid());
     options.keep = photo;
-    assert_int_equal(refocus_image_write(path, photo->image, &options, NULL), REFOCUS_OK);
+    image.width = width;
+    image.height = height;
+    assert_int_equal(refocus_image_write(path, &image, &options, NULL), REFOCUS_OK);
     refocus_photo_free(&photo);
     in = fopen(path, "rb");
     assert_non_null(in);
@@ -77,7 +81,7 @@ static void chunks(void **state)
         if (has_xmp) {
             packet = make_xmp("xmlns:q=\"q:\" q:a=\"kept\" GDepth:Near=\"1\"");
         }
-        png = rewritten(png_with(packet, true));
+        png = rewritten(png_with(packet, true), 8, 4);
         assert_int_equal(count(&png, "tEXt", &chunk), 1);
         assert_int_equal(chunk.content.size, 15);
         assert_memory_equal(chunk.content.data, "Author\0somebody", 15);
@@ -99,7 +103,7 @@ static void chunks(void **state)
 /* A checksum that belongs to the chunk, and no chunk where there was none. */
 static void nothing_is_made_up(void **state)
 {
-    struct bytes png = rewritten(png_with((struct bytes){NULL, 0}, false));
+    struct bytes png = rewritten(png_with((struct bytes){NULL, 0}, false), 8, 4);
     struct rf_png_chunk chunk;
     struct refocus_photo *photo;
 
@@ -169,11 +173,40 @@ static void transparency(void **state)
     }
 }
 
+/* Sides that XMP says are kept where they are still those of the picture. */
+static void sides(void **state)
+{
+    static const int32_t sizes[][2] = {{8, 4}, {7, 4}, {8, 3}, {7, 3}};
+
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        struct bytes png =
+            rewritten(png_with(make_xmp("xmlns:q=\"q:\" q:a=\"kept\" "
+                                        "xmlns:tiff=\"http://ns.adobe.com/tiff/1.0/\" "
+                                        "tiff:ImageWidth=\"8\" tiff:ImageLength=\"4\""),
+                               false),
+                      sizes[i][0], sizes[i][1]);
+        struct rf_png_chunk chunk;
+        struct bytes text;
+
+        assert_int_equal(count(&png, "iTXt", &chunk), 1);
+        text =
+            bytes_copy(chunk.content.data + RF_PNG_XMP_HEAD, chunk.content.size - RF_PNG_XMP_HEAD);
+        bytes_add(&text, "", 1);
+        assert_non_null(strstr((char *)text.data, "kept"));
+        assert_int_equal(strstr((char *)text.data, "tiff:ImageWidth") != NULL, i == 0);
+        assert_int_equal(strstr((char *)text.data, "tiff:ImageLength") != NULL, i == 0);
+        bytes_free(&text);
+        bytes_free(&png);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(chunks),
         cmocka_unit_test(nothing_is_made_up),
+        cmocka_unit_test(sides),
         cmocka_unit_test(transparency),
         cmocka_unit_test(depth_beside_an_original),
     };

@@ -95,6 +95,7 @@ static void lights(void **state)
         failing.calls = failing.live = 0;
         failing.held = failing.peak = 0;
         assert_int_equal(make_light(photo), REFOCUS_OK);
+        assert_int_equal(failing.live, 0);
         assert_in_range(failing.peak, 100 << 10, (850 << 10) + 6 * 16 * 16);
         total = failing.calls;
         assert_true(total >= 3);

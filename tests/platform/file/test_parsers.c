@@ -294,7 +294,7 @@ static void heif_brands(void **state)
     }
 }
 
-/* What is left out is told behind what was told before, as far as there is room. */
+/* Parts that are left out are told behind what was told before, as far as there is room. */
 static void reasons_end(void **state)
 {
     struct {

@@ -182,6 +182,24 @@ static void pfm_refused(void **state)
     read_depth(text_file("Pf\n1 1\n-1"), NULL, REFOCUS_ERR_FORMAT);
 }
 
+/* The ends of floats are those of the map, not of what lies between its rows. */
+static void ends_of_floats(void **state)
+{
+    static const float rows[2][4] = {{2, (float)NAN, 5, 90}, {(float)INFINITY, 3, 1, -90}};
+    struct refocus_depth_map map = {.struct_size = sizeof(struct refocus_depth_map),
+                                    .sample = REFOCUS_SAMPLE_F32,
+                                    .samples = rows,
+                                    .width = 3,
+                                    .height = 2,
+                                    .stride = sizeof rows[0]};
+
+    (void)state;
+    assert_int_equal(refocus_depth_set_unit(&map, "inverse"), REFOCUS_OK);
+    assert_true(map.value_near == 1 && map.value_far == 5);
+    assert_int_equal(refocus_depth_set_unit(&map, "disparity"), REFOCUS_OK);
+    assert_true(map.value_near == 0 && map.value_far == 0);
+}
+
 static void unit_words(void **state)
 {
     static const char *const bad[] = {"",     "M",       "cm",      "m/m",  "/m",    "0/m",
@@ -546,6 +564,7 @@ int main(void)
         cmocka_unit_test(pfm_in_colour),
         cmocka_unit_test(pfm_units),
         cmocka_unit_test(pfm_refused),
+        cmocka_unit_test(ends_of_floats),
         cmocka_unit_test(unit_words),
         cmocka_unit_test(range_overrules),
         cmocka_unit_test(unknown_content),
