@@ -28,11 +28,14 @@ struct rf_area rf_brush_area(const struct rf_stroke *stroke, double margin, int3
     return area;
 }
 
+/* A point on the right or lower side of the picture is of its last pixels. */
 static void mark(struct rf_area area, uint16_t *distance, double x, double y)
 {
-    const int32_t column = (int32_t)x - area.x, row = (int32_t)y - area.y;
+    int32_t column = (int32_t)x - area.x, row = (int32_t)y - area.y;
 
-    if (column >= 0 && column < area.width && row >= 0 && row < area.height)
+    column = column < area.width ? column : area.width - 1;
+    row = row < area.height ? row : area.height - 1;
+    if (column >= 0 && row >= 0)
         distance[(size_t)row * (size_t)area.width + (size_t)column] = 0;
 }
 

@@ -37,6 +37,36 @@ static void test_selects_to_the_edge(void **unused)
     refocus_strokes_destroy(&strokes);
 }
 
+/* Strokes along the very sides of the picture select what lies there, and nothing at the other
+ * side.
+ */
+static void test_along_sides(void **unused)
+{
+    static const float paths[4][4] = {{W - 0.5f, 20, W - 0.5f, 60},
+                                      {-0.5f, 20, -0.5f, 60},
+                                      {20, H - 0.5f, 60, H - 0.5f},
+                                      {20, -0.5f, 60, -0.5f}};
+
+    (void)unused;
+    for (int i = 0; i < 4; i++) {
+        struct refocus_strokes *strokes = begin();
+        const uint16_t *d = refocus_strokes_disparity(strokes);
+        int near = 0, far = 0;
+
+        paint(strokes, REFOCUS_STROKE_OBJECT, 9, 1, paths[i], 2);
+        for (int p = 0; p < W * H; p++) {
+            const int x = p % W, y = p / W;
+            const int away = i == 0 ? W - 1 - x : i == 1 ? x : i == 2 ? H - 1 - y : y;
+
+            near += d[p] && away < 9;
+            far += d[p] && away > 30;
+        }
+        assert_in_range(near, 9 * 40, 9 * 60);
+        assert_int_equal(far, 0);
+        refocus_strokes_destroy(&strokes);
+    }
+}
+
 /* Cut into segments or not, and with strokes dropped again between. */
 static void test_segments_and_undo(void **unused)
 {
@@ -446,6 +476,7 @@ int main(void)
         cmocka_unit_test(test_struct_sizes),
         cmocka_unit_test(test_same_everywhere),
         cmocka_unit_test(test_small),
+        cmocka_unit_test(test_along_sides),
         cmocka_unit_test(test_scene),
     };
     int failed;
