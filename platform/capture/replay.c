@@ -460,7 +460,7 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     if (fate.queue_error)
         replay->cursed |= (uint32_t)1 << buffer;
     frame->buffer = (uint32_t)buffer;
-    frame->sequence = replay->script.sequence + (uint32_t)replay->next;
+    frame->sequence = (uint32_t)(replay->script.sequence + (uint64_t)replay->next);
     frame->timestamp_ns = due + fate.shift_ms * 1000000;
     frame->flags |= (fate.corrupt ? REFOCUS_FRAME_CORRUPT : 0) |
                     (replay->changed ? REFOCUS_FRAME_CHANGED : 0) |

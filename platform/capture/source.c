@@ -213,7 +213,7 @@ int refocus_source_start(struct refocus_source *source, const struct refocus_sou
 
 /* Counts what the camera left out; a step back is no gap but a device that began
  * anew. */
-static void count(struct refocus_source *source, const struct refocus_frame *frame)
+static void count_lost(struct refocus_source *source, const struct refocus_frame *frame)
 {
     const uint32_t step = frame->sequence - source->sequence;
 
@@ -253,7 +253,7 @@ int refocus_source_wait(struct refocus_source *source, int timeout_ms,
     if (status != REFOCUS_OK)
         return status;
     source->out |= (uint64_t)1 << frame->buffer;
-    count(source, frame);
+    count_lost(source, frame);
     *result = frame;
     return REFOCUS_OK;
 }

@@ -58,11 +58,11 @@ static bool scan_number(struct scan *scan, uint64_t *value)
     skip_blanks(scan);
     begin = scan->position;
     for (*value = 0; scan->position < scan->file.size; scan->position++) {
-        const unsigned digit = scan->file.data[scan->position] - (unsigned)'0';
-        if (digit > 9) {
+        const uint8_t byte = scan->file.data[scan->position];
+        if (byte < '0' || byte > '9') {
             break;
         }
-        *value = *value * 10 + digit;
+        *value = *value * 10 + (uint8_t)(byte - '0');
         if (*value > UINT32_MAX) {
             return false;
         }

@@ -84,8 +84,7 @@ int refocus_temporal_create(struct refocus_temporal **filter,
         free(f);
         return REFOCUS_ERR_MEMORY;
     }
-    arena.base = (uint8_t *)f->block + (-(uintptr_t)f->block & (RF_ARENA_ALIGN - 1));
-    arena.used = 0;
+    rf_arena_begin(&arena, f->block);
     lay_out(f, &arena);
     refocus_temporal_reset(f);
     *filter = f;

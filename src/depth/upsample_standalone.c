@@ -86,8 +86,7 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
     block = malloc((size_t)arena.used);
     if (!block)
         return REFOCUS_ERR_MEMORY;
-    arena.base = (uint8_t *)block + (-(uintptr_t)block & (RF_ARENA_ALIGN - 1));
-    arena.used = 0;
+    rf_arena_begin(&arena, block);
     lay_out(&up, threads, &arena);
     atomic_init(&run.state, RF_RUN_RUNNING);
     status = rf_pool_start(&pool, threads, NULL, &run);

@@ -105,8 +105,7 @@ static int run(struct rf_place_edges *place, int threads, struct refocus_depth_e
     block = malloc((size_t)arena.used);
     if (!block)
         return REFOCUS_ERR_MEMORY;
-    arena.base = (uint8_t *)block + (-(uintptr_t)block & (RF_ARENA_ALIGN - 1));
-    arena.used = 0;
+    rf_arena_begin(&arena, block);
     lay_out(place, &guide, threads, &arena);
     atomic_init(&run_state.state, RF_RUN_RUNNING);
     status = rf_pool_start(&pool, threads, NULL, &run_state);

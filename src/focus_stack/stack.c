@@ -113,8 +113,7 @@ int refocus_stack_create(struct refocus_stack **stack, const struct refocus_stac
         free(s);
         return REFOCUS_ERR_MEMORY;
     }
-    arena.base = (uint8_t *)s->block + (-(uintptr_t)s->block & (RF_ARENA_ALIGN - 1));
-    arena.used = 0;
+    rf_arena_begin(&arena, s->block);
     lay_out(s, &arena);
     *stack = s;
     return REFOCUS_OK;

@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* Hashes three numbers to 32 well-mixed bits. */
-static uint32_t draw(uint32_t seed, uint32_t place, uint32_t cell)
+static uint32_t draw_number(uint32_t seed, uint32_t place, uint32_t cell)
 {
     uint64_t h = ((uint64_t)place << 32 | cell) + seed * UINT64_C(0x9e3779b97f4a7c15);
 
@@ -45,7 +45,7 @@ static void draw_all(const struct rf_frame *f, struct rf_rect rect, int cell, st
     for (int y = rect.y0; y < rect.y1; y++) {
         for (int x = rect.x0; x < rect.x1; x++) {
             const uint32_t member =
-                draw(f->params->seed, place_of(f, x, y), (uint32_t)cell) % members;
+                draw_number(f->params->seed, place_of(f, x, y), (uint32_t)cell) % members;
 
             drawn[y % RF_TILE * RF_TILE + x % RF_TILE] = (uint8_t)member;
             count[member]++;

@@ -400,10 +400,11 @@ uint64_t rf_layout_size(const struct refocus_renderer_params *params)
 
 struct refocus_renderer *rf_layout_place(const struct refocus_renderer_params *params, void *block)
 {
-    const uintptr_t at = (uintptr_t)block;
-    struct rf_arena arena = {(uint8_t *)block + (-at & (RF_ARENA_ALIGN - 1)), 0};
-    struct refocus_renderer *r = rf_arena_take(&arena, 1, sizeof *r);
+    struct rf_arena arena;
+    struct refocus_renderer *r;
 
+    rf_arena_begin(&arena, block);
+    r = rf_arena_take(&arena, 1, sizeof *r);
     memset(r, 0, sizeof *r);
     lay_out(r, params, &arena);
     memset(r->yuv, 0, sizeof *r->yuv);

@@ -17,6 +17,16 @@ struct rf_arena {
     uint64_t used;
 };
 
+/* Begins to hand out a block, from its first aligned byte on: a piece of RF_ARENA_ALIGN bytes less
+ * one is lost at the most, with which the bytes of a layout begin. */
+static inline void rf_arena_begin(struct rf_arena *arena, void *block)
+{
+    const size_t over = (uintptr_t)block % RF_ARENA_ALIGN;
+
+    arena->base = (uint8_t *)block + (over ? RF_ARENA_ALIGN - over : 0);
+    arena->used = 0;
+}
+
 /* Hands out `count` elements of `size` bytes; NULL while only counting, or if they are too many. */
 static inline void *rf_arena_take(struct rf_arena *arena, uint64_t count, uint64_t size)
 {

@@ -48,8 +48,8 @@ static void sink(void *list, uint32_t i, uint32_t n, size_t size)
 
 static void make_heap(void *list, uint32_t n, size_t size)
 {
-    for (uint32_t i = n / 2; i-- > 0;)
-        sink(list, i, n, size);
+    for (uint32_t i = n / 2; i > 0; i--)
+        sink(list, i - 1, n, size);
 }
 
 void rf_add_place(void *list, uint32_t *count, uint32_t capacity, const void *entry, size_t size)
