@@ -6,10 +6,11 @@
 # builds; the exit status is 1 when anything failed.
 #   --full  also the pages of scores, clang, clang-tidy, sanitizers, AArch64 and ARMv7 (emulated),
 #           builds with parts left out, cameras in a virtual machine, the quickstart
-#   --long  also runs all tests under the sanitizers and emulated, lets each fuzz target
-#           search for a minute, opens and closes a V4L2 camera 10,000 times, builds the module of
-#           OpenCV's contrib filters, compiles against each release of libcamera, and builds and
-#           tries the packages (wheel, subproject of meson, musl, Debian)
+#   --long  also runs all tests under the sanitizers and emulated, those of the core and of our own
+#           parsers under clang's memory and integer sanitizers, lets each fuzz target search for a
+#           minute, opens and closes a V4L2 camera 10,000 times, builds the module of OpenCV's
+#           contrib filters, compiles against each release of libcamera, and builds and tries the
+#           packages (wheel, subproject of meson, musl, Debian)
 # Builds are kept in $REFOCUS_BUILDS (build-tests in the source folder) and reused.
 set -u -o pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -22,7 +23,7 @@ for argument; do
         --full:*) mode=full ;;
         --long:*) mode=long ;;
         *)
-            sed -n '2,13s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+            sed -n '2,14s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
             [ "$argument" = --help ]
             exit $(($? * 2))
             ;;
@@ -311,6 +312,39 @@ packages_stage() {
     try_package debian "$top/tests/consumers/debian.sh" "$top" "$builds/debian"
 }
 
+lists=$top/tests/sanitizers # of what sanitizers pass over, and why
+
+# Memory that nobody wrote. Libraries of others are not built for it, so that only what the core and
+# our own parsers do is looked at. The suite render is not: the renderer leaves tiles out whose light
+# nobody looks at, and computes with their rows as they are.
+uninitialised_stage() {
+    say 'memory sanitizer: the core and our own parsers'
+    need_packages clang libclang-rt-dev || { skip msan 'no clang with sanitizers'; return; }
+    suites=(core papers kernels file capture strokes fuzz)
+    CC=clang CXX=clang++ build msan --buildtype=debugoptimized -Db_sanitize=memory -Db_lundef=false \
+        -Dauto_features=disabled -Dtests=enabled -Dsimd=enabled -Dexamples=false "${one_set[@]}" \
+        "-Dc_args=-fsanitize-ignorelist=$lists/memory.txt -fsanitize-memory-track-origins" || return
+    clang -shared -fPIC -o "$builds/msan/stat.so" "$lists/stat.c" ||
+        { fail 'msan: tests/sanitizers/stat.c'; return; }
+    run msan --timeout-multiplier 20 --wrapper "env 'LD_PRELOAD=$builds/msan/stat.so'"
+}
+
+# Sizes, counts and offsets that wrap or are cut to fewer bits unsaid.
+integer_stage() {
+    local checks=unsigned-integer-overflow,signed-integer-overflow,shift,integer-divide-by-zero
+    checks+=,implicit-integer-truncation
+    say 'integer sanitizer: the core and our own parsers'
+    need_packages clang libclang-rt-dev libturbojpeg0-dev libpng-dev libexpat1-dev ||
+        { skip integer 'no clang with sanitizers, or no libraries'; return; }
+    suites=(core papers render file capture strokes fuzz)
+    CC=clang CXX=clang++ build integer --buildtype=debugoptimized -Db_lundef=false \
+        -Dauto_features=disabled -Dtests=enabled -Dsimd=disabled -Dexamples=false \
+        -Djpeg=enabled -Dpng=enabled -Dxmp=enabled "-Dc_link_args=-fsanitize=$checks" \
+        "-Dc_args=-fsanitize=$checks -fno-sanitize-recover=all -fsanitize-ignorelist=$lists/integer.txt" ||
+        return
+    REFOCUS_BRIEF=1 run integer --timeout-multiplier 5
+}
+
 # The corpora, which every build's tests run, under clang's sanitizers, and a minute of searching each.
 fuzz_stage() {
     local target name
@@ -368,5 +402,12 @@ if [ "$mode" != one ]; then
     cross_stage aarch64 arm64 g++-aarch64-linux-gnu
     cross_stage armv7 armhf g++-arm-linux-gnueabihf
 fi
-[ "$mode" != long ] || { fuzz_stage; packages_stage; contrib_stage; libcamera_stage; }
+if [ "$mode" = long ]; then
+    uninitialised_stage
+    integer_stage
+    fuzz_stage
+    packages_stage
+    contrib_stage
+    libcamera_stage
+fi
 finish

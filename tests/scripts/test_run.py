@@ -22,6 +22,8 @@ def result(word):
 
 
 class Run(stubs.Case):
+    LONG = {'contrib', 'fuzz', 'msan', 'integer'}
+
     def start(self, script, *arguments, results='OK', **more):
         builds = os.path.join(self.folder, 'builds')
         status, words, asked = self.run_script(
@@ -58,7 +60,18 @@ class Run(stubs.Case):
         self.assertRegex(words[-1], r'^0 passed, \d+ failed, \d+ skipped$')
         self.assertLessEqual({'gcc', 'clang', 'minimal', 'bare', 'asan', 'tsan',
                               'quickstart', 'quickstart--core'}, set(self.builds(asked)))
-        self.assertFalse({'contrib', 'fuzz'} & set(self.builds(asked)))
+        self.assertFalse(self.LONG & set(self.builds(asked)))
+
+    def test_long(self):
+        """What continuous integration has no time for: a sanitizer looks only with its list."""
+        status, words, asked = self.start('tests/run.sh', '--long', STUB_SETUP_FAILS='setup')
+        self.assertEqual(status, 1)
+        self.assertLessEqual(self.LONG, set(self.builds(asked)))
+        for build, name in (('msan', 'memory'), ('integer', 'integer')):
+            setup = next(line for line in asked if line.startswith(f'meson setup {build} '))
+            listed = re.search(r'-fsanitize-ignorelist=(\S+)', setup)
+            self.assertTrue(listed and listed[1].endswith(f'tests/sanitizers/{name}.txt'), setup)
+            self.assertTrue(os.path.exists(listed[1]))
 
     def test_command_line(self):
         for arguments, expected in ((('--help',), 0), (('--quick',), 2), (('--full', 'x'), 2)):
