@@ -131,7 +131,8 @@ static gboolean render(RefocusLensBlur *self, GeglBuffer *photo, GeglBuffer *dep
 static const char *refuse(RefocusLensBlur *self, const GeglRectangle *whole,
                           const GeglRectangle *map, GObject *depth)
 {
-    static const char no_depth[] = "no depth map is connected to aux, so that nothing is blurred";
+    static const char no_depth[] =
+        "choose a depth map as aux input; without one nothing is blurred";
     const gboolean told = self->told;
 
     self->told = !depth || map->width < 1 || map->height < 1;
@@ -183,6 +184,7 @@ static void class_init(gpointer class, gpointer data)
 {
     GObjectClass *const object_class = G_OBJECT_CLASS(class);
     GeglOperationClass *const operation_class = GEGL_OPERATION_CLASS(class);
+    GeglOperationComposerClass *const composer_class = GEGL_OPERATION_COMPOSER_CLASS(class);
 
     (void)data;
     object_class->set_property = set_property;
@@ -194,6 +196,8 @@ static void class_init(gpointer class, gpointer data)
     operation_class->get_invalidated_by_change = get_invalidated_by_change;
     operation_class->get_required_for_output = get_required_for_output;
     operation_class->get_cached_region = get_cached_region;
+    composer_class->aux_label = "Depth map";
+    composer_class->aux_description = "Depth of the photo; see depth-unit";
     operation_class->threaded = FALSE;
     operation_class->opencl_support = FALSE;
     gegl_operation_class_set_keys(

@@ -117,7 +117,7 @@ class Lines(unittest.TestCase):
     def test_no_depth(self):
         photo, out = SCENES / 'portrait/allfocus.png', os.path.join(self.folder, 'as-it-is.ppm')
         text = self.gegl(photo, '-o', out, '--', OWN, 'blur=20')
-        self.assertRegex(text, r'\A[^\n]*refocus:lens-blur: no depth map is connected to aux[^\n]*\n\Z')
+        self.assertRegex(text, r'\A[^\n]*refocus:lens-blur: choose a depth map as aux input[^\n]*\n\Z')
         same = os.path.join(self.folder, 'same.ppm')
         self.gegl(photo, '-o', same, '--', 'gegl:nop')
         self.assertEqual(read_ppm(out) == read_ppm(same), True)

@@ -219,7 +219,7 @@ static void refused(void **state)
     assert_int_equal(graph_messages.count, 1);
     assert_string_equal(
         graph_messages.last,
-        "refocus:lens-blur: no depth map is connected to aux, so that nothing is blurred");
+        "refocus:lens-blur: choose a depth map as aux input; without one nothing is blurred");
     graph_close(&graph);
 
     graph_open(&graph, graph_picture("R'G'B'A u8", X, Y, 20, 10, 1),
