@@ -5,7 +5,8 @@ core_packages=(meson ninja-build gcc libc6-dev)
 feature_packages=(pkg-config g++ libpng-dev libturbojpeg0-dev libexpat1-dev libheif-dev
     libjansson-dev libsdl2-dev libcamera-dev libopencv-core-dev libopencv-imgproc-dev
     libopencv-calib3d-dev libopencv-dnn-dev libtiff-dev libopenexr-dev libwebp-dev libjxl-dev
-    libraw-dev libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev libgegl-dev)
+    libraw-dev libmicrohttpd-dev libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev
+    libgegl-dev)
 
 have_package() {
     # A program that came another way will do: meson, ninja, gcc, clang, ...

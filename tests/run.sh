@@ -377,6 +377,7 @@ need_packages libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev lib
 need_packages libtiff-dev libopenexr-dev libwebp-dev libjxl-dev libraw-dev ||
     skip 'TIFF, OpenEXR, WebP, JPEG XL and camera raw' 'their libraries are missing'
 need_packages libcamera-dev || skip libcamera 'its library is missing'
+need_packages libmicrohttpd-dev || skip 'the page' 'libmicrohttpd is missing'
 need_packages libsdl2-dev xvfb xdotool || skip 'the window' 'SDL2, Xvfb or xdotool is missing'
 need_packages python3-dev python3-numpy python3-distributed ||
     skip 'the package for Python' 'Python.h, numpy or Dask is missing'

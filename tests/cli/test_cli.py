@@ -15,7 +15,8 @@ METHODS = method_names(REFOCUS)
 
 
 class Usage(Case):
-    SUBCOMMANDS = ('render', 'sheet', 'pull', 'depth', 'info', 'compare', 'bench', 'view', 'stack')
+    SUBCOMMANDS = ('render', 'sheet', 'pull', 'depth', 'info', 'compare', 'bench', 'view', 'serve',
+                   'stack')
     PAPERS = ('--cell --seed --spread --airy-radius --depth-ratio --star --star-length '
               '--star-angle --star-strength --sharp-radius --middle-ratio --last-ratio '
               '--attention --attention-angle --picture-angle --attention-depth --field '
@@ -69,6 +70,8 @@ class Usage(Case):
                     '--focal-length --sensor-width --method --rays --iterations --quality '
                     '--aperture --blend --sigma --highlights --mirror --background --no-thin --fill --threads '
                     '--cpu --json --config --preset --settings --size --fullscreen --seconds -h --help --help-all',
+            'serve': '--port --listen --max-upload --session-memory --upsample --depth-edges --max-side --max-pixels '
+                     '--raw-preview --max-memory --threads --cpu -h --help --help-all',
             'info': '--near --far --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --max-side --max-pixels --raw-preview --max-memory --json -h --help --help-all',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '

@@ -93,6 +93,7 @@ class Readme(unittest.TestCase):
         with open('photo-strokes.json', 'w', encoding='utf-8') as file:
             json.dump({'refocus-strokes': 1, 'width': 640, 'height': 480,
                        'strokes': [{'kind': 'all', 'disparity': 0.2}]}, file)
+        os.mkdir('photos')
         with open('model.onnx', 'wb') as file:
             file.write(b'no network')
 
@@ -118,6 +119,9 @@ class Readme(unittest.TestCase):
         self.assertGreater(len(shown), 8)
         for command in shown:
             with self.subTest(command):
+                if ' serve ' in command:
+                    self.serve(*shlex.split(command)[1:])
+                    continue
                 result = self.run_it(*shlex.split(command)[1:])
                 self.assertNotIn('this build', result.stderr)
                 lines = [line for asks, line in DEVICES if asks in command]
@@ -130,6 +134,14 @@ class Readme(unittest.TestCase):
                     self.assertEqual(result.returncode, 1)
                     self.assertRegex(result.stderr, '|'.join(lines))
                     self.assertEqual(result.stderr.count('\n'), 1)
+
+    def serve(self, *arguments):
+        """A server prints its link, and ends when it is told to."""
+        with subprocess.Popen([REFOCUS, *arguments], stdin=subprocess.DEVNULL, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as server:
+            self.assertRegex(server.stdout.readline(), r'^http://127\.0\.0\.1:\d+/[0-9a-f]{32}/$')
+            server.terminate()
+            self.assertEqual((server.wait(60), server.stderr.read()), (0, ''))
 
     def test_other_lines(self):
         """What is no refocus command is run by another test, which is named here."""

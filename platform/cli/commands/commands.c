@@ -2,17 +2,10 @@
 #include <string.h>
 #include "commands/commands.h"
 
-const struct command *const commands[] = {&render_command,
-                                          &depth_command,
-                                          &sheet_command,
-                                          &pull_command,
-                                          &info_command,
-                                          &compare_command,
-                                          &bench_command,
-                                          &live_command,
-                                          &view_command,
-                                          &stack_command,
-                                          NULL};
+const struct command *const commands[] = {&render_command, &depth_command, &sheet_command,
+                                          &pull_command,   &info_command,  &compare_command,
+                                          &bench_command,  &live_command,  &view_command,
+                                          &serve_command,  &stack_command, NULL};
 
 const struct command *commands_find(const char *name)
 {

@@ -15,5 +15,6 @@ extern const struct command sheet_command;
 extern const struct command compare_command;
 extern const struct command live_command;
 extern const struct command view_command;
+extern const struct command serve_command;
 
 #endif

@@ -199,6 +199,28 @@ static int fit(struct input *input, const struct depth_settings *settings)
                : status;
 }
 
+int input_placed(const struct input *input, const struct depth_settings *settings,
+                 uint16_t **placed)
+{
+    const size_t bytes = (size_t)input->width * (size_t)input->height * sizeof *input->disparity;
+    struct depth_settings full = *settings;
+    struct input copy = *input;
+    int status;
+
+    full.full = true;
+    *placed = NULL;
+    copy.disparity = malloc(bytes);
+    if (!copy.disparity)
+        return report_failure(EXIT_FAILED, input->photo_name, "not enough memory");
+    memcpy(copy.disparity, input->disparity, bytes);
+    status = fit(&copy, &full);
+    if (status == EXIT_DONE)
+        *placed = copy.disparity;
+    else
+        free(copy.disparity);
+    return status;
+}
+
 /* A sample is no surer than the file says; those that were filled stay guesses. */
 static void weigh(struct input *input)
 {

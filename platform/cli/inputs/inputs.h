@@ -207,6 +207,10 @@ bool input_has_edges_placed(const struct input *input, const struct depth_settin
 
 /* Make the disparities from input->depth_from: repaired and enlarged as the settings say. */
 int input_convert(struct input *input, const struct depth_settings *settings);
+/* The disparities as depth_settings.full makes them, packed, of the photo's size, to be freed; the
+ * input stays as it is. */
+int input_placed(const struct input *input, const struct depth_settings *settings,
+                 uint16_t **placed);
 void input_free(struct input *input);
 
 /* null, or the matte's file, size, and the parts of it that are subject, and mixed. */

@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <stddef.h>
+#include <sys/signalfd.h>
 #include <time.h>
 #include "line/interrupt.h"
 
@@ -201,6 +202,26 @@ bool interrupt_wait_child(bool *all_know)
         atomic_store(&ending, number);
     *all_know = about.si_code > 0; /* by the kernel: of the terminal */
     return true;
+}
+
+int interrupt_wait_file(void)
+{
+    sigset_t set;
+
+    choose_signals(&set);
+    return signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+}
+
+void interrupt_take(void)
+{
+    const struct timespec none = {0, 0};
+    sigset_t set;
+    int number;
+
+    choose_signals(&set);
+    number = sigtimedwait(&set, NULL, &none);
+    if (number > 0 && number != SIGINT && number != SIGTERM)
+        atomic_store(&ending, number);
 }
 
 bool interrupt_ends(void)

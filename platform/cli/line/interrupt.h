@@ -28,6 +28,11 @@ void interrupt_call(void (*function)(void *), void *of);
 void interrupt_wait_begin(void);
 bool interrupt_wait_child(bool *all_know);
 
+/* After interrupt_wait_begin(), for a process that waits for files too: one that can be read once a
+ * signal has come, or -1. interrupt_take() then takes the signal. */
+int interrupt_wait_file(void);
+void interrupt_take(void);
+
 /* Whether a signal has come. */
 bool interrupt_came(void);
 

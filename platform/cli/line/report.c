@@ -25,6 +25,24 @@ void report_clean(char *clean, size_t size, const char *text)
     clean[i] = '\0';
 }
 
+static char *kept; /* failures go there, or NULL */
+static size_t kept_size;
+
+void report_keep(char *text, size_t size)
+{
+    kept = text;
+    kept_size = size;
+}
+
+static void keep_line(const char *what, const char *why, va_list list)
+{
+    char text[LINE_LENGTH], line[2 * LINE_LENGTH];
+
+    vsnprintf(text, sizeof text, why, list);
+    snprintf(line, sizeof line, "%s: %s", what, text);
+    report_clean(kept, kept_size, line);
+}
+
 static void print_line(const char *what, const char *why, va_list list)
 {
     char text[LINE_LENGTH], line[LINE_LENGTH], name[LINE_LENGTH];
@@ -51,7 +69,10 @@ int report_failure(int exit_code, const char *what, const char *why, ...)
     va_list list;
 
     va_start(list, why);
-    print_line(what, why, list);
+    if (kept)
+        keep_line(what, why, list);
+    else
+        print_line(what, why, list);
     va_end(list);
     return exit_code;
 }
@@ -60,6 +81,8 @@ void report_warning(const char *what, const char *why, ...)
 {
     va_list list;
 
+    if (kept)
+        return;
     va_start(list, why);
     print_line(what, why, list);
     va_end(list);
@@ -76,7 +99,7 @@ int report_end_output(void)
 
 bool report_is_watched(void)
 {
-    return isatty(STDERR_FILENO);
+    return !kept && isatty(STDERR_FILENO);
 }
 
 void report_progress(const char *doing, double done)

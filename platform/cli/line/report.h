@@ -35,6 +35,10 @@ bool report_is_watched(void); /* whether there is such a terminal */
  * name, and the bar, which another process shows, is wiped before each. */
 void report_about(const char *name);
 
+/* Called in a process that answers others: the words of the last failure, WHAT: WHY, are kept there
+ * instead, and nothing else is printed. */
+void report_keep(char *text, size_t size);
+
 /* Milliseconds of a clock that only moves forwards. */
 double report_clock_ms(void);
 

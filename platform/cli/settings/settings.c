@@ -23,11 +23,13 @@ static void forget(void)
 
 static bool keep(json_t *root)
 {
-    if (!kept) {
+    static bool at_exit;
+
+    if (!at_exit && atexit(forget) != 0)
+        return false;
+    at_exit = true;
+    if (!kept)
         kept = json_array();
-        if (kept && atexit(forget) != 0)
-            forget();
-    }
     return kept && json_array_append(kept, root) == 0;
 }
 
@@ -118,36 +120,61 @@ static int set_member(const struct command *command, const char *file, const cha
     return status == EXIT_WRONG ? EXIT_FAILED : status;
 }
 
+static int set_members(const struct command *command, const char *file, json_t *root,
+                       void *settings)
+{
+    int status = OPTIONS_PARSED;
+    const char *key;
+    json_t *value;
+
+    if (!keep(root))
+        return report_failure(EXIT_FAILED, file, "not enough memory");
+    json_object_foreach(root, key, value)
+    {
+        if (strcmp(key, "refocus") == 0)
+            continue;
+        status = set_member(command, file, key, value, settings);
+        if (status != OPTIONS_PARSED)
+            break;
+    }
+    return status;
+}
+
+static bool is_version(const json_t *value)
+{
+    return json_is_integer(value) && json_integer_value(value) == SETTINGS_VERSION;
+}
+
+static int not_settings(const char *file)
+{
+    return report_failure(EXIT_FAILED, file,
+                          "holds no settings: its member \"refocus\" should be %d",
+                          SETTINGS_VERSION);
+}
+
+int settings_take(const struct command *command, const char *file, json_t *root, void *settings)
+{
+    const json_t *const version = json_object_get(root, "refocus");
+
+    forget();
+    if (!json_is_object(root) || (version && !is_version(version)))
+        return not_settings(file);
+    return set_members(command, file, root, settings);
+}
+
 int settings_read(const struct command *command, const char *file, const char *bytes, size_t size,
                   void *settings)
 {
     json_error_t error;
     json_t *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
-    int status = OPTIONS_PARSED;
-    const char *key;
-    json_t *value;
+    int status;
 
     if (!root)
         return report_failure(EXIT_FAILED, file, "is not JSON: line %d, column %d: %s", error.line,
                               error.column, error.text);
-    value = json_object_get(root, "refocus");
-    if (!json_is_integer(value) || json_integer_value(value) != SETTINGS_VERSION)
-        status = report_failure(EXIT_FAILED, file,
-                                "holds no settings: its member \"refocus\" should be "
-                                "%d",
-                                SETTINGS_VERSION);
-    else if (!keep(root))
-        status = report_failure(EXIT_FAILED, file, "not enough memory");
-    if (status == OPTIONS_PARSED) {
-        json_object_foreach(root, key, value)
-        {
-            if (strcmp(key, "refocus") == 0)
-                continue;
-            status = set_member(command, file, key, value, settings);
-            if (status != OPTIONS_PARSED)
-                break;
-        }
-    }
+    status = is_version(json_object_get(root, "refocus"))
+                 ? set_members(command, file, root, settings)
+                 : not_settings(file);
     json_decref(root);
     return status;
 }
@@ -296,12 +323,12 @@ char *settings_text(const struct command *command, const void *settings, const v
     return text;
 }
 
-int settings_save(const struct command *command, const char *file, const void *settings)
+char *settings_dump(const struct command *command, const void *settings)
 {
     json_t *root = json_pack("{s:i}", "refocus", (int)SETTINGS_VERSION);
     bool failed = !root;
     char *text = NULL;
-    int status = EXIT_DONE, digits = 15;
+    int digits = 15;
 
     for (const struct option *option = command->options; option->help && !failed; option++) {
         json_t *json = option->elsewhere ? NULL : member_of(option, settings, &digits, &failed);
@@ -311,12 +338,20 @@ int settings_save(const struct command *command, const char *file, const void *s
     }
     if (!failed)
         text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION((size_t)digits));
-    if (!text)
+    json_decref(root);
+    return text;
+}
+
+int settings_save(const struct command *command, const char *file, const void *settings)
+{
+    char *const text = settings_dump(command, settings);
+    int status;
+
+    if (text)
+        status = output_write_file(file, text, strlen(text));
+    else
         status =
             report_failure(EXIT_FAILED, file, "not enough memory, or a file's name is not UTF-8");
-    else
-        status = output_write_file(file, text, strlen(text));
     free(text);
-    json_decref(root);
     return status;
 }

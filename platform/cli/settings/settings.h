@@ -20,6 +20,7 @@
 #ifndef RF_CLI_SETTINGS_H
 #define RF_CLI_SETTINGS_H
 
+#include <jansson.h>
 #include "line/option.h"
 
 enum { SETTINGS_VERSION = 1, SETTINGS_MOST_BYTES = 1 << 20 };
@@ -47,6 +48,10 @@ int settings_load(const struct command *command, const char *file, void *setting
 int settings_read(const struct command *command, const char *file, const char *bytes, size_t size,
                   void *settings);
 
+/* Take them from an object, which need not say its version; all texts that were read before are
+ * forgotten. */
+int settings_take(const struct command *command, const char *file, json_t *root, void *settings);
+
 /* Check before the work that a file of settings can be written there, and is none of the inputs. */
 int settings_check(const char *file, const char *const *inputs, int input_count);
 
@@ -54,6 +59,10 @@ int settings_check(const char *file, const char *const *inputs, int input_count)
  * and is not among `names`, which end with NULL. To be freed; NULL without memory. */
 char *settings_text(const struct command *command, const void *settings, const void *usual,
                     const char *const *names);
+
+/* The text of a file of these settings, to be freed; NULL without memory, or where a file's name is
+ * not UTF-8. */
+char *settings_dump(const struct command *command, const void *settings);
 
 /* Write a file of these settings, whole or not at all; an exit code. */
 int settings_save(const struct command *command, const char *file, const void *settings);

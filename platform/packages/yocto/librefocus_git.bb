@@ -18,6 +18,7 @@ PACKAGECONFIG[command] = "-Dtools=enabled,-Dtools=disabled,jansson"
 PACKAGECONFIG[heic] = "-Dheic=enabled,-Dheic=disabled,libheif"
 PACKAGECONFIG[libcamera] = "-Dlibcamera=enabled,-Dlibcamera=disabled,libcamera"
 PACKAGECONFIG[opencv] = "-Dopencv=enabled,-Dopencv=disabled,opencv"
+PACKAGECONFIG[page] = "-Dweb=enabled,-Dweb=disabled,libmicrohttpd"
 PACKAGECONFIG[window] = "-Dsdl2=enabled,-Dsdl2=disabled,libsdl2"
 
 PACKAGES =+ "refocus"

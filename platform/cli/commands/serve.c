@@ -1,0 +1,153 @@
+/* serve.c: the command `refocus serve` shows photos as a page for a browser. */
+#include <signal.h>
+#include <stdio.h>
+#include <unistd.h>
+#include "commands/commands.h"
+#include "line/interrupt.h"
+#include "line/report.h"
+#include "serve/module.h"
+#include "serve/serving.h"
+
+struct settings {
+    struct shot_settings shot;
+    const char *listen;
+    double port, upload, memory; /* NAN: not given */
+};
+
+enum { PORT = 8085, MOST_UPLOAD_MIB = 100 };
+
+static const struct option options[] = {
+    {.kind = OPTION_HEADING, .help = "Network"},
+    {.kind = OPTION_INTEGER,
+     .name = "--port",
+     .argument = "N",
+     .offset = offsetof(struct settings, port),
+     .greatest = 65535,
+     .brief = "port to listen on; default 8085",
+     .help = "port to listen on; 0 = any that is free; default 8085",
+     .elsewhere = true},
+    {.kind = OPTION_TEXT,
+     .name = "--listen",
+     .argument = "ADDRESS",
+     .offset = offsetof(struct settings, listen),
+     .brief = "address to listen on; default 127.0.0.1, this machine alone",
+     .help = "address to listen on, in numbers of IPv4 or IPv6; default 127.0.0.1, this machine "
+             "alone. Of another one, what is sent can be read on the way, the link too: use it "
+             "within a network that you trust",
+     .elsewhere = true},
+    {.kind = OPTION_INTEGER,
+     .name = "--max-upload",
+     .argument = "MIB",
+     .offset = offsetof(struct settings, upload),
+     .least = 1,
+     .greatest = 4096,
+     .help = "refuse photos that are sent and larger, in MiB; default 100",
+     .elsewhere = true},
+    {.kind = OPTION_INTEGER,
+     .name = "--session-memory",
+     .argument = "MIB",
+     .offset = offsetof(struct settings, memory),
+     .least = 64,
+     .greatest = 1e9,
+     .help = "memory of all open photos together, in MiB: beyond it those are closed that nobody "
+             "has used for longest; default half the machine's",
+     .elsewhere = true},
+    {.kind = OPTION_HEADING, .help = "Photos"},
+    UPSAMPLE_OPTION(struct settings, shot.depth),
+    DEPTH_EDGES_OPTION(struct settings, shot.depth),
+    LIMIT_OPTIONS(struct settings, shot.depth.limits),
+    {.kind = OPTION_HEADING, .help = "Running"},
+    {.kind = OPTION_INTEGER,
+     .elsewhere = true,
+     .name = "--threads",
+     .argument = "N",
+     .offset = offsetof(struct settings, shot.engine.threads),
+     .greatest = 64,
+     .help =
+         "of each open photo; 0 = one for each processor, the default; never changes the result"},
+    {.kind = OPTION_CHOICE,
+     .elsewhere = true,
+     .name = "--cpu",
+     .argument = "NAME",
+     .offset = offsetof(struct settings, shot.engine.cpu),
+     .choice = refocus_cpu_name,
+     .help = "instruction set, auto = the best that there is, the default; never changes the "
+             "result"},
+    {.help = NULL},
+};
+
+/* The link is all that is printed, for scripts too. */
+static void tell_link(void *of, const char *link)
+{
+    (void)of;
+    printf("%s\n", link);
+    report_end_output();
+}
+
+static uint64_t memory_limit(double mebibytes)
+{
+    if (!isnan(mebibytes))
+        return (uint64_t)mebibytes << 20;
+    return (uint64_t)sysconf(_SC_PHYS_PAGES) * (uint64_t)sysconf(_SC_PAGESIZE) / 2;
+}
+
+static int serve(struct settings *settings, const char *path)
+{
+    struct rf_web_setup setup = {
+        .address = settings->listen ? settings->listen : "127.0.0.1",
+        .port = isnan(settings->port) ? PORT : (int)settings->port,
+        .path = path,
+        .most_upload = (uint64_t)(isnan(settings->upload) ? MOST_UPLOAD_MIB : settings->upload)
+                       << 20,
+        .most_memory = memory_limit(settings->memory),
+        .ready = tell_link,
+        .work = serve_work,
+        .of = &settings->shot,
+    };
+    char why[256] = "";
+    web_run_fn *const run_server = web_module(why);
+    int status = EXIT_DONE;
+
+    if (!run_server)
+        return report_failure(EXIT_FAILED, "serve", "%s", why);
+    signal(SIGPIPE, SIG_IGN);
+    interrupt_wait_begin();
+    setup.signals = interrupt_wait_file();
+    if (setup.signals < 0)
+        return report_failure(EXIT_FAILED, "serve", "no file for signals can be had");
+    if (run_server(&setup, why) != 0)
+        status = report_failure(EXIT_FAILED, path ? path : "serve", "%s", why);
+    close(setup.signals);
+    interrupt_take();
+    return status;
+}
+
+static int run(int argc, char **argv)
+{
+    struct settings settings = {
+        .shot = SHOT_SETTINGS_NONE, .port = NAN, .upload = NAN, .memory = NAN};
+    const char *files[2] = {NULL};
+    int status = options_parse(&serve_command, argc, argv, &settings, files);
+
+    if (status != OPTIONS_PARSED)
+        return status;
+    settings.shot.depth.optional = true;
+    settings.shot.depth.deep = DEEP_LIGHT;
+    settings.shot.depth.light = true;
+    status = shot_check(&settings.shot, false);
+    return status == EXIT_DONE ? serve(&settings, files[0]) : status;
+}
+
+const struct command serve_command = {
+    .name = "serve",
+    .usage = "[PHOTO | FOLDER] [options]",
+    .summary = "refocus photos on a page in a browser",
+    .notes = "Prints a link to open in a browser, and serves until Ctrl-C. Whoever has the link "
+             "can see the photos of the folder, and send photos of their own; nobody can change "
+             "or add a file. Of a photo that is open there is a process; what is saved goes to "
+             "the browser.",
+    .options = options,
+    .files_least = 0,
+    .files_most = 1,
+    .run = run,
+};

@@ -1,0 +1,85 @@
+/* answer.c: replies of a process to the server. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+#include "serve/serving.h"
+
+static int depth_told = -1;
+
+void answer_depth(int depth)
+{
+    depth_told = depth;
+}
+
+/* The server is gone when it takes nothing. */
+static void send_all(int socket, const void *bytes, size_t size)
+{
+    const char *at = bytes;
+
+    while (size > 0) {
+        const ssize_t sent = send(socket, at, size, MSG_NOSIGNAL);
+
+        if (sent < 0 && errno == EINTR)
+            continue;
+        if (sent <= 0)
+            _exit(EXIT_FAILED);
+        at += sent;
+        size -= (size_t)sent;
+    }
+}
+
+static void send_reply(const struct serving *s, int status, const char *type, const char *ending,
+                       const void *bytes, size_t size)
+{
+    struct rf_web_reply reply = {.status = status, .depth = depth_told, .bytes = size};
+
+    snprintf(reply.type, sizeof reply.type, "%s", type);
+    snprintf(reply.ending, sizeof reply.ending, "%s", ending);
+    depth_told = -1;
+    send_all(s->work->socket, &reply, sizeof reply);
+    send_all(s->work->socket, bytes, size);
+}
+
+void answer_bytes(struct serving *s, const char *type, const char *ending, void *bytes, size_t size)
+{
+    send_reply(s, ANSWER_DONE, type, ending, bytes, size);
+    free(bytes);
+}
+
+void answer_json(struct serving *s, json_t *object)
+{
+    char *const text = object ? json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+
+    json_decref(object);
+    if (text) {
+        answer_bytes(s, "application/json", "", text, strlen(text));
+    } else {
+        report_failure(EXIT_FAILED, s->work->name, "not enough memory");
+        answer_failure(s, ANSWER_FAILED);
+    }
+}
+
+/* Failures name the path that the photo is opened by; people know its name. */
+void answer_failure(struct serving *s, int status)
+{
+    const char *const path = s->work->photo;
+    const size_t length = strlen(path);
+    char text[2048];
+    size_t n = 0;
+
+    for (const char *at = s->why; *at && n + 1 < sizeof text;) {
+        const bool found = strncmp(at, path, length) == 0;
+        const char *const from = found ? s->work->name : at;
+        const size_t take = found ? strlen(from) : 1;
+
+        if (n + take >= sizeof text)
+            break;
+        memcpy(text + n, from, take);
+        n += take;
+        at += found ? length : 1;
+    }
+    send_reply(s, status, "", "", text, n);
+    s->why[0] = '\0';
+}

@@ -1,0 +1,69 @@
+/* lens.c: settings that come from the page: the members of a file of settings, but for those that
+ * name files. */
+#include <string.h>
+#include "serve/serving.h"
+
+struct lens {
+    struct shot_settings shot;
+};
+
+static const struct option options[] = {
+    SHOT_LENS_OPTIONS(struct lens, shot),
+    SHOT_METHOD_OPTIONS(struct lens, shot),
+    {.help = NULL},
+};
+
+const struct command serve_lens = {.name = "settings", .usage = "", .options = options};
+
+/* Anything else would be taken for the name of a picture. */
+static bool is_shape(const char *shape)
+{
+    static const char polygon[] = "polygon:";
+    const char *name;
+
+    if (!shape || strcmp(shape, "disc") == 0 || strncmp(shape, polygon, sizeof polygon - 1) == 0)
+        return true;
+    for (uint32_t i = 0; (name = bokeh_figure_name(i)) != NULL; i++) {
+        const size_t length = strlen(name);
+
+        if (strncmp(shape, name, length) == 0 &&
+            (shape[length] == '\0' || strcmp(name, "star") == 0))
+            return shape[length] == '\0' || shape[length] == ':';
+    }
+    return false;
+}
+
+static int check(struct shot_settings *settings)
+{
+    const struct engine_settings *const engine = &settings->engine;
+
+    if (engine->controls.focus_map || engine->controls.sharp_mask)
+        return report_failure(EXIT_WRONG, "settings", "one of them names a file; leave it out");
+    if (!is_shape(engine->aperture))
+        return report_failure(EXIT_WRONG, "settings: aperture",
+                              "give disc, polygon:BLADES, polygon:BLADES:DEGREES, heart or star");
+    if (refocus_method_traits((uint32_t)engine->method) & REFOCUS_METHOD_WHOLE_PHOTO)
+        return report_failure(EXIT_WRONG, "settings: method", "'%s' is too slow for the page",
+                              refocus_method_name((uint32_t)engine->method));
+    return shot_check(settings, false);
+}
+
+int serve_lens_read(const char *bytes, size_t size, const struct shot_settings *base,
+                    struct shot_settings *settings)
+{
+    struct lens lens = {.shot = *base};
+    json_error_t error;
+    json_t *const root =
+        json_loadb(size > 0 ? bytes : "{}", size > 0 ? size : 2, JSON_REJECT_DUPLICATES, &error);
+    int status;
+
+    if (!root)
+        return report_failure(EXIT_WRONG, "settings", "they are not JSON: line %d, column %d: %s",
+                              error.line, error.column, error.text);
+    status = settings_take(&serve_lens, "settings", root, &lens);
+    json_decref(root);
+    if (status != OPTIONS_PARSED)
+        return status;
+    *settings = lens.shot;
+    return check(settings);
+}

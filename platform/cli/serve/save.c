@@ -1,0 +1,148 @@
+/* save.c: what the page saves: the files that `refocus render` would write. */
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include "inputs/painted.h"
+#include "outputs/editable.h"
+#include "outputs/outputs.h"
+#include "serve/serving.h"
+
+static int read_back(const char *path, struct refocus_blob *bytes)
+{
+    struct refocus_reason reason = {""};
+
+    if (refocus_file_read(path, UINT64_MAX, bytes, &reason) != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, path, "%s", reason.text);
+    return EXIT_DONE;
+}
+
+/* The name of a new file for a short time, to be freed. */
+static int temporary(const char *ending, char **path)
+{
+    const char *const folder = getenv("TMPDIR");
+    struct refocus_reason reason = {""};
+    char beside[4096];
+
+    snprintf(beside, sizeof beside, "%s/refocus.%s", folder && *folder ? folder : "/tmp", ending);
+    if (refocus_file_temporary(beside, path, &reason) != REFOCUS_OK)
+        return report_failure(EXIT_FAILED, "temporary file", "%s", reason.text);
+    return EXIT_DONE;
+}
+
+int serve_encode(const char *ending, const struct refocus_image *image,
+                 const struct refocus_write_options *options, struct refocus_blob *bytes)
+{
+    struct refocus_write_options quick = *options;
+    char *path = NULL;
+    int status = temporary(ending, &path);
+
+    quick.unsynced = 1;
+    if (status != EXIT_DONE)
+        return status;
+    status = output_write_image(path, image, &quick);
+    if (status == EXIT_DONE)
+        status = read_back(path, bytes);
+    unlink(path);
+    free(path);
+    return status;
+}
+
+static int encode_depth(const struct serving *s, struct refocus_blob *bytes)
+{
+    const struct refocus_image *const photo = s->input.photo->image;
+    char *path = NULL;
+    int status = temporary("png", &path);
+
+    if (status != EXIT_DONE)
+        return status;
+    status = output_write_gray16(path, serve_disparity(s), photo->width, photo->height);
+    if (status == EXIT_DONE)
+        status = read_back(path, bytes);
+    unlink(path);
+    free(path);
+    return status;
+}
+
+/* The depth that goes into the result: the one that was painted. */
+static void take_painted(const struct serving *s, struct input *input)
+{
+    painted_begin(input, &s->base.depth);
+    input->disparity = (uint16_t *)refocus_strokes_disparity(s->strokes);
+    input->confidence = NULL;
+}
+
+static int save_picture(struct serving *s, const struct shot_settings *settings, const char *name,
+                        struct refocus_blob *bytes)
+{
+    const bool floats =
+        s->input.photo->deep->plane[0] && s->input.photo->deep->format != REFOCUS_FORMAT_RGB16;
+    const bool depth = s->has_depth || s->strokes;
+    const bool jpeg = strcmp(name, "picture.jpg") == 0;
+#ifdef RF_HAVE_EDITABLE
+    const struct keep_settings keep = {.editable = jpeg && depth && !floats, .no_editable = !depth};
+#else
+    const struct keep_settings keep = {.no_editable = true};
+#endif
+    struct editable editable = {.options = output_keeps(NULL)};
+    struct refocus_image picture = {0};
+    struct engine engine;
+    int status = serve_render(s, settings, keep_has_light(&keep, name), &engine, &picture);
+
+    (void)floats;
+    if (status == EXIT_DONE) {
+        struct input input = s->input;
+
+        if (s->strokes)
+            take_painted(s, &input);
+        status = keep_options(&keep, &input, &s->base.depth, name, true, &engine.params.render,
+                              &editable);
+        if (status == EXIT_DONE && engine.rendered.plane[0])
+            editable.options.light = &engine.rendered;
+        if (status == EXIT_DONE)
+            status = serve_encode(jpeg ? "jpg" : "png", &picture, &editable.options, bytes);
+    }
+    engine_end(&engine);
+    free(picture.plane[0]);
+    return status;
+}
+
+static int save_settings(const struct shot_settings *settings, struct refocus_blob *bytes)
+{
+    char *const text = settings_dump(&serve_lens, settings);
+
+    if (!text)
+        return report_failure(EXIT_FAILED, "settings", "not enough memory");
+    *bytes = (struct refocus_blob){(uint8_t *)text, strlen(text)};
+    return EXIT_DONE;
+}
+
+void serve_answer_save(struct serving *s, const struct rf_web_ask *ask, const char *bytes)
+{
+    static const struct {
+        const char *word, *type, *ending;
+    } formats[] = {{"jpeg", "image/jpeg", "refocused.jpg"},
+                   {"png", "image/png", "refocused.png"},
+                   {"settings", "application/json", "settings.json"},
+                   {"depth", "image/png", "depth.png"}};
+    struct refocus_blob file = {0};
+    struct shot_settings settings;
+    int status = serve_lens_read(bytes, ask->bytes, &s->base, &settings);
+    int format = 0;
+
+    if (status != EXIT_DONE) {
+        answer_failure(s, ANSWER_WRONG);
+        return;
+    }
+    while (format < 3 && strcmp(formats[format].word, ask->word) != 0)
+        format++;
+    if (format == 2)
+        status = save_settings(&settings, &file);
+    else if (format == 3)
+        status = encode_depth(s, &file);
+    else
+        status = save_picture(s, &settings, format == 0 ? "picture.jpg" : "picture.png", &file);
+    if (status == EXIT_DONE)
+        answer_bytes(s, formats[format].type, formats[format].ending, file.data, file.size);
+    else
+        answer_failure(s, status == EXIT_WRONG ? ANSWER_WRONG : ANSWER_FAILED);
+}

@@ -1,0 +1,104 @@
+/* serving.h: a process of `refocus serve` that has a photo open and answers requests for it, one
+ * after the other. */
+#ifndef RF_CLI_SERVE_SERVING_H
+#define RF_CLI_SERVE_SERVING_H
+
+#include <refocus/platform/strokes.h>
+#include "shot/shot.h"
+#include "web/web.h"
+
+/* Statuses of HTTP. */
+enum {
+    ANSWER_DONE = 200,
+    ANSWER_WRONG = 400,
+    ANSWER_REPLACED = 409,
+    ANSWER_NOT_A_PHOTO = 422,
+    ANSWER_FAILED = 500,
+};
+
+/* The most pixels of a reduced photo, and of its longer side. */
+enum { SERVE_QUICK_PIXELS = 600000, SERVE_QUICK_SIDE = 1024, SERVE_QUICK_RAYS = 32 };
+
+/* A full renderer can do again what it was made for. */
+struct made_for {
+    uint32_t methods;
+    bool thin, textured, deep;
+};
+
+struct serving {
+    const struct rf_web_work *work;
+    struct shot_settings base; /* settings of the command line */
+    struct input input;
+    uint16_t *placed;                /* disparities of the photo's size, or all 0 */
+    bool has_depth;                  /* the photo has some of its own */
+    struct refocus_strokes *strokes; /* painted over it, or NULL */
+    json_t *undone;                  /* strokes that can be done again, the last one first to be */
+
+    int reduction, width, height; /* size of the reduced photo */
+    uint8_t *small_photo;
+    uint16_t *small_disparity;
+    struct refocus_renderer *small, *full;
+    struct made_for made_for;
+    bool small_stale, full_stale; /* the depth has changed since it was prepared */
+
+    char why[1024]; /* the last failure */
+};
+
+/* answer.c: each request gets one of these. */
+
+/* Send a reply; the bytes are freed. */
+void answer_bytes(struct serving *s, const char *type, const char *ending, void *bytes,
+                  size_t size);
+void answer_json(struct serving *s, json_t *object);
+/* Send the last failure. */
+void answer_failure(struct serving *s, int status);
+/* Note whether the photo has depth, for the next reply. */
+void answer_depth(int depth);
+
+/* work.c: a picture that something newer makes out of date. */
+
+/* The renderer that is ended early then, or NULL. */
+void serve_watch(struct refocus_renderer *renderer);
+bool serve_is_replaced(void);
+
+/* lens.c */
+
+/* The command whose options are the members of settings that come from the page. */
+extern const struct command serve_lens;
+
+/* Read settings from the page over those of the command line. An exit code, and reports why. */
+int serve_lens_read(const char *bytes, size_t size, const struct shot_settings *base,
+                    struct shot_settings *settings);
+
+/* open.c: these return exit codes and report why it is not EXIT_DONE. */
+int serve_open(struct serving *s);
+void serve_close(struct serving *s);
+void serve_answer_session(struct serving *s);
+void serve_answer_thumbnail(struct serving *s);
+void serve_answer_focus(struct serving *s, const char *bytes, size_t size);
+
+/* The disparities of the photo's size as they are painted. */
+const uint16_t *serve_disparity(const struct serving *s);
+
+/* picture.c: a picture, whose plane[0] is to be freed; exit codes. engine: receives what rendered
+ * it, without its renderer, and is ended by engine_end(), whatever is returned. */
+int serve_render(struct serving *s, const struct shot_settings *settings, bool keeps_light,
+                 struct engine *engine, struct refocus_image *out);
+void serve_answer_picture(struct serving *s, const struct rf_web_ask *ask, const char *bytes);
+void serve_answer_overlay(struct serving *s, const struct rf_web_ask *ask, const char *bytes);
+
+/* save.c */
+void serve_answer_save(struct serving *s, const struct rf_web_ask *ask, const char *bytes);
+/* Write a picture, or 16-bit samples where it is NULL, into memory; "name.ending" says how. */
+int serve_encode(const char *ending, const struct refocus_image *image,
+                 const struct refocus_write_options *options, struct refocus_blob *bytes);
+
+/* paint.c */
+void serve_answer_stroke(struct serving *s, const char *bytes, size_t size);
+void serve_answer_undo(struct serving *s, bool redo);
+void serve_answer_strokes(struct serving *s);
+
+/* The life of the process. */
+void serve_work(void *of, const struct rf_web_work *work);
+
+#endif
