@@ -14,9 +14,25 @@ void answer_text(struct request *request, char *text, size_t size, const char *t
     snprintf(request->type, sizeof request->type, "%s", type);
 }
 
+static json_t *error_json(const char *why)
+{
+    json_t *object = json_pack("{s:s}", "error", why);
+    char *plain;
+
+    if (object || !(plain = strdup(why)))
+        return object;
+    /* Words of a file that are not UTF-8. */
+    for (char *c = plain; *c; c++)
+        if ((unsigned char)*c >= 128)
+            *c = '?';
+    object = json_pack("{s:s}", "error", plain);
+    free(plain);
+    return object;
+}
+
 void answer_error(struct request *request, int status, const char *why)
 {
-    json_t *const object = why ? json_pack("{s:s}", "error", why) : NULL;
+    json_t *const object = why ? error_json(why) : NULL;
     char *const text = object ? json_dumps(object, JSON_COMPACT) : NULL;
 
     free(request->text);

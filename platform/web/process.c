@@ -1,20 +1,16 @@
-/* process.c: the processes that work for a session, or on a thumbnail: started, asked, read and
- * ended. One that is busy, hangs or dies of a damaged photo is felt by its own session alone. */
-#include <dirent.h>
+/* process.c: the processes that work for a session, or on a thumbnail: asked, read and ended. One
+ * that is busy, hangs or dies of a damaged photo is felt by its own session alone. */
 #include <errno.h>
-#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
-#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include "server.h"
 
-/* Files of a new process. */
-enum { FILE_SOCKET = 3, FILE_CONTROL, FILE_PHOTO, FILE_REST };
+enum { LOOK_MS = 100 }; /* time between two looks at the memory of processes */
 
 static const char no_memory[] = "not enough memory; close other photos";
 
@@ -22,97 +18,6 @@ static void settle(struct server *server, struct request *request, int status, c
 {
     answer_error(request, status, why);
     answer_resume(server, request);
-}
-
-/* Close what the server has open: a connection ends only when nobody has it open any more. */
-static void close_rest(void)
-{
-    DIR *const files = opendir("/proc/self/fd");
-    const struct dirent *entry;
-    int most = FILE_REST;
-
-    while (files && (entry = readdir(files)) != NULL) {
-        const int fd = atoi(entry->d_name);
-
-        most = fd >= most ? fd + 1 : most;
-    }
-    if (files)
-        closedir(files);
-    else
-        most = 1024;
-    for (int fd = FILE_REST; fd < most; fd++)
-        close(fd);
-}
-
-static void live(struct server *server, const struct process *process, const int files[3])
-{
-    char path[32];
-    const struct rf_web_work work = {.socket = FILE_SOCKET,
-                                     .control = FILE_CONTROL,
-                                     .photo = path,
-                                     .name = process->name,
-                                     .session = process->id};
-    int moved[3];
-
-    snprintf(path, sizeof path, "/proc/self/fd/%d", FILE_PHOTO);
-    for (int i = 0; i < 3; i++)
-        moved[i] = fcntl(files[i], F_DUPFD, FILE_REST);
-    for (int i = 0; i < 3; i++)
-        if (moved[i] < 0 || dup2(moved[i], FILE_SOCKET + i) < 0)
-            _exit(EXIT_FAILURE);
-    close_rest();
-    server->setup->work(server->setup->of, &work);
-    _exit(EXIT_SUCCESS);
-}
-
-static bool make_sockets(int sockets[4])
-{
-    const struct timeval patience = {5, 0};
-
-    sockets[2] = sockets[3] = -1;
-    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0)
-        return false;
-    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets + 2) != 0) {
-        close(sockets[0]);
-        close(sockets[1]);
-        return false;
-    }
-    setsockopt(sockets[0], SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
-    return true;
-}
-
-/* A new process for a photo, whose fd is closed; NULL: none can be had. */
-static struct process *start(struct server *server, const char *name, bool session, int fd)
-{
-    struct process *const process = calloc(1, sizeof *process);
-    int sockets[4];
-
-    if (!process || !server_random(process->id) || !make_sockets(sockets)) {
-        free(process);
-        close(fd);
-        return NULL;
-    }
-    snprintf(process->name, sizeof process->name, "%s", name);
-    process->session = session;
-    process->used_ms = server_now_ms();
-    fflush(NULL);
-    process->pid = fork();
-    if (process->pid == 0)
-        live(server, process, (const int[3]){sockets[1], sockets[3], fd});
-    close(sockets[1]);
-    close(sockets[3]);
-    close(fd);
-    process->socket = sockets[0];
-    process->control = sockets[2];
-    if (process->pid < 0) {
-        close(sockets[0]);
-        close(sockets[2]);
-        free(process);
-        return NULL;
-    }
-    process->next = server->processes;
-    server->processes = process;
-    return process;
 }
 
 void process_end(struct server *server, struct process *process, int status, const char *why)
@@ -127,6 +32,7 @@ void process_end(struct server *server, struct process *process, int status, con
         ;
     close(process->socket);
     close(process->control);
+    process_remove_folder(process);
     if (process->running)
         settle(server, process->running, status, why);
     while (process->waiting) {
@@ -270,7 +176,7 @@ void process_open(struct server *server, struct request *request, int fd)
     }
     request->ask.what = RF_WEB_OPEN;
     request->ask.bytes = 0;
-    request->process = start(server, request->name, true, fd);
+    request->process = process_start(server, request->name, true, fd);
     if (!request->process) {
         answer_error(request, MHD_HTTP_SERVICE_UNAVAILABLE, no_memory);
         return;
@@ -288,7 +194,7 @@ static void begin_thumbnails(struct server *server)
 
         server->thumbnails = request->next;
         server->thumbnail_count--;
-        request->process = fd >= 0 ? start(server, request->name, false, fd) : NULL;
+        request->process = fd >= 0 ? process_start(server, request->name, false, fd) : NULL;
         if (request->process) {
             queue(request->process, request);
             go_on(server, request->process);
@@ -448,6 +354,9 @@ void process_tick(struct server *server)
         else if (!p->running && now > p->used_ms + 1e3 * SECONDS_SESSION)
             process_end(server, p, MHD_HTTP_GONE, "this session has ended");
     }
-    trim(server);
+    if (now > server->looked_ms + LOOK_MS) {
+        server->looked_ms = now;
+        trim(server);
+    }
     begin_thumbnails(server);
 }

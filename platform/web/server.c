@@ -2,6 +2,7 @@
 #include <arpa/inet.h>
 #include <errno.h>
 #include <math.h>
+#include <netdb.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,6 +10,7 @@
 #include <sys/random.h>
 #include <sys/socket.h>
 #include <time.h>
+#include <unistd.h>
 #include "server.h"
 
 enum { TICK_MS = 250, MOST_FILES = 2 + MOST_SESSIONS + MOST_THUMBNAILS };
@@ -122,11 +124,35 @@ static bool start(struct server *server, char *reason)
     return true;
 }
 
+/* The address by which others find a server that listens on all of this machine's: the one that
+ * packets to elsewhere would have. None is sent. */
+static void find_address(const char *elsewhere, char *text, size_t size)
+{
+    struct sockaddr_storage address;
+    socklen_t length = sizeof address;
+    int fd;
+
+    read_address(elsewhere, 9, &address);
+    fd = socket(address.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    if (fd < 0)
+        return;
+    if (connect(fd, (struct sockaddr *)&address, length) == 0 &&
+        getsockname(fd, (struct sockaddr *)&address, &length) == 0)
+        getnameinfo((struct sockaddr *)&address, length, text, (socklen_t)size, NULL, 0,
+                    NI_NUMERICHOST);
+    close(fd);
+}
+
 static void tell_link(const struct server *server)
 {
-    const char *const address = server->setup->address;
-    const bool v6 = strchr(address, ':') != NULL;
-    char link[256];
+    const bool v6 = strchr(server->setup->address, ':') != NULL;
+    char address[INET6_ADDRSTRLEN + 32], link[256];
+
+    snprintf(address, sizeof address, "%s", server->setup->address);
+    if (strcmp(address, "0.0.0.0") == 0)
+        find_address("192.0.2.1", address, sizeof address);
+    else if (strcmp(address, "::") == 0)
+        find_address("2001:db8::1", address, sizeof address);
 
     snprintf(link, sizeof link, "http://%s%s%s:%d/%s/", v6 ? "[" : "", address, v6 ? "]" : "",
              server->port, server->token);

@@ -70,6 +70,7 @@ struct process {
     bool session; /* else it makes a thumbnail and ends */
     bool open;    /* the photo is open */
     char id[RF_WEB_SESSION + 1], name[256];
+    char folder[64]; /* for its temporary files, which end with it */
     struct request *running, *waiting;
     int waiting_count;
     uint32_t number; /* number of the last ask */
@@ -92,7 +93,8 @@ struct server {
     struct process *processes;
     struct request *thumbnails; /* requests that wait for a process */
     int thumbnail_count;
-    bool resumed; /* connections wait to be seen to */
+    double looked_ms; /* when memory was last looked at */
+    bool resumed;     /* connections wait to be seen to */
 };
 
 double server_now_ms(void);
@@ -116,6 +118,12 @@ void answer_text(struct request *request, char *text, size_t size, const char *t
 void answer_resume(struct server *server, struct request *request);
 /* Give the settled answer to the library. */
 enum MHD_Result answer_queue(struct server *server, struct request *request);
+
+/* start.c */
+
+/* A new process for a photo, whose fd is closed; NULL: none can be had. */
+struct process *process_start(struct server *server, const char *name, bool session, int fd);
+void process_remove_folder(const struct process *process);
 
 /* process.c: each of these settles an answer, at once or later. */
 

@@ -6,6 +6,11 @@
 #include "serve/serving.h"
 #include "view/reduce.h"
 
+bool serve_is_painted(const struct serving *s)
+{
+    return refocus_strokes_count(s->strokes) > 0;
+}
+
 const uint16_t *serve_disparity(const struct serving *s)
 {
     return s->strokes ? refocus_strokes_disparity(s->strokes) : s->placed;

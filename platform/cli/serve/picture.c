@@ -14,6 +14,14 @@ static struct refocus_disparity map_of(const uint16_t *samples, int width, int h
     return refocus_disparity16(samples, width, height, 2 * (ptrdiff_t)width);
 }
 
+int serve_settings(const struct serving *s, const char *bytes, size_t size,
+                   struct shot_settings *settings)
+{
+    const int status = serve_lens_read(bytes, size, &s->base, settings);
+
+    return status == EXIT_DONE ? shot_check(settings, false) : status;
+}
+
 static int failed(const struct serving *s, int status)
 {
     return status == REFOCUS_OK
@@ -47,10 +55,18 @@ static int aim(const struct serving *s, const struct shot_settings *settings, st
     return status;
 }
 
+/* Whether the depth is what the photo carries: the renderer then gets it as `refocus render` gives
+ * it, so that pictures are the same to the last bit. */
+static bool has_own_depth(const struct serving *s)
+{
+    return s->has_depth && !serve_is_painted(s);
+}
+
 static bool serves(const struct made_for *made, const struct made_for *wanted)
 {
     return (made->methods & wanted->methods) == wanted->methods && made->thin >= wanted->thin &&
-           made->textured >= wanted->textured && made->deep == wanted->deep;
+           made->textured >= wanted->textured && made->deep == wanted->deep &&
+           made->edges >= wanted->edges;
 }
 
 /* Give the engine the renderer that there is, or a new one. */
@@ -58,9 +74,10 @@ static int take_renderer(struct serving *s, const struct shot_settings *settings
                          struct engine *engine)
 {
     const struct refocus_image *const photo = s->input.photo->image;
-    const struct made_for wanted = {
-        engine->methods | s->made_for.methods, engine->params.thin.enabled != 0,
-        engine->params.render.inpaint == REFOCUS_INPAINT_TEXTURED, engine->deep};
+    const struct made_for wanted = {engine->methods | s->made_for.methods,
+                                    engine->params.thin.enabled != 0,
+                                    engine->params.render.inpaint == REFOCUS_INPAINT_TEXTURED,
+                                    engine->deep, engine->places_edges};
     int status;
 
     if (s->full && serves(&s->made_for, &wanted)) {
@@ -81,13 +98,20 @@ static int take_renderer(struct serving *s, const struct shot_settings *settings
 static int prepare(struct serving *s, struct engine *engine)
 {
     const struct refocus_image *const photo = s->input.photo->image;
-    const struct refocus_disparity map = map_of(serve_disparity(s), photo->width, photo->height);
-    struct refocus_scene scene = refocus_scene_default(engine->deep ? &s->input.deep : photo, &map);
+    const struct refocus_disparity full = map_of(serve_disparity(s), photo->width, photo->height);
+    const struct refocus_disparity given =
+        map_of(s->input.disparity, s->input.width, s->input.height);
+    const bool own = has_own_depth(s);
+    struct refocus_scene scene = input_scene(&s->input, own ? &given : &full);
     int status;
 
     if (!s->full_stale)
         return EXIT_DONE;
-    scene.matte = engine->has_matte ? &s->input.matte : NULL;
+    if (!engine->deep)
+        scene.photo = photo;
+    if (!own)
+        scene.confidence = NULL;
+    scene.depth_edges = engine->places_edges;
     status = engine_prepare(engine, &scene);
     s->full_stale = status != EXIT_DONE;
     return status;
@@ -103,6 +127,7 @@ int serve_render(struct serving *s, const struct shot_settings *settings, bool k
     engine->name = s->work->name;
     engine->has_matte = s->input.matte.samples != NULL;
     engine->deep = s->input.deep.plane[0] && engine_takes_deep(&engine->params);
+    engine->places_edges = has_own_depth(s) && input_has_edges_placed(&s->input, &s->base.depth);
     engine->light = engine->deep ? s->input.light : NULL;
     engine->keeps_light = keeps_light;
     engine->params.render.dither =
@@ -245,7 +270,7 @@ void serve_answer_picture(struct serving *s, const struct rf_web_ask *ask, const
     struct refocus_image picture = {0};
     struct shot_settings settings;
     struct engine engine;
-    int status = serve_lens_read(bytes, ask->bytes, &s->base, &settings);
+    int status = serve_settings(s, bytes, ask->bytes, &settings);
 
     if (status != EXIT_DONE) {
         answer_failure(s, ANSWER_WRONG);
@@ -301,7 +326,7 @@ void serve_answer_overlay(struct serving *s, const struct rf_web_ask *ask, const
     struct refocus_image picture = {0};
     struct shot_settings settings;
     struct engine engine;
-    int status = serve_lens_read(bytes, ask->bytes, &s->base, &settings);
+    int status = serve_settings(s, bytes, ask->bytes, &settings);
 
     if (status != EXIT_DONE) {
         answer_failure(s, ANSWER_WRONG);

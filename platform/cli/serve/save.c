@@ -76,7 +76,7 @@ static int save_picture(struct serving *s, const struct shot_settings *settings,
 {
     const bool floats =
         s->input.photo->deep->plane[0] && s->input.photo->deep->format != REFOCUS_FORMAT_RGB16;
-    const bool depth = s->has_depth || s->strokes;
+    const bool depth = s->has_depth || serve_is_painted(s);
     const bool jpeg = strcmp(name, "picture.jpg") == 0;
 #ifdef RF_HAVE_EDITABLE
     const struct keep_settings keep = {.editable = jpeg && depth && !floats, .no_editable = !depth};
@@ -92,7 +92,7 @@ static int save_picture(struct serving *s, const struct shot_settings *settings,
     if (status == EXIT_DONE) {
         struct input input = s->input;
 
-        if (s->strokes)
+        if (serve_is_painted(s))
             take_painted(s, &input);
         status = keep_options(&keep, &input, &s->base.depth, name, true, &engine.params.render,
                               &editable);
@@ -126,7 +126,7 @@ void serve_answer_save(struct serving *s, const struct rf_web_ask *ask, const ch
                    {"depth", "image/png", "depth.png"}};
     struct refocus_blob file = {0};
     struct shot_settings settings;
-    int status = serve_lens_read(bytes, ask->bytes, &s->base, &settings);
+    int status = serve_settings(s, bytes, ask->bytes, &settings);
     int format = 0;
 
     if (status != EXIT_DONE) {

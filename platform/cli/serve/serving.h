@@ -22,7 +22,7 @@ enum { SERVE_QUICK_PIXELS = 600000, SERVE_QUICK_SIDE = 1024, SERVE_QUICK_RAYS = 
 /* A full renderer can do again what it was made for. */
 struct made_for {
     uint32_t methods;
-    bool thin, textured, deep;
+    bool thin, textured, deep, edges;
 };
 
 struct serving {
@@ -66,7 +66,8 @@ bool serve_is_replaced(void);
 /* The command whose options are the members of settings that come from the page. */
 extern const struct command serve_lens;
 
-/* Read settings from the page over those of the command line. An exit code, and reports why. */
+/* Read settings from the page over those of the command line, each by itself: shot_check() is still
+ * to come. An exit code, and reports why. */
 int serve_lens_read(const char *bytes, size_t size, const struct shot_settings *base,
                     struct shot_settings *settings);
 
@@ -77,10 +78,17 @@ void serve_answer_session(struct serving *s);
 void serve_answer_thumbnail(struct serving *s);
 void serve_answer_focus(struct serving *s, const char *bytes, size_t size);
 
+/* Whether something is painted over the photo's depth. */
+bool serve_is_painted(const struct serving *s);
+
 /* The disparities of the photo's size as they are painted. */
 const uint16_t *serve_disparity(const struct serving *s);
 
-/* picture.c: a picture, whose plane[0] is to be freed; exit codes. engine: receives what rendered
+/* picture.c: the settings of a request, which are checked; an exit code. */
+int serve_settings(const struct serving *s, const char *bytes, size_t size,
+                   struct shot_settings *settings);
+
+/* A picture, whose plane[0] is to be freed; exit codes. engine: receives what rendered
  * it, without its renderer, and is ended by engine_end(), whatever is returned. */
 int serve_render(struct serving *s, const struct shot_settings *settings, bool keeps_light,
                  struct engine *engine, struct refocus_image *out);
