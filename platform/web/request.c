@@ -28,6 +28,7 @@ static const struct way {
     {"redo", "POST", ACTION_ASK, RF_WEB_REDO},
     {"strokes", "GET", ACTION_ASK, RF_WEB_STROKES},
     {"save", "POST", ACTION_ASK, RF_WEB_SAVE},
+    {"pull", "POST", ACTION_ASK, RF_WEB_PULL},
     {"close", "POST", ACTION_CLOSE, RF_WEB_NOTHING},
 };
 
@@ -98,22 +99,33 @@ static void take_picture(struct request *request)
     request->ask.quick = strcmp(argument(request, "quick", &length), "1") == 0;
 }
 
+/* The kind of a view, or the format of a file. */
 static void take_word(struct request *request)
 {
-    static const char *const kinds[] = {"depth", "blur", "peaking", NULL};
-    static const char *const formats[] = {"jpeg", "png", "settings", "depth", NULL};
-    const bool overlay = request->ask.what == RF_WEB_OVERLAY;
-    const char *const *const words = overlay ? kinds : formats;
+    static const struct {
+        enum rf_web_what what;
+        const char *of, *words[5], *why;
+    } kinds[] = {
+        {RF_WEB_OVERLAY, "kind", {"depth", "blur", "peaking"}, "kind: give depth, blur or peaking"},
+        {RF_WEB_SAVE,
+         "as",
+         {"jpeg", "png", "settings", "depth"},
+         "as: give jpeg, png, settings or depth"},
+        {RF_WEB_PULL, "as", {"apng", "gif", "mp4", "webm"}, "as: give apng, gif, mp4 or webm"},
+    };
     size_t length;
-    const char *const word = argument(request, overlay ? "kind" : "as", &length);
 
-    for (int i = 0; words[i]; i++)
-        if (strcmp(word, words[i]) == 0)
-            snprintf(request->ask.word, sizeof request->ask.word, "%s", word);
-    if (!request->ask.word[0])
-        answer_error(request, MHD_HTTP_BAD_REQUEST,
-                     overlay ? "kind: give depth, blur or peaking"
-                             : "as: give jpeg, png, settings or depth");
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        const char *const word = argument(request, kinds[k].of, &length);
+
+        if (request->ask.what != kinds[k].what)
+            continue;
+        for (int i = 0; kinds[k].words[i]; i++)
+            if (strcmp(word, kinds[k].words[i]) == 0)
+                snprintf(request->ask.word, sizeof request->ask.word, "%s", word);
+        if (!request->ask.word[0])
+            answer_error(request, MHD_HTTP_BAD_REQUEST, kinds[k].why);
+    }
 }
 
 static void take_arguments(struct server *server, struct request *request)
@@ -122,9 +134,10 @@ static void take_arguments(struct server *server, struct request *request)
 
     if (request->action == ACTION_ASK || request->action == ACTION_CLOSE)
         find_process(server, request);
-    if (request->status == 0 && (what == RF_WEB_PICTURE || what == RF_WEB_OVERLAY))
+    if (request->status == 0 &&
+        (what == RF_WEB_PICTURE || what == RF_WEB_OVERLAY || what == RF_WEB_PULL))
         take_picture(request);
-    if (request->status == 0 && (what == RF_WEB_OVERLAY || what == RF_WEB_SAVE))
+    if (request->status == 0)
         take_word(request);
     if (request->action == ACTION_UPLOAD && !take_name(request, "name"))
         answer_error(request, MHD_HTTP_BAD_REQUEST, "name: give the photo's name, without a path");

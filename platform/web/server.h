@@ -70,7 +70,7 @@ struct process {
     bool session; /* else it makes a thumbnail and ends */
     bool open;    /* the photo is open */
     char id[RF_WEB_SESSION + 1], name[256];
-    char folder[64]; /* for its temporary files, which end with it */
+    char folder[1024]; /* for its temporary files, which end with it */
     struct request *running, *waiting;
     int waiting_count;
     uint32_t number; /* number of the last ask */

@@ -25,6 +25,7 @@ enum rf_web_what {
     RF_WEB_REDO,
     RF_WEB_STROKES,
     RF_WEB_SAVE,
+    RF_WEB_PULL,
 };
 
 /* Sent to the process; the body follows. */

@@ -323,6 +323,32 @@ class Answers(Serving):
         report = json.loads(self.succeeds('info', 'saved.jpg', '--json'))
         self.assertEqual(report['depth']['source'], 'gdepth')
 
+    def test_pull(self):
+        session = self.opened()
+        ask = 'pull?session=%s&size=0&as=' % session['session']
+        keys = [{'time': 0, 'focus': 1}, {'time': 0.2, 'focus': 0, 'blur': 30, 'ease': 'in'}]
+        film = self.server.post(ask + 'apng', {'keys': keys, 'blur': 12})
+        self.assertEqual((film.status, film.headers['Content-Type']), (200, 'image/apng'))
+        self.assertIn('-pull.apng', film.headers['Content-Disposition'])
+        self.assertEqual(film.body[:8], b'\x89PNG\r\n\x1a\n')
+        at = film.body.index(b'acTL') + 4
+        self.assertEqual(int.from_bytes(film.body[at:at + 4], 'big'), 6)  # 0.2 s of 25 a second
+        small = self.server.post(ask.replace('size=0', 'size=40') + 'apng', {'keys': keys})
+        self.assertLess(len(small.body), len(film.body) / 2)
+        self.assertIn('apng', session['films'])
+        for name in session['films'][1:]:
+            answer = self.server.post(ask + name, {'keys': keys})
+            self.assertEqual(answer.status, 200, answer.body[:300])
+        for body, words in (({}, 'give keys'), ([], 'no JSON object'), (b'{', 'no JSON object'),
+                            ({'keys': []}, 'pull'), ({'keys': 3}, 'pull'),
+                            ({'keys': [{'time': 0, 'focus': 1}, {'time': 21, 'focus': 0}]}, '20 sec'),
+                            ({'keys': [{'time': 0, 'blur': 300}, keys[1]]}, '127'),
+                            ({'keys': [{'time': 0, 'focus': 3}, keys[1]]}, 'focus'),
+                            ({'keys': [{'time': 0, 'output': 3}, keys[1]]}, 'output'),
+                            ({'keys': keys, 'aperture': '/etc/hostname'}, 'give disc')):
+            self.refused(400, words, self.server.post(ask + 'apng', body))
+        self.refused(400, 'as: give', self.server.post(ask + 'exe', {'keys': keys}))
+
     def test_upload(self):
         body = pictures.read_bytes('photos/deep é.jpg')
         answer = self.server.post('upload?name=' + quote('mine ü.jpg'), body)

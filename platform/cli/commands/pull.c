@@ -4,7 +4,7 @@
 #include <string.h>
 #include "outputs/animation.h"
 #include "commands/commands.h"
-#include "commands/keys.h"
+#include "settings/keys.h"
 #include "outputs/outputs.h"
 #include "line/report.h"
 #include "settings/settings.h"

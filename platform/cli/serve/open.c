@@ -69,19 +69,6 @@ int serve_open(struct serving *s)
     return EXIT_DONE;
 }
 
-void serve_close(struct serving *s)
-{
-    serve_watch(NULL);
-    refocus_renderer_destroy(&s->small);
-    refocus_renderer_destroy(&s->full);
-    refocus_strokes_destroy(&s->strokes);
-    json_decref(s->undone);
-    free(s->small_photo);
-    free(s->small_disparity);
-    free(s->placed);
-    input_free(&s->input);
-}
-
 /* The looks, each a change of the settings. */
 static json_t *looks_json(void)
 {
@@ -116,19 +103,39 @@ static json_t *limits_json(const struct serving *s)
                      metres ? json_pack("[i, i]", 1, 22) : json_null(), "highlights", 1, 16);
 }
 
+/* The settings to begin with. */
+static json_t *settings_json(const struct serving *s, const struct engine *engine, double blur)
+{
+    return json_pack("{s:f, s:f, s:s, s:i, s:s, s:s, s:s}", "focus",
+                     (double)engine->params.render.focus_disparity, "blur", blur, "highlights",
+                     "auto", "focus-width", 0, "bokeh", bokeh_preset_name(0), "quality",
+                     engine_quality_name(QUALITY_STANDARD), "method",
+                     refocus_method_name((uint32_t)s->base.engine.method));
+}
+
+static json_t *session_json(const struct serving *s, json_t *settings)
+{
+    const struct refocus_image *const photo = s->input.photo->image;
+    const double number = s->input.photo->info->f_number;
+
+    return json_pack("{s:s, s:o, s:i, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o}", "session",
+                     s->work->session, "name", report_text_json(s->work->name), "width",
+                     (int)photo->width, "height", (int)photo->height, "depth", s->has_depth,
+                     "f_number", number > 0 ? json_real(number) : json_null(), "range",
+                     range_json(s), "settings", settings, "limits", limits_json(s), "presets",
+                     looks_json(), "films", serve_films_json());
+}
+
 void serve_answer_session(struct serving *s)
 {
-    const struct refocus_image *photo;
     struct engine engine;
-    double blur = 0, number;
+    double blur = 0;
     int status = serve_open(s);
 
     if (status != EXIT_DONE) {
         answer_failure(s, ANSWER_NOT_A_PHOTO);
         return;
     }
-    photo = s->input.photo->image;
-    number = s->input.photo->info->f_number;
     status = engine_begin(&engine, &s->base.engine);
     if (status == EXIT_DONE)
         status = input_blur(&s->input, &s->base.lens, &blur);
@@ -136,18 +143,7 @@ void serve_answer_session(struct serving *s)
         status = shot_aim(&s->input, &s->base.lens, &engine.controls, s->placed, &engine.params);
     answer_depth(s->has_depth);
     if (status == EXIT_DONE)
-        answer_json(
-            s, json_pack(
-                   "{s:s, s:o, s:i, s:i, s:b, s:o, s:o, s:{s:f, s:f, s:s, s:i, s:s, s:s, s:s}, "
-                   "s:o, s:o}",
-                   "session", s->work->session, "name", report_text_json(s->work->name), "width",
-                   (int)photo->width, "height", (int)photo->height, "depth", s->has_depth,
-                   "f_number", number > 0 ? json_real(number) : json_null(), "range", range_json(s),
-                   "settings", "focus", (double)engine.params.render.focus_disparity, "blur", blur,
-                   "highlights", "auto", "focus-width", 0, "bokeh", bokeh_preset_name(0), "quality",
-                   engine_quality_name(QUALITY_STANDARD), "method",
-                   refocus_method_name((uint32_t)s->base.engine.method), "limits", limits_json(s),
-                   "presets", looks_json()));
+        answer_json(s, session_json(s, settings_json(s, &engine, blur)));
     else
         answer_failure(s, ANSWER_FAILED);
     engine_end(&engine);

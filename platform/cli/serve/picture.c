@@ -1,13 +1,9 @@
-/* picture.c: pictures for the page: quick ones of a reduced photo, and those that `refocus render`
- * makes. */
+/* picture.c: pictures for the page as `refocus render` makes them. */
 #include <stdlib.h>
 #include <string.h>
 #include "outputs/outputs.h"
 #include "outputs/resize.h"
 #include "serve/serving.h"
-#include "view/reduce.h"
-#include "views/falsecolour.h"
-#include "views/peaking.h"
 
 static struct refocus_disparity map_of(const uint16_t *samples, int width, int height)
 {
@@ -22,24 +18,25 @@ int serve_settings(const struct serving *s, const char *bytes, size_t size,
     return status == EXIT_DONE ? shot_check(settings, false) : status;
 }
 
-static int failed(const struct serving *s, int status)
+int serve_failed(const struct serving *s, int status)
 {
     return status == REFOCUS_OK
                ? EXIT_DONE
                : report_failure(EXIT_FAILED, s->work->name, "%s", refocus_strerror(status));
 }
 
-static int new_picture(const struct serving *s, int width, int height, struct refocus_image *out)
+int serve_new_picture(const struct serving *s, int width, int height, struct refocus_image *out)
 {
     const uint64_t bytes = 3 * (uint64_t)width * (uint64_t)height;
 
     *out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, 3 * (ptrdiff_t)width);
     out->plane[0] = bytes <= SIZE_MAX ? malloc((size_t)bytes) : NULL;
-    return failed(s, out->plane[0] ? REFOCUS_OK : REFOCUS_ERR_MEMORY);
+    return serve_failed(s, out->plane[0] ? REFOCUS_OK : REFOCUS_ERR_MEMORY);
 }
 
 /* The lens of the settings, for the whole photo. */
-static int aim(const struct serving *s, const struct shot_settings *settings, struct engine *engine)
+int serve_lens_of(const struct serving *s, const struct shot_settings *settings,
+                  struct engine *engine)
 {
     const struct refocus_image *const photo = s->input.photo->image;
     struct refocus_settings *const params = &engine->params;
@@ -133,9 +130,9 @@ int serve_render(struct serving *s, const struct shot_settings *settings, bool k
     engine->params.render.dither =
         settings->depth.no_dither ? REFOCUS_DITHER_OFF : REFOCUS_DITHER_ORDERED;
     if (status == EXIT_DONE)
-        status = aim(s, settings, engine);
+        status = serve_lens_of(s, settings, engine);
     if (status == EXIT_DONE)
-        status = new_picture(s, photo->width, photo->height, out);
+        status = serve_new_picture(s, photo->width, photo->height, out);
     if (status == EXIT_DONE) {
         const float blur = engine->params.render.max_blur_radius;
 
@@ -158,71 +155,7 @@ int serve_render(struct serving *s, const struct shot_settings *settings, bool k
     return status;
 }
 
-static int prepare_small(struct serving *s)
-{
-    const struct refocus_image *const photo = s->input.photo->image;
-    const struct refocus_image small = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, s->small_photo, s->width, s->height, 3 * (ptrdiff_t)s->width);
-    const struct refocus_disparity map = map_of(s->small_disparity, s->width, s->height);
-    struct refocus_renderer_params params = refocus_renderer_params_default(
-        s->width, s->height, (float)REFOCUS_PLAIN_BLUR_RADIUS / (float)s->reduction);
-    struct refocus_scene scene = refocus_scene_default(&small, &map);
-    int status = REFOCUS_OK;
-
-    params.threads = (int32_t)s->base.engine.threads;
-    params.cpu = (uint32_t)s->base.engine.cpu;
-    params.thin = 1;
-    if (!s->small)
-        status = refocus_renderer_create(&s->small, &params);
-    if (status != REFOCUS_OK || !s->small_stale)
-        return status;
-    rf_reduce_disparity(serve_disparity(s), photo->width, photo->height, s->reduction,
-                        s->small_disparity);
-    scene.matte = s->input.matte.samples ? &s->input.matte : NULL;
-    status = refocus_prepare_scene(s->small, &scene);
-    s->small_stale = status != REFOCUS_OK;
-    return status;
-}
-
-/* The lens that does the same on the reduced photo; the quickest method, as `refocus view` does. */
-static void reduce_lens(const struct serving *s, struct refocus_settings *params)
-{
-    params->field.disparity = params->render.focus_disparity;
-    params->render.max_blur_radius /= (float)s->reduction;
-    params->focus.blur_limit /= (float)s->reduction;
-    params->look.star_length /= (float)s->reduction;
-    params->render.method = REFOCUS_METHOD_SWEEP;
-    params->render.inpaint = REFOCUS_INPAINT_SMOOTH;
-    if (params->render.rays > SERVE_QUICK_RAYS || params->render.rays == REFOCUS_RAYS_FULL)
-        params->render.rays = SERVE_QUICK_RAYS;
-}
-
-/* A picture of the reduced photo. */
-static int render_quick(struct serving *s, const struct shot_settings *settings,
-                        struct engine *engine, struct refocus_image *out)
-{
-    int status = engine_begin(engine, &settings->engine);
-
-    out->plane[0] = NULL;
-    if (status == EXIT_DONE)
-        status = aim(s, settings, engine);
-    if (status == EXIT_DONE)
-        status = controls_check_method(&engine->params);
-    if (status == EXIT_DONE)
-        status = bokeh_check_method(&engine->params, engine->has_sides);
-    if (status == EXIT_DONE)
-        status = new_picture(s, s->width, s->height, out);
-    if (status == EXIT_DONE)
-        status = failed(s, prepare_small(s));
-    if (status == EXIT_DONE) {
-        reduce_lens(s, &engine->params);
-        serve_watch(s->small);
-        status = failed(s, refocus_render_settings(s->small, &engine->params, out));
-    }
-    return status;
-}
-
-static int fit(const struct serving *s, int size, struct refocus_image *picture)
+int serve_fit(const struct serving *s, int size, struct refocus_image *picture)
 {
     const struct resize asked = {.width = size, .height = size};
     struct refocus_image small;
@@ -232,7 +165,7 @@ static int fit(const struct serving *s, int size, struct refocus_image *picture)
         resize_fit(&asked, picture->width, picture->height, &width, &height);
     if (width == picture->width && height == picture->height)
         return EXIT_DONE;
-    status = failed(s, resize_image(picture, width, height, &small));
+    status = serve_failed(s, resize_image(picture, width, height, &small));
     if (status == EXIT_DONE) {
         free(picture->plane[0]);
         *picture = small;
@@ -241,7 +174,7 @@ static int fit(const struct serving *s, int size, struct refocus_image *picture)
 }
 
 /* A JPEG with nothing in it but the colour profile, as by render --strip. */
-static void answer_picture(struct serving *s, int status, int size, int quality,
+void serve_answer_rendered(struct serving *s, int status, int size, int quality,
                            struct refocus_image *picture)
 {
     struct refocus_write_options options = output_keeps(NULL);
@@ -250,7 +183,7 @@ static void answer_picture(struct serving *s, int status, int size, int quality,
     options.icc = s->input.photo->icc.data ? &s->input.photo->icc : NULL;
     options.quality = quality;
     if (status == EXIT_DONE)
-        status = fit(s, size, picture);
+        status = serve_fit(s, size, picture);
     if (status == EXIT_DONE)
         status = serve_encode("jpg", picture, &options, &bytes);
     free(picture->plane[0]);
@@ -280,61 +213,10 @@ void serve_answer_picture(struct serving *s, const struct rf_web_ask *ask, const
         memset(&engine, 0, sizeof engine);
         status = EXIT_FAILED;
     } else if (ask->quick) {
-        status = render_quick(s, &settings, &engine, &picture);
+        status = serve_render_quick(s, &settings, &engine, &picture);
     } else {
         status = serve_render(s, &settings, false, &engine, &picture);
     }
     engine_end(&engine);
-    answer_picture(s, status, ask->size, ask->quick ? QUICK_QUALITY : 0, &picture);
-}
-
-/* The depth, the blur, or edges in focus, of the reduced photo. */
-static int draw_overlay(struct serving *s, const char *kind, struct refocus_settings *params,
-                        struct refocus_image *out)
-{
-    const struct refocus_image small = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, s->small_photo, s->width, s->height, 3 * (ptrdiff_t)s->width);
-    const struct refocus_depth_range known = {s->input.report.near_m, s->input.report.far_m};
-    const struct refocus_depth_range *const range =
-        known.near_m > 0 && known.far_m > known.near_m ? &known : NULL;
-    uint16_t *const blur = malloc(2 * (size_t)s->width * (size_t)s->height);
-    struct refocus_image made = {0};
-    int status = blur ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
-
-    if (status == REFOCUS_OK)
-        status = refocus_get_view(s->small, REFOCUS_VIEW_BLUR, blur, 2 * (ptrdiff_t)s->width);
-    if (status == REFOCUS_OK && strcmp(kind, "peaking") == 0) {
-        peaking_draw(&small, blur, out);
-    } else if (status == REFOCUS_OK) {
-        made = strcmp(kind, "depth") == 0
-                   ? falsecolour_depth(s->small_disparity, s->width, s->height, range, NULL)
-                   : falsecolour_blur(blur, s->small_disparity, s->width, s->height,
-                                      (double)params->render.max_blur_radius, range, NULL);
-        status = made.plane[0] ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
-    }
-    free(blur);
-    if (made.plane[0]) {
-        free(out->plane[0]);
-        *out = made;
-        out->height = s->height; /* without the legend, so that it fits over the picture */
-    }
-    return failed(s, status);
-}
-
-void serve_answer_overlay(struct serving *s, const struct rf_web_ask *ask, const char *bytes)
-{
-    struct refocus_image picture = {0};
-    struct shot_settings settings;
-    struct engine engine;
-    int status = serve_settings(s, bytes, ask->bytes, &settings);
-
-    if (status != EXIT_DONE) {
-        answer_failure(s, ANSWER_WRONG);
-        return;
-    }
-    status = render_quick(s, &settings, &engine, &picture);
-    if (status == EXIT_DONE)
-        status = draw_overlay(s, ask->word, &engine.params, &picture);
-    engine_end(&engine);
-    answer_picture(s, status, ask->size, 0, &picture);
+    serve_answer_rendered(s, status, ask->size, ask->quick ? QUICK_QUALITY : 0, &picture);
 }

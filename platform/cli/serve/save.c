@@ -7,7 +7,7 @@
 #include "outputs/outputs.h"
 #include "serve/serving.h"
 
-static int read_back(const char *path, struct refocus_blob *bytes)
+int serve_read_back(const char *path, struct refocus_blob *bytes)
 {
     struct refocus_reason reason = {""};
 
@@ -16,8 +16,7 @@ static int read_back(const char *path, struct refocus_blob *bytes)
     return EXIT_DONE;
 }
 
-/* The name of a new file for a short time, to be freed. */
-static int temporary(const char *ending, char **path)
+int serve_temporary(const char *ending, char **path)
 {
     const char *const folder = getenv("TMPDIR");
     struct refocus_reason reason = {""};
@@ -34,14 +33,14 @@ int serve_encode(const char *ending, const struct refocus_image *image,
 {
     struct refocus_write_options quick = *options;
     char *path = NULL;
-    int status = temporary(ending, &path);
+    int status = serve_temporary(ending, &path);
 
     quick.unsynced = 1;
     if (status != EXIT_DONE)
         return status;
     status = output_write_image(path, image, &quick);
     if (status == EXIT_DONE)
-        status = read_back(path, bytes);
+        status = serve_read_back(path, bytes);
     unlink(path);
     free(path);
     return status;
@@ -51,13 +50,13 @@ static int encode_depth(const struct serving *s, struct refocus_blob *bytes)
 {
     const struct refocus_image *const photo = s->input.photo->image;
     char *path = NULL;
-    int status = temporary("png", &path);
+    int status = serve_temporary("png", &path);
 
     if (status != EXIT_DONE)
         return status;
     status = output_write_gray16(path, serve_disparity(s), photo->width, photo->height);
     if (status == EXIT_DONE)
-        status = read_back(path, bytes);
+        status = serve_read_back(path, bytes);
     unlink(path);
     free(path);
     return status;

@@ -17,7 +17,7 @@ enum {
 };
 
 /* The most pixels of a reduced photo, and of its longer side. */
-enum { SERVE_QUICK_PIXELS = 600000, SERVE_QUICK_SIDE = 1024, SERVE_QUICK_RAYS = 32 };
+enum { SERVE_QUICK_PIXELS = 600000, SERVE_QUICK_SIDE = 1024 };
 
 /* A full renderer can do again what it was made for. */
 struct made_for {
@@ -73,7 +73,6 @@ int serve_lens_read(const char *bytes, size_t size, const struct shot_settings *
 
 /* open.c: these return exit codes and report why it is not EXIT_DONE. */
 int serve_open(struct serving *s);
-void serve_close(struct serving *s);
 void serve_answer_session(struct serving *s);
 void serve_answer_thumbnail(struct serving *s);
 void serve_answer_focus(struct serving *s, const char *bytes, size_t size);
@@ -93,13 +92,43 @@ int serve_settings(const struct serving *s, const char *bytes, size_t size,
 int serve_render(struct serving *s, const struct shot_settings *settings, bool keeps_light,
                  struct engine *engine, struct refocus_image *out);
 void serve_answer_picture(struct serving *s, const struct rf_web_ask *ask, const char *bytes);
+
+/* The lens of settings for the whole photo, after engine_begin(). */
+int serve_lens_of(const struct serving *s, const struct shot_settings *settings,
+                  struct engine *engine);
+/* EXIT_DONE, or report what a status of the library means. */
+int serve_failed(const struct serving *s, int status);
+int serve_new_picture(const struct serving *s, int width, int height, struct refocus_image *out);
+/* Make a picture fit into so many pixels each way; 0: it stays. */
+int serve_fit(const struct serving *s, int size, struct refocus_image *picture);
+/* Answer with a JPEG of a picture, which is freed, or with why there is none. quality 0: the
+ * usual. */
+void serve_answer_rendered(struct serving *s, int status, int size, int quality,
+                           struct refocus_image *picture);
+
+/* quick.c: pictures of the reduced photo. */
+int serve_aim(struct serving *s, const struct shot_settings *settings, struct engine *engine);
+/* params: the lens for the whole photo, which becomes that for the reduced one. */
+int serve_render_reduced(struct serving *s, struct refocus_settings *params, int most_rays,
+                         struct refocus_image *out);
+int serve_render_quick(struct serving *s, const struct shot_settings *settings,
+                       struct engine *engine, struct refocus_image *out);
 void serve_answer_overlay(struct serving *s, const struct rf_web_ask *ask, const char *bytes);
+
+/* pull.c */
+void serve_answer_pull(struct serving *s, const struct rf_web_ask *ask, const char *bytes);
+/* The formats of pulls that can be written here. */
+json_t *serve_films_json(void);
 
 /* save.c */
 void serve_answer_save(struct serving *s, const struct rf_web_ask *ask, const char *bytes);
 /* Write a picture, or 16-bit samples where it is NULL, into memory; "name.ending" says how. */
 int serve_encode(const char *ending, const struct refocus_image *image,
                  const struct refocus_write_options *options, struct refocus_blob *bytes);
+
+/* The name of a new file for a short time, to be freed, and the bytes of one. */
+int serve_temporary(const char *ending, char **path);
+int serve_read_back(const char *path, struct refocus_blob *bytes);
 
 /* paint.c */
 void serve_answer_stroke(struct serving *s, const char *bytes, size_t size);

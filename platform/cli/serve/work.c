@@ -111,6 +111,9 @@ static void answer(struct serving *s, const struct rf_web_ask *ask, const char *
     case RF_WEB_SAVE:
         serve_answer_save(s, ask, body);
         break;
+    case RF_WEB_PULL:
+        serve_answer_pull(s, ask, body);
+        break;
     case RF_WEB_NOTHING:
         _exit(EXIT_FAILED);
     }

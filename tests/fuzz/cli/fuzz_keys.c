@@ -1,7 +1,7 @@
 /* fuzz_keys.c: key frames: what is taken gives values in their ranges at any time. */
 #include <math.h>
 #include <stdlib.h>
-#include "commands/keys.h"
+#include "settings/keys.h"
 #include "line/options.h"
 #include "line/report.h"
 

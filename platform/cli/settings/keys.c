@@ -1,5 +1,5 @@
 /* keys.c: key frames are read from JSON, and values between them are interpolated. */
-#include "commands/keys.h"
+#include "settings/keys.h"
 
 #include <math.h>
 #include <stdbool.h>
