@@ -97,7 +97,7 @@ static void add_headers(struct MHD_Response *response, const struct request *req
         MHD_add_response_header(response, "Allow", "GET, POST");
 }
 
-enum MHD_Result answer_queue(struct server *server, struct request *request)
+enum MHD_Result answer_queue(struct request *request)
 {
     const bool file = request->file && request->status == MHD_HTTP_OK;
     void *const bytes = file ? (void *)request->file->bytes : request->text;
@@ -111,8 +111,6 @@ enum MHD_Result answer_queue(struct server *server, struct request *request)
     add_headers(response, request);
     request->line->deadline_ms =
         server_now_ms() + 1e3 * SECONDS_ANSWER + 1e3 * (double)(request->size / (64 << 10));
-    request->held = request->text ? request->size : 0;
-    server->held += request->held;
     result = MHD_queue_response(request->connection, (unsigned)request->status, response);
     MHD_destroy_response(response);
     return result;

@@ -41,6 +41,7 @@ void process_end(struct server *server, struct process *process, int status, con
         process->waiting = request->next;
         settle(server, request, status, why);
     }
+    server->held -= process->held;
     free(process->body);
     free(process);
 }
@@ -232,16 +233,20 @@ static void finish(struct server *server, struct process *process)
     process->used_ms = server_now_ms();
     reply->type[sizeof reply->type - 1] = reply->ending[sizeof reply->ending - 1] = '\0';
     request->depth = reply->depth > 0 ? 1 : reply->depth < 0 ? -1 : 0;
-    if (reply->depth >= 0)
+    if (reply->depth >= 0 && request->action != ACTION_UPLOAD)
         folder_note_depth(&server->folder, process->name, request->depth);
     if (reply->status == MHD_HTTP_OK) {
         answer_text(request, process->body, (size_t)reply->bytes, reply->type);
+        request->held = process->held;
+        process->held = 0;
         snprintf(request->ending, sizeof request->ending, "%s", reply->ending);
     } else {
         process->body[reply->bytes] = '\0';
         answer_error(request, reply->status >= 400 && reply->status < 600 ? reply->status : 500,
                      process->body);
         free(process->body);
+        server->held -= process->held;
+        process->held = 0;
     }
     process->body = NULL;
     process->open = process->open || reply->status == MHD_HTTP_OK;
@@ -264,12 +269,16 @@ static void fail(struct server *server, struct process *process)
 /* Room for the body of a reply, whose head is here. */
 static bool begin_body(struct server *server, struct process *process)
 {
-    const uint64_t bytes = process->reply.bytes;
+    const uint64_t bytes = process->reply.bytes, most = (uint64_t)MOST_HELD << 20;
 
-    if (bytes > ((uint64_t)MOST_HELD << 20) - server->held || bytes > SIZE_MAX - 1)
+    if (bytes > most || server->held > most - bytes || bytes > SIZE_MAX - 1)
         return false;
     process->body = malloc((size_t)bytes + 1);
-    return process->body != NULL;
+    if (!process->body)
+        return false;
+    process->held = bytes;
+    server->held += bytes;
+    return true;
 }
 
 void process_read(struct server *server, struct process *process)

@@ -358,7 +358,7 @@ enum MHD_Result request_handle(void *of, struct MHD_Connection *connection, cons
         *kept = request;
         if (!request)
             return MHD_NO;
-        return request->status != 0 ? answer_queue(server, request) : MHD_YES;
+        return request->status != 0 ? answer_queue(request) : MHD_YES;
     }
     if (*size > 0) {
         take_body(server, request, data, *size);
@@ -374,7 +374,7 @@ enum MHD_Result request_handle(void *of, struct MHD_Connection *connection, cons
             return MHD_YES;
         }
     }
-    return answer_queue(server, request);
+    return answer_queue(request);
 }
 
 void request_completed(void *of, struct MHD_Connection *connection, void **kept,

@@ -59,7 +59,8 @@ struct request {
     /* The answer, once status is not 0. */
     int status, depth;
     char *text;
-    size_t size, held;
+    size_t size;
+    uint64_t held; /* bytes of it that count as the server's */
     char type[40], ending[24];
 };
 
@@ -76,8 +77,9 @@ struct process {
     uint32_t number; /* number of the last ask */
     long newest;     /* number of the newest picture that the page asked for */
     struct rf_web_reply reply;
-    size_t have; /* bytes of the reply that are here */
-    char *body;  /* the part behind its head */
+    size_t have;   /* bytes of the reply that are here */
+    char *body;    /* the part behind its head */
+    uint64_t held; /* bytes of its reply, which count as the server's */
     double used_ms, until_ms;
     int64_t kib;
 };
@@ -88,7 +90,7 @@ struct server {
     struct folder folder;
     char token[RF_WEB_SESSION + 1];
     int port, uploads;
-    uint64_t held; /* bytes of answers */
+    uint64_t held; /* bytes of answers that are not sent yet */
     struct line *lines;
     struct process *processes;
     struct request *thumbnails; /* requests that wait for a process */
@@ -117,7 +119,7 @@ void answer_text(struct request *request, char *text, size_t size, const char *t
 /* Let the library call for an answer that has been settled after it was put off. */
 void answer_resume(struct server *server, struct request *request);
 /* Give the settled answer to the library. */
-enum MHD_Result answer_queue(struct server *server, struct request *request);
+enum MHD_Result answer_queue(struct request *request);
 
 /* start.c */
 

@@ -25,7 +25,7 @@ class Pages(Case):
         return re.findall(r'(?m)^  (?:-\w, )?(--[\w-]+)', self.succeeds(command, '--help-all'))
 
     def test_help_fits_a_screen(self):
-        self.assertEqual(len(self.commands), 10)
+        self.assertEqual(len(self.commands), 11)
         self.assertEqual(self.words, ['help', 'version', 'man', 'completion'])
         for name in self.commands:
             text = self.succeeds(name, '--help')

@@ -362,7 +362,7 @@ class Results(Case):
                            'which f/3.79 has',
                            *self.render(*self.WIDE, '--f-number', '1.4', '--method', 'search'))
         self.assertEqual(other['blur'], 127)
-        self.fails(2, '--blur: 127.5 pixels are more than 127, the most of view and of all methods '
+        self.fails(2, '--blur: 127.5 pixels are more than 127, the most of view, serve and all methods '
                       'but sweep', *self.render('--blur', '127.5', '--method', 'raytrace'))
         self.assertEqual(self.warns(line, 'pull', 'photo.ppm', '--depth', 'depth.pgm', '-o',
                                     'p.y4m', '--seconds', '0.1', *self.WIDE, '--f-number',

@@ -174,10 +174,11 @@ static int choose_blur(const struct input *input, const struct lens_settings *se
 
     *choice = (struct blur_choice){.f_number = NAN};
     if (given(settings->blur) && settings->blur > most_blur(input))
-        return report_failure(EXIT_WRONG, "--blur",
-                              "%g pixels are more than %g, the most of view and of all methods but "
-                              "sweep",
-                              settings->blur, most_blur(input));
+        return report_failure(
+            EXIT_WRONG, "--blur",
+            "%g pixels are more than %g, the most of view, serve and all methods but "
+            "sweep",
+            settings->blur, most_blur(input));
     if (given(settings->blur)) {
         choice->from = "pixels";
         choice->radius = choice->asked = settings->blur;
