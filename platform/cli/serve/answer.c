@@ -61,25 +61,27 @@ void answer_json(struct serving *s, json_t *object)
     }
 }
 
+/* Add that many bytes of a text, as far as they fit. */
+static void append(char *text, size_t size, const char *part, size_t length)
+{
+    const size_t used = strlen(text);
+
+    snprintf(text + used, size - used, "%.*s", (int)length, part);
+}
+
 /* Failures name the path that the photo is opened by; people know its name. */
 void answer_failure(struct serving *s, int status)
 {
     const char *const path = s->work->photo;
-    const size_t length = strlen(path);
-    char text[2048];
-    size_t n = 0;
+    const char *at = s->why, *found;
+    char text[2048] = "";
 
-    for (const char *at = s->why; *at && n + 1 < sizeof text;) {
-        const bool found = strncmp(at, path, length) == 0;
-        const char *const from = found ? s->work->name : at;
-        const size_t take = found ? strlen(from) : 1;
-
-        if (n + take >= sizeof text)
-            break;
-        memcpy(text + n, from, take);
-        n += take;
-        at += found ? length : 1;
+    while ((found = strstr(at, path)) != NULL) {
+        append(text, sizeof text, at, (size_t)(found - at));
+        append(text, sizeof text, s->work->name, strlen(s->work->name));
+        at = found + strlen(path);
     }
-    send_reply(s, status, "", "", text, n);
+    append(text, sizeof text, at, strlen(at));
+    send_reply(s, status, "", "", text, strlen(text));
     s->why[0] = '\0';
 }
