@@ -1,0 +1,96 @@
+// What the page knows: the photo that is open, and how it is to look. Parts of the page change it
+// by these functions and listen to it; none of them calls another.
+import { over, without } from './settings.js';
+
+export const model = {
+    photo: null, // as the server told it: session, name, width, height, depth, limits, presets...
+    look: null, // the preset that was chosen
+    own: {}, // settings that the person gave
+    depth: 0, // rises whenever strokes change the depth
+    view: 'picture', // or an overlay: depth, blur, peaking
+    tab: 'adjust', // or look, paint, pull
+    mark: null, // where the tap was that set the focus, { x, y } from 0 to 1
+    comparing: false,
+};
+
+const listeners = [];
+
+/** Call `heard` with what changed: photo, settings, depth, view, tab, compare. */
+export function listen(heard) {
+    listeners.push(heard);
+}
+
+function tell(cause) {
+    for (const heard of listeners)
+        heard(cause);
+}
+
+/** The settings of the picture: those of the photo, the look over them, the person's over all. */
+export function settings() {
+    return over(over(model.photo.settings, model.look?.settings ?? {}), model.own);
+}
+
+export function openPhoto(photo, look, own) {
+    Object.assign(model, {
+        photo, own, look: photo.presets?.find((preset) => preset.name === look) ?? null,
+        depth: 0, view: 'picture', mark: null, comparing: false,
+    });
+    tell('photo');
+}
+
+/** Settings that the person gives; undefined ones are no longer given. */
+export function change(some) {
+    model.own = over(model.own, some);
+    for (const name of Object.keys(some))
+        if (some[name] === undefined)
+            delete model.own[name];
+    if ('focus' in some)
+        model.mark = null;
+    tell('settings');
+}
+
+/** Focus on what was tapped. */
+export function focusOn(focus, x, y) {
+    change({ focus });
+    model.mark = { x, y };
+    tell('mark');
+}
+
+/** A look overrules what the person gave before; what is given later overrules the look. */
+export function chooseLook(preset) {
+    model.look = preset;
+    model.own = without(model.own, preset?.settings ?? {});
+    tell('settings');
+}
+
+export function reset() {
+    Object.assign(model, { look: null, own: {}, mark: null });
+    tell('settings');
+}
+
+/** All of the settings at once, as of a key frame. */
+export function restore(look, own) {
+    Object.assign(model, { look, own, mark: null });
+    tell('settings');
+}
+
+export function depthChanged() {
+    model.depth++;
+    model.photo.depth = true;
+    tell('depth');
+}
+
+export function setView(view) {
+    model.view = view;
+    tell('view');
+}
+
+export function setTab(tab) {
+    model.tab = tab;
+    tell('tab');
+}
+
+export function setComparing(on) {
+    model.comparing = on;
+    tell('compare');
+}

@@ -1,0 +1,183 @@
+// Opening a photo: dropped, chosen from the device, from the folder of the server, or by a link.
+import { $, announce, announceError, make } from './dom.js';
+import { model, openPhoto, setTab } from './model.js';
+import * as server from './server.js';
+import { fromLink } from './settings.js';
+import { paintAgain, strokesMade } from './painting.js';
+import { say } from './words.js';
+
+const AT_ONCE = 2; // small pictures that are asked for at a time
+
+let listed = { photos: [] };
+let source = null; // { name } in the folder or { file }: what is open
+let opening = false;
+
+export function showScreen(screen) {
+    document.body.dataset.screen = screen;
+    $('name').textContent = screen === 'open' ? say('title') : model.photo.name;
+    $('opening').hidden = screen !== 'open';
+    $('editing').hidden = screen === 'open';
+    for (const id of ['views', 'compare', 'save'])
+        $(id).hidden = screen === 'open';
+    $('open').hidden = screen === 'open';
+    $('back').hidden = !model.photo;
+}
+
+/** Whether it was opened; if not, the line says why. */
+async function open(what, look = null, own = {}) {
+    const name = what.name ?? what.file.name;
+
+    if (opening)
+        return false;
+    if (what.file && listed.upload_limit && what.file.size > listed.upload_limit) {
+        announce(say('tooLarge', { name, n: Math.floor(listed.upload_limit / (1 << 20)) }), true);
+        return false;
+    }
+    let done = false;
+    opening = true;
+    announce(say(what.file ? 'sending' : 'opening', { name }));
+    document.body.classList.add('waiting');
+    try {
+        const photo = what.file ? await server.uploadPhoto(what.file)
+            : await server.openPhoto(what.name);
+        if (model.photo)
+            server.close(model.photo.session);
+        source = what;
+        show(photo, look, own);
+        done = true;
+    } catch (error) {
+        announceError(error);
+    }
+    document.body.classList.remove('waiting');
+    opening = false;
+    return done;
+}
+
+function show(photo, look, own) {
+    document.title = say('titleOf', { name: photo.name });
+    model.photo = photo;
+    showScreen('edit');
+    openPhoto(photo, look, own);
+    setTab(photo.depth ? 'adjust' : 'paint');
+    announce(say(photo.depth ? 'opened' : 'openedFlat', { name: photo.name }));
+    if (document.activeElement !== document.body)
+        $('stage').focus({ preventScroll: true });
+}
+
+/** The server has forgotten the session: the photo is opened again, with the settings and the
+ * strokes that it had. */
+async function openAgain() {
+    if (!source || opening)
+        return;
+    const strokes = strokesMade(), { tab } = model;
+    if (await open(source, model.look?.name, model.own)) {
+        setTab(tab);
+        await paintAgain(strokes);
+        announce(say('openedAgain', { name: model.photo.name }));
+    }
+}
+
+function card({ name, depth }) {
+    const image = make('img', { alt: '', width: 160, height: 120 });
+    const badge = make('span', { className: 'badge' });
+    const button = make('button', { className: 'photo' }, image,
+        make('span', { className: 'photo-name', textContent: name }), badge);
+    const mark = (known) => {
+        badge.hidden = known === null;
+        badge.textContent = say(known ? 'withDepth' : 'withoutDepth');
+        badge.classList.toggle('none', !known);
+        button.setAttribute('aria-label', known === null ? name
+            : say(known ? 'photoWith' : 'photoWithout', { name }));
+    };
+
+    mark(depth);
+    button.addEventListener('click', () => open({ name }));
+    return { name, image, mark, item: make('li', {}, button) };
+}
+
+/** Small pictures come one after another, so that opening a photo does not wait for a folder. */
+async function fetchThumbnails(cards) {
+    const left = [...cards];
+    const work = async () => {
+        while (left.length) {
+            const one = left.shift();
+            try {
+                const { blob, depth } = await server.thumbnail(one.name);
+                one.image.onload = () => URL.revokeObjectURL(one.image.src);
+                one.image.src = URL.createObjectURL(blob);
+                one.mark(depth);
+            } catch {
+                one.image.classList.add('missing');
+            }
+        }
+    };
+
+    await Promise.all(Array.from({ length: AT_ONCE }, work));
+}
+
+async function list() {
+    listed = await server.listPhotos();
+    const cards = listed.photos.map(card);
+
+    $('folder').hidden = !listed.folder;
+    $('folder-empty').hidden = cards.length > 0;
+    $('photos').replaceChildren(...cards.map(({ item }) => item));
+    return cards;
+}
+
+function startDrop() {
+    let over = 0; // how many elements deep the file is held
+    const show = (by) => {
+        over = Math.max(over + by, 0);
+        $('drop').hidden = over === 0;
+    };
+
+    addEventListener('dragenter', (event) => {
+        event.preventDefault();
+        show(1);
+    });
+    addEventListener('dragleave', () => show(-1));
+    addEventListener('dragover', (event) => event.preventDefault());
+    addEventListener('drop', (event) => {
+        const file = event.dataTransfer.files[0];
+        event.preventDefault();
+        show(-over);
+        if (file)
+            open({ file });
+        else
+            announce(say('noPhoto'), true);
+    });
+}
+
+export async function startOpening() {
+    const link = fromLink(location.hash);
+
+    startDrop();
+    server.onLost(openAgain);
+    showScreen('open');
+    $('open').addEventListener('click', () => {
+        showScreen('open');
+        $('choose').focus();
+    });
+    $('back').addEventListener('click', () => {
+        showScreen('edit');
+        $('stage').focus();
+    });
+    $('choose').addEventListener('click', () => $('file').click());
+    $('file').addEventListener('change', () => {
+        const [file] = $('file').files;
+        $('file').value = '';
+        if (file)
+            open({ file });
+    });
+    addEventListener('pagehide', () => model.photo && server.close(model.photo.session));
+    try {
+        const cards = await list();
+        const name = link.photo ?? listed.open;
+        if (cards.some((one) => one.name === name) || name === listed.open && name)
+            await open({ name }, link.look, link.photo ? link.changes : {});
+        fetchThumbnails(cards);
+    } catch (error) {
+        announceError(error);
+    }
+}

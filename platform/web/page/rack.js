@@ -1,0 +1,190 @@
+// The rack focus: key frames that were marked, played on the page, and saved as an animation.
+import { $, announce, announceError, make, slider } from './dom.js';
+import { listen, model, restore, settings } from './model.js';
+import { pull } from './server.js';
+import { NAMES, over } from './settings.js';
+import { drawSquare } from './looks.js';
+import { saveFile } from './saving.js';
+import { onPicture, showMoment } from './viewer.js';
+import { say } from './words.js';
+
+const MOVING = [NAMES.focus, NAMES.blur, NAMES.band]; // what differs from key to key
+const USUAL = 1.5; // seconds from key to key
+const THUMB = 128;
+
+let keys = []; // { wait, own, look, settings, canvas }: wait is seconds from the one before
+let latest = null; // the picture that is seen
+let playing = 0, at = 0, time;
+
+const total = () => keys.reduce((sum, key) => sum + key.wait, 0);
+
+/** Each key with its time from the beginning. */
+function timed() {
+    let sum = 0;
+
+    return keys.map((key) => ({ ...key, time: (sum += key.wait) }));
+}
+
+/** The settings of a moment: slowly away from one key and slowly up to the next. */
+function settingsAt(seconds) {
+    const list = timed();
+    const next = list.find((key) => key.time >= seconds) ?? list.at(-1);
+    const last = list[Math.max(list.indexOf(next) - 1, 0)];
+    const part = next === last ? 1 : (seconds - last.time) / (next.time - last.time);
+    const smooth = part * part * (3 - 2 * part);
+    const between = {};
+
+    for (const name of MOVING) {
+        const a = last.settings[name], b = next.settings[name];
+        if (typeof a === 'number' && typeof b === 'number')
+            between[name] = a + smooth * (b - a);
+    }
+    return over(settings(), between);
+}
+
+function showTime() {
+    const whole = total();
+
+    time.set(whole ? at / whole : 0, say('timeAt', { n: at.toFixed(1) }));
+}
+
+function stop() {
+    if (!playing)
+        return;
+    cancelAnimationFrame(playing);
+    playing = 0;
+    $('play').textContent = say('play');
+}
+
+function leave() {
+    stop();
+    showMoment(null);
+}
+
+function play() {
+    const from = at >= total() ? 0 : at, began = performance.now();
+    const frame = (now) => {
+        at = Math.min(from + Math.max(now - began, 0) / 1000, total());
+        showMoment(settingsAt(at));
+        showTime();
+        playing = requestAnimationFrame(frame);
+        if (at >= total())
+            stop();
+    };
+
+    $('play').textContent = say('stop');
+    playing = requestAnimationFrame(frame);
+}
+
+function mark() {
+    const canvas = make('canvas', { width: THUMB, height: THUMB, 'aria-hidden': 'true' });
+
+    leave();
+    if (latest)
+        drawSquare(canvas, latest);
+    keys.push({ wait: keys.length ? USUAL : 0, own: { ...model.own }, look: model.look,
+        settings: settings(), canvas });
+    announce(say('marked', { n: keys.length }));
+    showKeys();
+}
+
+function remove(i) {
+    leave();
+    keys.splice(i, 1);
+    if (keys.length)
+        keys[0].wait = 0;
+    announce(say('removed', { n: i + 1 }));
+    showKeys();
+    ($('keys').querySelectorAll('.remove')[Math.min(i, keys.length - 1)] ?? $('mark')).focus();
+}
+
+function keyItem(key, i) {
+    const n = i + 1;
+    const show = make('button', { className: 'card', 'aria-label': say('goTo', { n }) },
+        key.canvas);
+    const gone = make('button', { className: 'remove', textContent: '×',
+        'aria-label': say('remove', { n }) });
+    const wait = i === 0 ? make('span', { textContent: say('start') })
+        : make('input', { type: 'number', min: 0.1, max: 30, step: 0.1, value: key.wait,
+            'aria-label': say('secondsTo', { n }) });
+
+    show.addEventListener('click', () => {
+        leave();
+        restore(key.look, { ...key.own });
+    });
+    gone.addEventListener('click', () => remove(i));
+    wait.addEventListener('change', () => {
+        key.wait = Math.min(Math.max(Number(wait.value) || USUAL, 0.1), 30);
+        wait.value = key.wait;
+        at = 0;
+        showTime();
+    });
+    return make('li', {}, show,
+        make('span', { className: 'wait' }, wait, i ? say('seconds') : ''), gone);
+}
+
+function showKeys() {
+    $('keys').replaceChildren(...keys.map(keyItem));
+    $('playing').hidden = keys.length < 2;
+    at = 0;
+    showTime();
+}
+
+async function save(format, button) {
+    const name = say(`format.${format}`) ?? format;
+    const list = timed().map((key) => Object.fromEntries([['time', Number(key.time.toFixed(3))],
+        ...MOVING.filter((of) => typeof key.settings[of] === 'number')
+            .map((of) => [of, key.settings[of]])]));
+    const fixed = settings();
+
+    for (const of of MOVING)
+        delete fixed[of];
+    leave();
+    announce(say('pullWaits', { format: name }));
+    button.disabled = true;
+    try {
+        saveFile(await pull(model.photo.session, format, fixed, list));
+    } catch (error) {
+        announceError(error);
+        button.hidden = error.status === 404;
+    }
+    button.disabled = false;
+}
+
+function makeSaveButtons() {
+    const { pull_formats: formats = [] } = model.photo;
+
+    $('pull-buttons').replaceChildren($('play'), ...formats.map((format) => {
+        const button = make('button', { 'data-format': format,
+            textContent: say('savePull', { format: say(`format.${format}`) ?? format }) });
+        button.addEventListener('click', () => save(format, button));
+        return button;
+    }));
+}
+
+export function startRack() {
+    time = slider({ id: 'moment', label: 'time', moved(part) {
+        stop();
+        at = part * total();
+        showMoment(settingsAt(at));
+        showTime();
+    } });
+    $('time').append(time.row);
+    $('mark').addEventListener('click', mark);
+    $('play').addEventListener('click', () => (playing ? stop() : play()));
+    onPicture((bitmap, job) => {
+        if (!job.kind)
+            latest = bitmap;
+    });
+    listen((cause) => {
+        if (cause === 'photo') {
+            leave();
+            keys = [];
+            latest = null;
+            makeSaveButtons();
+            showKeys();
+        } else if (cause !== 'view') {
+            leave();
+        }
+    });
+}

@@ -1,0 +1,125 @@
+// The server: every question of the page to it, and what an error says.
+import { say } from './words.js';
+
+/** An answer of 400 or more, or none: `status` is 0 then. The message is one line for people. */
+export class ServerError extends Error {
+    constructor(status, message) {
+        super(message);
+        this.status = status;
+    }
+}
+
+async function explain(response) {
+    try {
+        const { error } = await response.json();
+        if (typeof error === 'string' && error)
+            return error;
+    } catch {
+        // no JSON: the status has to do
+    }
+    return response.status === 404 ? say('missing')
+        : say('refused', { status: response.status });
+}
+
+let lost = () => {};
+
+/** `heard` is called when the server has forgotten the session, which it may do for memory. */
+export function onLost(heard) {
+    lost = heard;
+}
+
+function address(path, query) {
+    const text = new URLSearchParams(query).toString();
+    return text ? `${path}?${text}` : path;
+}
+
+async function ask(method, path, query, body, signal) {
+    let response;
+
+    try {
+        response = await fetch(address(path, query), { method, body, signal });
+    } catch (error) {
+        if (error.name === 'AbortError')
+            throw error;
+        throw new ServerError(0, say('unreachable'));
+    }
+    if (!response.ok) {
+        if (response.status === 410)
+            lost();
+        throw new ServerError(response.status, await explain(response));
+    }
+    return response;
+}
+
+const json = (value) => JSON.stringify(value);
+
+export async function listPhotos() {
+    return (await ask('GET', 'photos')).json();
+}
+
+/** A small picture of a photo in the folder, and whether it has depth. */
+export async function thumbnail(photo) {
+    const response = await ask('GET', 'thumbnail', { photo });
+    return { blob: await response.blob(), depth: response.headers.get('Refocus-Depth') === 'yes' };
+}
+
+export async function openPhoto(name) {
+    return (await ask('POST', 'open', { photo: name })).json();
+}
+
+export async function uploadPhoto(file) {
+    return (await ask('POST', 'upload', { name: file.name }, file)).json();
+}
+
+/** A session that is left, even when the page is being closed. */
+export function close(session) {
+    fetch(address('close', { session }), { method: 'POST', keepalive: true }).catch(() => {});
+}
+
+export async function focusAt(session, x, y) {
+    return (await (await ask('POST', 'focus', { session }, json({ x, y }))).json()).focus;
+}
+
+let request = 0;
+
+/** A picture, or an overlay of a kind. `size` is its longer side, 0 = the photo's own; a quick one
+ * is worked out at that size, others are made smaller. */
+export async function picture(session, settings, { kind, size, quick, signal }) {
+    const query = { session, size, request: ++request };
+
+    if (kind)
+        query.kind = kind;
+    else if (quick)
+        query.quick = 1;
+    const response = await ask('POST', kind ? 'overlay' : 'picture', query, json(settings), signal);
+    return createImageBitmap(await response.blob());
+}
+
+export async function stroke(session, what) {
+    return (await ask('POST', 'stroke', { session }, json(what))).json();
+}
+
+export async function undo(session) {
+    return (await ask('POST', 'undo', { session })).json();
+}
+
+export async function redo(session) {
+    return (await ask('POST', 'redo', { session })).json();
+}
+
+export async function listStrokes(session) {
+    return (await ask('GET', 'strokes', { session })).json();
+}
+
+/** A file: its bytes, and the name that the server gives it. */
+async function file(path, query, body) {
+    const response = await ask('POST', path, query, json(body));
+    const header = response.headers.get('Content-Disposition') ?? '';
+    const found = /filename\*=UTF-8''([^;]+)/i.exec(header);
+    return { blob: await response.blob(),
+        name: found ? decodeURIComponent(found[1]) : `refocus.${query.as}` };
+}
+
+export const save = (session, as, settings) => file('save', { session, as }, settings);
+export const pull = (session, as, settings, keys) =>
+    file('pull', { session, as }, { ...settings, keys });
