@@ -8,6 +8,9 @@ feature_packages=(pkg-config g++ libpng-dev libturbojpeg0-dev libexpat1-dev libh
     libraw-dev libmicrohttpd-dev libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev
     libgegl-dev)
 
+# The page of `refocus serve` is tried in a browser: tests/run.sh --full.
+page_packages=(chromium chromium-driver python3-selenium)
+
 have_package() {
     # A program that came another way will do: meson, ninja, gcc, clang, ...
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ] ||

@@ -387,6 +387,8 @@ need_packages libgegl-dev gegl gimp || skip 'the operation of GEGL' 'GEGL or GIM
 need_packages cmake || skip 'a program built by CMake' 'no cmake'
 need_packages abigail-tools || skip 'the ABI of the last release' 'no abidiff'
 need_packages clang-format || skip 'the layout of the source' 'no clang-format'
+[ "$mode" = one ] || need_packages "${page_packages[@]}" ||
+    skip 'the page in a browser' 'Chromium, its driver or Selenium is missing'
 
 gcc_stage
 if [ "$mode" != one ]; then
