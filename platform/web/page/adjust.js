@@ -1,6 +1,6 @@
 // The sliders for focus, blur, highlights, the band in focus and the tilt of its plane.
 import { $, announce, make, slider } from './dom.js';
-import { change, listen, model, reset, settings } from './model.js';
+import { change, listen, model, reset, settings, tiltLine } from './model.js';
 import { NAMES } from './settings.js';
 import { say } from './words.js';
 
@@ -9,6 +9,9 @@ const WIDEST_BAND = 0.5, STEEPEST = 45; // disparities to either side, degrees
 /** A number as people write it: two figures, and no more. */
 const short = (value) => (value < 9.95 ? Number(value.toFixed(1)) : Math.round(value));
 const percent = (part) => Math.round(100 * part);
+
+/** The blur is that of a lens, whose f-number is known. */
+const metric = () => Boolean(model.photo.limits.f_number && settings()[NAMES.fNumber]);
 
 const range = () => model.photo.range ?? [0, 1];
 
@@ -24,22 +27,20 @@ const SLIDERS = {
     // More blur is to the right: f/16 left, f/1.4 right, a stop as wide as each other.
     aperture: {
         ends: ['sharp', 'soft'],
-        shown: () => Boolean(model.photo.limits.f_number),
+        shown: metric,
         part(s) {
             const [least, most] = model.photo.limits.f_number;
-            const n = s[NAMES.fNumber] ?? most;
-            return Math.log(most / n) / Math.log(most / least);
+            return Math.log(most / s[NAMES.fNumber]) / Math.log(most / least);
         },
         value(p) {
             const [least, most] = model.photo.limits.f_number;
             return { [NAMES.fNumber]: Number((most * (least / most) ** p).toPrecision(3)) };
         },
-        text: (s) => (s[NAMES.fNumber] ? say('fNumber', { n: short(s[NAMES.fNumber]) })
-            : say('pixels', { n: short(s[NAMES.blur] ?? 0) })),
+        text: (s) => say('fNumber', { n: short(s[NAMES.fNumber]) }),
     },
     blur: {
         ends: ['sharp', 'soft'],
-        shown: () => !model.photo.limits.f_number,
+        shown: () => !metric(),
         part: (s) => Math.sqrt((s[NAMES.blur] ?? 0) / model.photo.limits.blur),
         value: (p) => ({ [NAMES.blur]: Number((model.photo.limits.blur * p * p).toFixed(2)) }),
         text: (s) => say('pixels', { n: short(s[NAMES.blur] ?? 0) }),
@@ -67,7 +68,11 @@ const SLIDERS = {
     },
     tilt: {
         part: (s) => ((s[NAMES.tilt] ?? 0) / STEEPEST + 1) / 2,
-        value: (p) => ({ [NAMES.tilt]: Math.round((2 * p - 1) * STEEPEST) }),
+        value(p) {
+            const tilt = Math.round((2 * p - 1) * STEEPEST);
+            return tilt ? { [NAMES.tilt]: tilt, ...tiltLine(model.mark) }
+                : { [NAMES.tilt]: undefined, [NAMES.tiltLine]: undefined };
+        },
         text: (s) => say('tiltAt', { n: s[NAMES.tilt] ?? 0 }),
     },
 };

@@ -1,12 +1,14 @@
 // The chooser of looks, each on a picture of this very photo, and of the aperture's shape.
+import { mostDifferent } from './differ.js';
 import { $, make, radios } from './dom.js';
 import { change, chooseLook, listen, model, settings } from './model.js';
 import { NAMES, over, without } from './settings.js';
 import { thePictures } from './viewer.js';
 import { say } from './words.js';
 
-const SIZE = 320, SHOWN = 192; // sides of a small picture, and of what is shown of it
-const BLUR = 0.05; // of the longer side: enough for the shape of highlights to be seen
+const SIZE = 640, SHOWN = 192; // sides of a small picture, and of what is shown of it
+const PART = 0.36; // of the shorter side, that is shown
+const BLUR = 0.08; // of the longer side: enough for the shape of highlights to be seen
 const REST_MS = 400; // after the last change
 const SHAPES = ['', 'disc', 'polygon:5', 'polygon:6', 'polygon:7', 'polygon:8', 'heart', 'star'];
 const SVG = 'http://www.w3.org/2000/svg';
@@ -47,12 +49,18 @@ function drawing(shape) {
     return svg;
 }
 
-/** A picture into a small canvas, its middle square. */
-export function drawSquare(canvas, bitmap) {
-    const side = Math.min(bitmap.width, bitmap.height);
+function middle({ width, height }) {
+    const side = Math.min(width, height);
 
-    canvas.getContext('2d').drawImage(bitmap, (bitmap.width - side) / 2,
-        (bitmap.height - side) / 2, side, side, 0, 0, canvas.width, canvas.height);
+    return { x: (width - side) / 2, y: (height - side) / 2, side };
+}
+
+/** A square of a picture, the middle one if none is given, into a small canvas. */
+export function drawSquare(canvas, bitmap, { x, y, side } = middle(bitmap)) {
+    const c = canvas.getContext('2d');
+
+    c.imageSmoothingQuality = 'high';
+    c.drawImage(bitmap, x, y, side, side, 0, 0, canvas.width, canvas.height);
 }
 
 let cards = [], chooseCard = () => {}, drawn = '', timer = 0;
@@ -70,6 +78,16 @@ function makeCards() {
     $('looks').hidden = $('looks-title').hidden = cards.length === 0;
 }
 
+/** When all are there, each card shows where they differ most. */
+function lookClosely(bitmaps) {
+    const place = mostDifferent([...bitmaps.values()], PART);
+
+    for (const [canvas, bitmap] of bitmaps) {
+        drawSquare(canvas, bitmap, place);
+        bitmap.close();
+    }
+}
+
 /** Ask for the small pictures where the chooser is seen and they are out of date. */
 function drawCards() {
     const { photo, depth, own } = model;
@@ -82,13 +100,16 @@ function drawCards() {
         return;
     timer = setTimeout(() => {
         drawn = now;
+        const bitmaps = new Map(); // by canvas
         thePictures().wantLooks(cards.map(({ preset, canvas }) => ({
             size: SIZE,
             settings: over(over(over(photo.settings, preset.settings),
                 without(own, preset.settings)), blur),
             done(bitmap) {
                 drawSquare(canvas, bitmap);
-                bitmap.close();
+                bitmaps.set(canvas, bitmap);
+                if (bitmaps.size === cards.length)
+                    lookClosely(bitmaps);
             },
         })));
     }, REST_MS);

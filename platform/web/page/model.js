@@ -1,6 +1,6 @@
 // What the page knows: the photo that is open, and how it is to look. Parts of the page change it
 // by these functions and listen to it; none of them calls another.
-import { over, without } from './settings.js';
+import { NAMES, over, without } from './settings.js';
 
 export const model = {
     photo: null, // as the server told it: session, name, width, height, depth, limits, presets...
@@ -49,9 +49,19 @@ export function change(some) {
     tell('settings');
 }
 
+/** The line about which a tilted plane of focus turns: level, through what was tapped. */
+export function tiltLine(mark) {
+    const { width, height } = model.photo;
+    const y = mark && Math.round(mark.y * (height - 1));
+
+    return { [NAMES.tiltLine]: mark ? [0, y, width - 1, y] : undefined };
+}
+
 /** Focus on what was tapped. */
 export function focusOn(focus, x, y) {
-    change({ focus });
+    const tilted = settings()[NAMES.tilt] ? tiltLine({ x, y }) : {};
+
+    change({ focus, ...tilted });
     model.mark = { x, y };
     tell('mark');
 }

@@ -95,24 +95,40 @@ function card({ name, depth }) {
     return { name, image, mark, item: make('li', {}, button) };
 }
 
-/** Small pictures come one after another, so that opening a photo does not wait for a folder. */
-async function fetchThumbnails(cards) {
-    const left = [...cards];
-    const work = async () => {
-        while (left.length) {
-            const one = left.shift();
-            try {
-                const { blob, depth } = await server.thumbnail(one.name);
-                one.image.onload = () => URL.revokeObjectURL(one.image.src);
-                one.image.src = URL.createObjectURL(blob);
-                one.mark(depth);
-            } catch {
-                one.image.classList.add('missing');
-            }
-        }
-    };
+/** Small pictures are asked for as their cards come into sight, a few at a time, so that opening a
+ * photo does not wait for a folder. */
+function fetchThumbnails(cards) {
+    const inSight = [];
+    let under = 0;
 
-    await Promise.all(Array.from({ length: AT_ONCE }, work));
+    const next = async () => {
+        if (under === AT_ONCE || inSight.length === 0)
+            return;
+        const one = inSight.shift();
+        under++;
+        try {
+            const { blob, depth } = await server.thumbnail(one.name);
+            one.image.onload = () => URL.revokeObjectURL(one.image.src);
+            one.image.src = URL.createObjectURL(blob);
+            one.mark(depth);
+        } catch {
+            one.image.classList.add('missing');
+        }
+        under--;
+        next();
+    };
+    const observer = new IntersectionObserver((entries) => {
+        for (const entry of entries) {
+            if (!entry.isIntersecting)
+                continue;
+            observer.unobserve(entry.target);
+            inSight.push(cards.find(({ item }) => item === entry.target));
+            next();
+        }
+    });
+
+    for (const { item } of cards)
+        observer.observe(item);
 }
 
 async function list() {

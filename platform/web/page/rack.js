@@ -152,9 +152,9 @@ async function save(format, button) {
 }
 
 function makeSaveButtons() {
-    const { pull_formats: formats = [] } = model.photo;
+    const { films = [] } = model.photo; // formats that the server can write
 
-    $('pull-buttons').replaceChildren($('play'), ...formats.map((format) => {
+    $('pull-buttons').replaceChildren($('play'), ...films.map((format) => {
         const button = make('button', { 'data-format': format,
             textContent: say('savePull', { format: say(`format.${format}`) ?? format }) });
         button.addEventListener('click', () => save(format, button));

@@ -122,4 +122,4 @@ async function file(path, query, body) {
 
 export const save = (session, as, settings) => file('save', { session, as }, settings);
 export const pull = (session, as, settings, keys) =>
-    file('pull', { session, as }, { ...settings, keys });
+    file('pull', { session, as, size: 0 }, { ...settings, keys });

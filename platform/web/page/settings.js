@@ -9,6 +9,7 @@ export const NAMES = {
     band: 'focus-width',
     aperture: 'aperture',
     tilt: 'tilt-angle',
+    tiltLine: 'tilt-line',
 };
 
 /** `change` over `base`. The blur is given in pixels or as an f-number, whichever came last. */

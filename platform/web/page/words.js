@@ -145,7 +145,7 @@ const words = {
     timeAt: '{n} s',
     savePull: 'Save as {format}',
     pullWaits: 'Making the {format}. This takes a while…',
-    format: { gif: 'GIF', png: 'animated PNG', mp4: 'MP4 video', webm: 'WebM video', apng: 'APNG', y4m: 'Y4M' },
+    format: { gif: 'GIF', apng: 'animated PNG', mp4: 'MP4 video', webm: 'WebM video' },
 
     // saving
     save: 'Save',
