@@ -34,11 +34,11 @@ c.drawImage(from, 0, 0, 96, 72);
 return [...c.getImageData(0, 0, 96, 72).data].filter((_, i) => i % 4 < 3);
 '''
 
-# How much neighbouring pixels of the screen differ, in a column of the picture from 0 to 1.
+# How much neighbouring pixels of the screen differ, in a part of the stage.
 SHARPNESS = '''
-const canvas = document.getElementById('canvas'), [from, to] = arguments;
+const canvas = document.getElementById('canvas'), [from, to, top, bottom] = arguments;
 const x = Math.round(from * canvas.width), width = Math.round((to - from) * canvas.width);
-const y = Math.round(canvas.height * 0.2), height = Math.round(canvas.height * 0.6);
+const y = Math.round(top * canvas.height), height = Math.round((bottom - top) * canvas.height);
 const copy = new OffscreenCanvas(width, height);
 const c = copy.getContext('2d', { willReadFrequently: true });
 c.drawImage(canvas, -x, -y);
@@ -161,9 +161,9 @@ class Browser:
         self.rest()
         return self.run(SAMPLES)
 
-    def sharpness(self, left, right):
+    def sharpness(self, left, right, top=0.2, bottom=0.8):
         self.rest()
-        return self.run(SHARPNESS, left, right)
+        return self.run(SHARPNESS, left, right, top, bottom)
 
     def errors(self):
         """Lines of the console that are errors or warnings, since the last call."""

@@ -242,12 +242,11 @@ class Page(unittest.TestCase):
     def test_tilt_turns_about_what_was_tapped(self):
         b = self.browser
         self.open()
-        b.tap(*FACE)
-        b.rest()
-        sharp, far = b.sharpness(0.5, 0.6), b.samples()
+        b.tap(*WALL)
+        sharp, level = b.sharpness(0.04, 0.12, 0.28, 0.32), b.samples()
         b.find('tilt').send_keys(*[browser.Keys.PAGE_UP] * 4)
-        self.changes(far, 'tilt')
-        self.assertGreater(b.sharpness(0.5, 0.6), 0.8 * sharp)
+        self.changes(level, 'tilt')
+        self.assertGreater(b.sharpness(0.04, 0.12, 0.28, 0.32), 0.9 * sharp)
         b.until(lambda: 'tilt-line' in b.driver.current_url, 'line in the link')
 
     def test_before_and_after(self):
