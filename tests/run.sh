@@ -182,7 +182,7 @@ clang_stage() {
     say 'clang, release: all but the command, the same pictures as gcc'
     need_packages clang || { skip clang 'no clang'; return; }
     CC=clang CXX=clang++ build clang --buildtype=release || return
-    run clang --no-suite cli --no-suite scripts
+    run clang --no-suite cli --no-suite scripts --no-suite web
     same_bytes clang
 }
 
@@ -383,6 +383,7 @@ need_packages python3-dev python3-numpy python3-distributed ||
     skip 'the package for Python' 'Python.h, numpy or Dask is missing'
 need_packages libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev gstreamer1.0-tools \
     gstreamer1.0-plugins-base gstreamer1.0-plugins-good || skip 'the element of GStreamer' 'GStreamer is missing'
+need_packages libmicrohttpd-dev "${page_packages[@]}" || skip 'the page of refocus serve' 'no Chromium'
 need_packages libgegl-dev gegl gimp || skip 'the operation of GEGL' 'GEGL or GIMP is missing'
 need_packages cmake || skip 'a program built by CMake' 'no cmake'
 need_packages abigail-tools || skip 'the ABI of the last release' 'no abidiff'
