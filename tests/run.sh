@@ -377,13 +377,12 @@ need_packages libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev lib
 need_packages libtiff-dev libopenexr-dev libwebp-dev libjxl-dev libraw-dev ||
     skip 'TIFF, OpenEXR, WebP, JPEG XL and camera raw' 'their libraries are missing'
 need_packages libcamera-dev || skip libcamera 'its library is missing'
-need_packages libmicrohttpd-dev || skip 'the page' 'libmicrohttpd is missing'
+need_packages libmicrohttpd-dev || skip 'refocus serve' 'libmicrohttpd is missing'
 need_packages libsdl2-dev xvfb xdotool || skip 'the window' 'SDL2, Xvfb or xdotool is missing'
 need_packages python3-dev python3-numpy python3-distributed ||
     skip 'the package for Python' 'Python.h, numpy or Dask is missing'
 need_packages libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev gstreamer1.0-tools \
     gstreamer1.0-plugins-base gstreamer1.0-plugins-good || skip 'the element of GStreamer' 'GStreamer is missing'
-need_packages libmicrohttpd-dev "${page_packages[@]}" || skip 'the page of refocus serve' 'no Chromium'
 need_packages libgegl-dev gegl gimp || skip 'the operation of GEGL' 'GEGL or GIMP is missing'
 need_packages cmake || skip 'a program built by CMake' 'no cmake'
 need_packages abigail-tools || skip 'the ABI of the last release' 'no abidiff'

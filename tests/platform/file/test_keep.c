@@ -186,7 +186,7 @@ static void sides(void **state)
                                         "tiff:ImageWidth=\"8\" tiff:ImageLength=\"4\""),
                                false),
                       sizes[i][0], sizes[i][1]);
-        struct rf_png_chunk chunk;
+        struct rf_png_chunk chunk = {0};
         struct bytes text;
 
         assert_int_equal(count(&png, "iTXt", &chunk), 1);
