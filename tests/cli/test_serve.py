@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """The command `refocus serve`, over HTTP: what it answers, what it refuses, and that nobody's
 request is felt by others. Usage: test_serve.py REFOCUS [unittest arguments]"""
+import atexit
 import concurrent.futures
 import http.client
 import json
 import os
 import random
-import re
 import shutil
 import signal
 import socket
@@ -42,6 +42,7 @@ class Server:
         self.process = subprocess.Popen([REFOCUS, 'serve', *arguments, '--port', '0'], text=True,
                                         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE)
+        atexit.register(self.process.kill)  # where a test has failed
         self.link = self.process.stdout.readline().strip()
         parts = urlsplit(self.link)
         self.port, self.path, self.host = parts.port, parts.path, parts.netloc
