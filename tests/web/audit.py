@@ -1,4 +1,4 @@
-"""What everybody needs of a page, checked in the browser: names, contrast, sizes to touch, a focus
+"""Checks in the browser of the needs that everybody has: names, contrast, sizes to touch, a focus
 that shows, nothing cut off. Each check returns the lines that it complains about."""
 
 SHARED = '''
@@ -8,7 +8,7 @@ const controls = () => [...document.querySelectorAll(
     'button, a[href], input, [role=slider], [tabindex="0"]')].filter(seen);
 const told = (element) => `${element.tagName.toLowerCase()}#${element.id || element.value || ''} ` +
     `"${(element.getAttribute('aria-label') ?? element.textContent).trim().slice(0, 30)}"`;
-/* What is touched: a radio button is drawn by its label. */
+/* A radio button is drawn, and touched, by its label. */
 const touched = (element) => element.type === 'radio' ? element.closest('label') : element;
 const rgba = (text) => {
     const c = document.createElement('canvas').getContext('2d', { willReadFrequently: true });
@@ -17,7 +17,8 @@ const rgba = (text) => {
     const [r, g, b, a] = c.getImageData(0, 0, 1, 1).data;
     return [r, g, b, a / 255];
 };
-const blend = (over, under) => over.slice(0, 3).map((v, i) => v * over[3] + under[i] * (1 - over[3]));
+const blend = (over, under) => over.slice(0, 3)
+    .map((v, i) => v * over[3] + under[i] * (1 - over[3]));
 const light = (colour) => {
     const [r, g, b] = colour.map((v) => (v /= 255) <= 0.04045 ? v / 12.92
         : ((v + 0.055) / 1.055) ** 2.4);

@@ -34,7 +34,7 @@ c.drawImage(from, 0, 0, 96, 72);
 return [...c.getImageData(0, 0, 96, 72).data].filter((_, i) => i % 4 < 3);
 '''
 
-# How much neighbouring pixels of the screen differ, in a part of the stage.
+# The mean difference of neighbouring pixels of the screen, in a part of the stage.
 SHARPNESS = '''
 const canvas = document.getElementById('canvas'), [from, to, top, bottom] = arguments;
 const x = Math.round(from * canvas.width), width = Math.round((to - from) * canvas.width);
@@ -51,7 +51,7 @@ return sum / (width * height);
 
 
 def missing():
-    """What is not there, in a sentence, or None."""
+    """A sentence about a part that is not there, or None."""
     if webdriver is None:
         return 'python3-selenium is not installed'
     for program in ('chromium', 'chromedriver'):

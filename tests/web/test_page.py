@@ -114,7 +114,7 @@ class Page(unittest.TestCase):
         os.remove(path)
         return data
 
-    # What a person does
+    # Things that a person does
 
     def test_opening(self):
         b = self.browser
@@ -210,7 +210,7 @@ class Page(unittest.TestCase):
         b.tap(*WALL)
         self.changes(near, 'another tap')
         self.assertGreater(face, 100 + float(b.find('focus').get_attribute('value')))
-        # Where the focus is now, it is sharper than with the focus elsewhere.
+        # The place in focus is sharper than with the focus elsewhere.
         sharp = b.sharpness(0.05, 0.12)
         b.tap(*FACE)
         self.assertGreater(sharp, 1.5 * b.sharpness(0.05, 0.12))
@@ -439,7 +439,7 @@ class Page(unittest.TestCase):
         b.tap(*WALL)  # the mark is drawn again
         self.assertLess(difference(picture, b.samples()), 1)
 
-    # What everybody needs
+    # Needs that everybody has
 
     def walk(self):
         """Tab through the page; returns what was met."""

@@ -1,5 +1,5 @@
-// Where several pictures of one photo differ most: looks are told apart there, and not in the
-// middle, where most photos are sharp.
+// The place where several pictures of one photo differ most is found: looks are told apart there,
+// and not in the middle, where most photos are sharp.
 
 const SIDE = 120; // of the copies that are compared
 const LEAST = 2; // codes of a mean difference that can be seen

@@ -7,7 +7,7 @@ import { thePictures } from './viewer.js';
 import { say } from './words.js';
 
 const SIZE = 640, SHOWN = 192; // sides of a small picture, and of what is shown of it
-const PART = 0.36; // of the shorter side, that is shown
+const PART = 0.36; // is shown of the shorter side
 const BLUR = 0.08; // of the longer side: enough for the shape of highlights to be seen
 const REST_MS = 400; // after the last change
 const SHAPES = ['', 'disc', 'polygon:5', 'polygon:6', 'polygon:7', 'polygon:8', 'heart', 'star'];
@@ -16,8 +16,7 @@ const SVG = 'http://www.w3.org/2000/svg';
 function shapeName(shape) {
     const blades = /^polygon:(\d+)/.exec(shape);
 
-    return blades ? say('shapePolygon', { n: blades[1] })
-        : say({ '': 'shapeLook', disc: 'shapeDisc', heart: 'shapeHeart', star: 'shapeStar' }[shape]);
+    return blades ? say('shapePolygon', { n: blades[1] }) : say(`shape.${shape || 'look'}`);
 }
 
 /** The outline of a shape, in a square from -1 to 1. */
@@ -78,7 +77,7 @@ function makeCards() {
     $('looks').hidden = $('looks-title').hidden = cards.length === 0;
 }
 
-/** When all are there, each card shows where they differ most. */
+/** Each card, once all are there, shows the place where they differ most. */
 function lookClosely(bitmaps) {
     const place = mostDifferent([...bitmaps.values()], PART);
 

@@ -1,4 +1,4 @@
-// What the page knows: the photo that is open, and how it is to look. Parts of the page change it
+// The page knows this: the photo that is open, and how it is to look. Parts of the page change it
 // by these functions and listen to it; none of them calls another.
 import { NAMES, over, without } from './settings.js';
 

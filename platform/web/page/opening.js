@@ -23,7 +23,7 @@ export function showScreen(screen) {
     $('back').hidden = !model.photo;
 }
 
-/** Whether it was opened; if not, the line says why. */
+/** True when it was opened; if not, the line says why. */
 async function open(what, look = null, own = {}) {
     const name = what.name ?? what.file.name;
 

@@ -34,7 +34,7 @@ function inPixels({ kind, points, radius }) {
     return kind === 'object' ? { ...brush, disparity: tool.from } : brush;
 }
 
-/** How the server's kinds are called here; a session may have been painted before. */
+/** The server's kinds have other names here; a session may have been painted before. */
 const called = { all: 'ground', fill: 'gradient' };
 
 function later(work) {
@@ -71,7 +71,7 @@ function send(made) {
 
 export const strokesMade = () => done;
 
-/** The same strokes on a session that is new. */
+/** Make these strokes again, on a session that is new. */
 export function paintAgain(strokes) {
     const { photo } = model;
 

@@ -1,6 +1,6 @@
-// Which picture is asked for next. One question is under way at a time, and the newest one comes
-// next: a quick picture at once while something moves, a full one when all rests, then the picture
-// before the blur for the divider, then small ones of looks.
+// The choice of the picture that is asked for next. One question is under way at a time, and the
+// newest one comes next: a quick picture at once while something moves, a full one when all rests,
+// then the picture before the blur for the divider, then small ones of looks.
 import { picture, ServerError } from './server.js';
 import { NAMES, over } from './settings.js';
 
@@ -13,7 +13,7 @@ const key = (wanted) => JSON.stringify([wanted.session, wanted.depth, wanted.kin
 
 export class Pictures {
     /** `show(bitmap, wanted)` and `showBefore(bitmap)` take a picture, `busy(yes)` is told
-     * whether something is still to come, and `failed(error)` of what did not succeed. */
+     * when something is still to come, and `failed(error)` of failures. */
     constructor({ show, showBefore, busy, failed }) {
         Object.assign(this, { show, showBefore, busy, failed });
         this.wanted = null; // { session, depth, kind, settings, size, before }
@@ -48,8 +48,8 @@ export class Pictures {
         this.go();
     }
 
-    /** The server lets a question about focus or depth stop a picture: none is asked for until
-     * that is answered. */
+    /** The server lets a question about focus or depth stop a picture: none is asked for before
+     * the answer. */
     async pauseFor(question) {
         this.paused++;
         this.under?.abort.abort();
@@ -152,7 +152,7 @@ export class Pictures {
             this.before = { session: job.session, size: job.size || Infinity };
             this.showBefore(bitmap);
         } else {
-            // Of an overlay there is one size alone.
+            // An overlay has one size alone.
             const size = job.kind ? Infinity : job.quick ? 0 : job.size || Infinity;
             this.shown = { key: job.key, size };
             this.show(bitmap, job);

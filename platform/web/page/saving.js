@@ -57,7 +57,8 @@ async function copyLink(item) {
 
 function item(word, chosen) {
     const button = make('button', {},
-        make('span', { textContent: say(word) }), make('small', { textContent: say(`${word}More`) }));
+        make('span', { textContent: say(word) }),
+        make('small', { textContent: say(`${word}More`) }));
 
     button.addEventListener('click', () => chosen(button));
     return button;

@@ -23,7 +23,7 @@ export function over(base, change) {
     return settings;
 }
 
-/** What is left of `changes` where `other` does not speak of it. */
+/** The `changes` of which `other` does not speak. */
 export function without(changes, other) {
     const left = {};
 

@@ -6,8 +6,8 @@ const words = {
     // opening
     open: 'Open',
     openTitle: 'Open a photo',
-    openHint: 'Drop a photo here, or choose one. Photos with depth refocus at once; for others you ' +
-        'paint the depth.',
+    openHint: 'Drop a photo here, or choose one. Photos with depth refocus at once; for others ' +
+        'you paint the depth.',
     choose: 'Choose a photo…',
     folder: 'In this folder',
     folderEmpty: 'There are no photos in this folder.',
@@ -27,8 +27,8 @@ const words = {
 
     // the picture
     stage: 'Photo',
-    stageHelp: 'Arrow keys move a cross, Enter focuses there. Plus and minus zoom, 0 fits, 1 shows ' +
-        'full size, B shows before and after.',
+    stageHelp: 'Arrow keys move a cross, Enter focuses there. Plus and minus zoom, 0 fits, ' +
+        '1 shows full size, B shows before and after.',
     stagePaintHelp: 'Arrow keys move a cross, Enter puts the brush down and lifts it. Plus and ' +
         'minus zoom, 0 fits, 1 shows full size.',
     compare: 'Before / after',
@@ -47,7 +47,6 @@ const words = {
     fit: 'Fit',
     fullSize: '1:1',
     focused: 'Focus set.',
-    zoomed: '{n} %',
 
     // tabs
     tools: 'Tools',
@@ -86,11 +85,8 @@ const words = {
     // looks and the shape of the aperture
     looks: 'Look',
     shapes: 'Aperture shape',
-    shapeLook: 'of the look',
-    shapeDisc: 'round',
     shapePolygon: '{n} blades',
-    shapeHeart: 'heart',
-    shapeStar: 'star',
+    shape: { look: 'of the look', disc: 'round', heart: 'heart', star: 'star' },
     look: {
         plain: 'Plain', classic: 'Classic', smooth: 'Smooth', bubble: 'Bubble', ring: 'Ring',
         swirl: 'Swirl', cine: 'Cine', vintage: 'Vintage', heart: 'Heart', star: 'Star',
@@ -122,7 +118,6 @@ const words = {
     backTo: 'Back to stroke {n}, {kind}',
     forthTo: 'Forth to stroke {n}, {kind}',
     penDown: 'Brush down.',
-    penUp: 'Brush up.',
     painted: '{kind} painted.',
     undone: 'Undone.',
     redone: 'Redone.',
@@ -131,7 +126,6 @@ const words = {
     pullHelp: 'Focus on something and mark it, then on something else and mark that.',
     mark: 'Mark this focus',
     keys: 'Key frames',
-    keyAt: 'Key frame {n}, {text}',
     goTo: 'Show key frame {n}',
     secondsTo: 'Seconds to key frame {n}',
     seconds: 's',
@@ -177,7 +171,7 @@ export function say(key, values = {}) {
 }
 
 /** Fill in the text of the elements that name theirs: data-word is the text, data-label the name
- * that a screen reader says. */
+ * for a screen reader. */
 export function fillIn(root) {
     for (const element of root.querySelectorAll('[data-word]'))
         element.textContent = say(element.dataset.word);
