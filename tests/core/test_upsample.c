@@ -1,6 +1,7 @@
 /* test_upsample.c: the depth upsampler through its public face. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -159,24 +160,36 @@ static void keeps_planes(void **state)
     end(&s);
 }
 
-/* An edge of the photo between two samples is where the step comes to lie, to the pixel. */
-static void follows_the_photo(void **state)
+/* An edge of the photo between two samples is where the step comes to lie, to the pixel, with
+ * samples that are all sure, too. */
+static void follows_the_photo_to(uint16_t far, bool sure)
 {
     struct refocus_upsample_params params = refocus_upsample_params_default();
 
-    (void)state;
     for (int edge = 40; edge < 60; edge++) {
         struct scene s = make(96, 64, 16, 10);
+
+        memset(s.confidence, 255, 160);
+        params.confidence = sure ? s.confidence : NULL;
+        params.confidence_stride = 16;
 
         for (int k = 0; k < 96 * 64; k++)
             memset(s.rgb + 3 * k, k % 96 < edge ? 200 : 40, 3);
         for (int k = 0; k < 160; k++) /* sample i is at pixel 6 i + 3 */
-            s.map[k] = k % 16 * 6 + 3 < edge ? 60000 : 8000;
+            s.map[k] = k % 16 * 6 + 3 < edge ? 60000 : far;
         assert_int_equal(run(&s, &params, s.out), REFOCUS_OK);
         for (int k = 0; k < 96 * 64; k++)
-            assert_int_equal(s.out[k], k % 96 < edge ? 60000 : 8000);
+            assert_int_equal(s.out[k], k % 96 < edge ? 60000 : far);
         end(&s);
     }
+}
+
+static void follows_the_photo(void **state)
+{
+    (void)state;
+    follows_the_photo_to(8000, false);
+    follows_the_photo_to(8000, true);
+    follows_the_photo_to(0, true);
 }
 
 /* A wrong sample that is not to be trusted does not show; a trusted one does. */

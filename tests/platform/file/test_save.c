@@ -356,6 +356,8 @@ static void links_stay(void **state)
     place = refocus_file_place("sub/root.ppm");
     assert_string_equal(place, "/none/a.ppm");
     free(place);
+    assert_int_equal(unlink("sub/beside.ppm"), 0);
+    assert_int_equal(unlink("sub/root.ppm"), 0);
 }
 
 /* Temporary files for others to write: each is new, lies where a link points, is as open as the
