@@ -302,6 +302,24 @@ static void grain(void **state)
     params.look.grain_seed = 2;
     assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     assert_true(memcmp(first, out, sizeof out) != 0);
+    /* a method that renders the frame as a whole: grain is in each of its tiles */
+    params.render.method = REFOCUS_METHOD_SCATTER;
+    params.look.grain = 0;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+    memcpy(first, out, sizeof out);
+    params.look.grain = 2;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+    for (int y = 0; y < H; y += 16)
+        for (int x = W - 48; x < W; x += 16) {
+            int changed = 0;
+
+            for (int i = 0; i < 256; i++) {
+                const int at = 3 * ((y + i / 16) * W + x + i % 16);
+
+                changed += out[at] != first[at];
+            }
+            assert_in_range(changed, 128, 256);
+        }
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
 }
