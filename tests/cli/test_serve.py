@@ -158,8 +158,12 @@ class Serving(Case):
             raise AssertionError('the server ended with %s, its folder %s' % (status, left))
 
     def opened(self, photo='deep é.jpg'):
+        """A session; the first settings are "first", in pixels of blur "settings"."""
         session = self.server.open(photo)
         self.addCleanup(self.server.post, 'close?session=' + session['session'])
+        session['first'] = dict(session['settings'])
+        if session['settings'].pop('f-number', None):
+            session['settings']['blur'] = 6
         return session
 
     def refused(self, status, words, answer):
@@ -232,9 +236,13 @@ class Answers(Serving):
 
     def test_f_number_in_place_of_blur(self):
         session = self.opened()
-        settings = {'focus': 0.5, 'f-number': 2}
-        self.assertTrue(self.server.picture(session, 1, settings).body ==
-                        self.rendered(settings, '--strip'))
+        self.assertNotIn('blur', session['first'])
+        self.assertTrue(1 <= session['first']['f-number'] <= 22, session['first'])
+        for request, settings in enumerate(({'focus': 0.5, 'f-number': 2},
+                                             session['first']), 1):
+            self.assertTrue(self.server.picture(session, request, settings).body ==
+                            self.rendered(settings, '--strip'))
+        self.assertNotIn('f-number', self.opened('none.jpg')['first'])
 
     def test_quick_pictures(self):
         session = self.opened()
@@ -609,14 +617,15 @@ class Limits(Serving):
 
         def is_replaced(request):
             """Whether the focus came while the picture was under way; it may come before."""
-            large = pool.submit(self.server.picture, session, request, settings)
-            time.sleep(0.1)
+            large = pool.submit(self.server.picture, session, request,
+                                dict(settings, focus=request % 7 / 7))
+            time.sleep(0.005 * (request % 20))
             focus = self.server.post('focus?session=' + session['session'], {'x': 0.5, 'y': 0.5})
             self.assertEqual(focus.status, 200)
             return large.result().status == 409
 
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
-            self.assertTrue(any(is_replaced(request) for request in range(10, 20)))
+            self.assertTrue(any(is_replaced(request) for request in range(10, 70)))
 
     def test_eight_clients(self):
         settings = {'focus': 0.8, 'blur': 10}

@@ -94,22 +94,45 @@ static json_t *range_json(const struct serving *s)
     return json_pack("[f, f]", least / 65535.0, most / 65535.0);
 }
 
+static bool has_metres(const struct serving *s)
+{
+    return s->input.report.near_m > 0 && s->input.report.far_m > s->input.report.near_m;
+}
+
+enum { WIDEST = 1, NARROWEST = 22 }; /* f-numbers */
+
 static json_t *limits_json(const struct serving *s)
 {
-    const bool metres =
-        s->input.report.near_m > 0 && s->input.report.far_m > s->input.report.near_m;
-
     return json_pack("{s:i, s:o, s:[i, i]}", "blur", (int)REFOCUS_PLAIN_BLUR_RADIUS, "f_number",
-                     metres ? json_pack("[i, i]", 1, 22) : json_null(), "highlights", 1, 16);
+                     has_metres(s) ? json_pack("[i, i]", WIDEST, NARROWEST) : json_null(),
+                     "highlights", 1, 16);
+}
+
+/* The f-number that has a blur, in tenths; NAN: none does, or it is beyond the limits. */
+static double f_number_of(const struct serving *s, double blur)
+{
+    struct lens_settings wide = s->base.lens;
+    double most, number;
+
+    wide.blur = NAN;
+    wide.f_number = WIDEST;
+    if (!has_metres(s) || !(blur > 0) ||
+        input_blur_and_f_number(&s->input, &wide, &most, &number) != EXIT_DONE)
+        return NAN;
+    number = round(10 * number * most / blur) / 10; /* the blur goes with 1 / number */
+    return number >= WIDEST && number <= NARROWEST ? number : NAN;
 }
 
 /* The settings to begin with. */
 static json_t *settings_json(const struct serving *s, const struct engine *engine, double blur)
 {
+    const double number = f_number_of(s, blur);
+
     return json_pack("{s:f, s:f, s:s, s:i, s:s, s:s, s:s}", "focus",
-                     (double)engine->params.render.focus_disparity, "blur", blur, "highlights",
-                     "auto", "focus-width", 0, "bokeh", bokeh_preset_name(0), "quality",
-                     engine_quality_name(QUALITY_STANDARD), "method",
+                     (double)engine->params.render.focus_disparity,
+                     isnan(number) ? "blur" : "f-number", isnan(number) ? blur : number,
+                     "highlights", "auto", "focus-width", 0, "bokeh", bokeh_preset_name(0),
+                     "quality", engine_quality_name(QUALITY_STANDARD), "method",
                      refocus_method_name((uint32_t)s->base.engine.method));
 }
 
