@@ -155,6 +155,57 @@ static void depth_beside_an_original(void **state)
     }
 }
 
+/* Whatever is said of a depth is read again, beside a picture that lies on its side, too. */
+static void all_of_a_depth(void **state)
+{
+    static const uint16_t disparity[6] = {0, 1000, 2000, 40000, 50000, 65535};
+    static const uint8_t confidence[6] = {0, 50, 100, 150, 200, 255};
+    struct refocus_depth_write depth = refocus_depth_write_default();
+    char path[64];
+
+    (void)state;
+    depth.disparity = disparity;
+    depth.width = 3;
+    depth.height = 2;
+    depth.stride = 6;
+    depth.confidence = confidence;
+    depth.confidence_stride = 3;
+    depth.near_m = 0.5;
+    depth.far_m = 8;
+    depth.focus_x = 0.25;
+    depth.focus_y = 0.75;
+    depth.focus_distance = 2.5;
+    depth.blur_at_infinity = 0.02;
+    snprintf(path, sizeof path, "/tmp/refocus-keep-%ld.jpg", (long)getpid());
+    for (int orientation = 1; orientation <= 8; orientation++) {
+        struct bytes file = make_jpeg(48, 32, false, false);
+        struct refocus_photo *photo;
+        FILE *const out = fopen(path, "wb");
+
+        jpeg_insert_exif(&file, make_exif(true, orientation));
+        assert_non_null(out);
+        assert_int_equal(fwrite(file.data, 1, file.size, out), file.size);
+        assert_int_equal(fclose(out), 0);
+        bytes_free(&file);
+        assert_int_equal(refocus_photo_write_depth(path, path, &depth, NULL), REFOCUS_OK);
+        assert_int_equal(refocus_photo_read(&photo, path, NULL, NULL), REFOCUS_OK);
+        assert_int_equal(photo->depth->width, 3);
+        assert_non_null(photo->confidence);
+        for (int i = 0; i < 6; i++) {
+            assert_int_equal(sample_at(photo->depth, i % 3, i / 3), 65535 - disparity[i]);
+            assert_int_equal(photo->confidence[i], confidence[i]);
+        }
+        assert_near(photo->depth->near_m, 0.5);
+        assert_near(photo->depth->far_m, 8);
+        assert_near(photo->info->focus_x, 0.25);
+        assert_near(photo->info->focus_y, 0.75);
+        assert_near(photo->info->focus_distance, 2.5);
+        assert_near(photo->info->blur_at_infinity, 0.02);
+        refocus_photo_free(&photo);
+        assert_int_equal(unlink(path), 0);
+    }
+}
+
 /* A picture with transparency says that it is dropped, another does not. */
 static void transparency(void **state)
 {
@@ -204,11 +255,9 @@ static void sides(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(chunks),
-        cmocka_unit_test(nothing_is_made_up),
-        cmocka_unit_test(sides),
-        cmocka_unit_test(transparency),
-        cmocka_unit_test(depth_beside_an_original),
+        cmocka_unit_test(chunks),       cmocka_unit_test(nothing_is_made_up),
+        cmocka_unit_test(sides),        cmocka_unit_test(all_of_a_depth),
+        cmocka_unit_test(transparency), cmocka_unit_test(depth_beside_an_original),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
