@@ -131,6 +131,6 @@ void rf_keep_warn(const struct refocus_photo *photo, const struct rf_xmp_keep *k
                   struct refocus_reason *reason)
 {
     if (rf_kept_of(photo)->gain_map || rf_xmp_keep_found(keep) & RF_XMP_CUT_GAIN_MAP) {
-        rf_leave_out(reason, "the HDR gain map of the photo does not fit the picture: left out");
+        rf_leave_out(reason, "it is written without an HDR gain map, which the photo has");
     }
 }
