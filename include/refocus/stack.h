@@ -127,8 +127,10 @@ REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refo
  * 2008), where steps of depth are cheaper across edges of the photo; the least one, with a parabola
  * through its neighbours, is the depth.
  *
- * Where the mean of colour over a window is another one than in the reference, something has moved:
- * such a frame is not used there, and if none is left but the reference, depth is not sure.
+ * Where the mean of colour over a window, a tenth of the photo wide, is another one than in the
+ * reference, something has moved: such a frame is not used there, and depth is filled from around
+ * it. A blur wider than the window may be taken for movement; what moves and has the colour of what
+ * is behind it is not seen.
  *
  * A sample is sure where the least sharp frame has less than half of the E_k of the sharpest: noise
  * is alike in all. Each sample takes the depth of most of the sure ones around it, on its side of

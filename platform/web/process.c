@@ -219,7 +219,7 @@ void process_thumbnail(struct server *server, struct request *request)
         link = &(*link)->next;
     *link = request;
     request->next = NULL;
-    server->thumbnail_count++; /* it begins when the loop comes round */
+    server->thumbnail_count++; /* the next process_tick() begins it */
 }
 
 /* The whole reply is here. */

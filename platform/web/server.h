@@ -68,7 +68,7 @@ struct process {
     struct process *next;
     pid_t pid;
     int socket, control;
-    bool session; /* else it makes a thumbnail and ends */
+    bool session; /* the process keeps its photo open; false: it makes a thumbnail and ends */
     bool open;    /* the photo is open */
     char id[RF_WEB_SESSION + 1], name[256];
     char folder[1024]; /* for its temporary files, which end with it */

@@ -7,7 +7,8 @@
  * thin things stay. No vote comes from where nothing is sure: depth stays as it was chosen.
  *
  * Votes of a row are below OWN 255 + 2 * 255 * 128 < 2^17, those of a column 128 times as much,
- * 2^24, so that a product with KEEP fits 32 bits. Costs, sums and paths lend their memory.
+ * 2^24, so that a product with KEEP fits 32 bits. The planes of costs, sums, paths and moved
+ * sharpness lend their memory.
  */
 #include "focus_stack/focus_stack.h"
 

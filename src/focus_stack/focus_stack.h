@@ -11,8 +11,8 @@
 
 enum {
     RF_STACK_MOST_SAMPLES = 3 << 20, /* at the most, in the maps that the work is done on */
-    RF_STACK_GREY = 4096,
-    RF_STACK_LEVELS = 4, /* pictures that frames are aligned by, each half the last */
+    RF_STACK_GREY = 4096, /* stands for 0 in `colour`, more than any difference below it */
+    RF_STACK_LEVELS = 4,  /* pictures that frames are aligned by, each half the last */
 };
 
 /* z -> c z + t in the complex plane, about the middle of the picture: scale and rotation, shift in

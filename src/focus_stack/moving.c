@@ -1,7 +1,7 @@
 /* moving.c: what moves while a focus stack is photographed is found, and taken from one frame.
  *
- * A change of focus spreads light, but hardly moves any over a distance: means of luminance over a
- * window stay. So something has moved where
+ * A change of focus spreads light, but hardly moves any over a distance: means over a window stay,
+ * of luminance, of R - G and of B - G. So something has moved where one of them has
  *
  *     |mean frame - gain mean reference| > NOISE + contrast / 2
  *
@@ -24,8 +24,8 @@ enum {
     SWEEPS = 8,        /* the most times that a region grows, each way */
 };
 
-/* Four planes in the memory of `moved`, and as many in that of the frame's finest small picture,
- * which no one needs any more; the last of them becomes the mask. */
+/* Planes of one frame: four in the memory of `moved`, and the mask, deviation and contrast in that
+ * of the frame's finest small picture, which no one needs after the alignment. */
 struct planes {
     int width, height, reach;
     int16_t *reference, *frame, *reference_mean, *frame_mean, *deviation, *contrast;

@@ -150,7 +150,8 @@ static void lamp_of(int only)
             const bool lamp = i / 3 == Y * SIDE + X, lit = lamp && (only < 0 || i % 3 == only);
             const double expected = lit ? 8 : dark;
 
-            if (lamp && !lit && map.samples.channels == 1) { /* it keeps its hue */
+            /* A map of one channel keeps the lamp's hue. */
+            if (lamp && !lit && map.samples.channels == 1) {
                 assert_true((double)rf_half_value(halves[i]) > 2 * dark);
                 assert_true((double)rf_half_value(halves[i]) < 8 * dark);
                 continue;
