@@ -3,10 +3,11 @@
 # What builds the library and a program that uses it; and what the README's commands use.
 core_packages=(meson ninja-build gcc libc6-dev)
 feature_packages=(pkg-config g++ libpng-dev libturbojpeg0-dev libexpat1-dev libheif-dev
-    libjansson-dev libsdl2-dev libcamera-dev libopencv-core-dev libopencv-imgproc-dev
+    libjansson-dev libsdl2-dev libsdl2-ttf-dev fonts-dejavu-core libcamera-dev
+    libopencv-core-dev libopencv-imgproc-dev
     libopencv-calib3d-dev libopencv-dnn-dev libtiff-dev libopenexr-dev libwebp-dev libjxl-dev
     libraw-dev libmicrohttpd-dev libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev
-    libgegl-dev)
+    libgegl-dev libpipewire-0.3-dev)
 
 # The page of `refocus serve` is tried in a browser: tests/run.sh --full.
 page_packages=(chromium chromium-driver python3-selenium)

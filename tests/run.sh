@@ -198,7 +198,7 @@ minimal_stage() {
 bare_stage() {
     say 'the command without cameras, windows and OpenCV: it works with what is left'
     CC=gcc CXX=g++ build bare --buildtype=release -Dv4l2=disabled -Dlibcamera=disabled \
-        -Dsdl2=disabled -Dopencv=disabled -Dheic=disabled -Dtools=enabled || return
+        -Dpipewire=disabled -Dsdl2=disabled -Dopencv=disabled -Dheic=disabled -Dtools=enabled || return
     run bare --suite cli --suite capture
 }
 
@@ -221,12 +221,13 @@ memory_stage() {
 }
 
 # The whole suite, most of which has one thread, takes a quarter of an hour of processor time.
-# Threads of OpenCV, libcamera and GLib are not ours to judge.
+# Threads of OpenCV, libcamera, PipeWire and GLib are not ours to judge.
 thread_stage() {
     say "thread sanitizer: $([ "$mode" = long ] && echo all tests || echo the tests with threads)"
     [ "$mode" = long ] || suites=(threads)
     CC=gcc CXX=g++ build tsan --buildtype=debugoptimized -Db_sanitize=thread -Db_lundef=false \
-        -Dopencv=disabled -Dlibcamera=disabled -Dgstreamer=disabled -Dgegl=disabled -Dexamples=false \
+        -Dopencv=disabled -Dlibcamera=disabled -Dpipewire=disabled -Dgstreamer=disabled \
+        -Dgegl=disabled -Dexamples=false \
         "${one_set[@]}" || return
     # gcc 12's run time does not know kernels that place memory more randomly.
     if setarch -R true 2>/dev/null; then
@@ -312,6 +313,13 @@ packages_stage() {
     try_package debian "$top/tests/consumers/debian.sh" "$top" "$builds/debian"
 }
 
+# 200,000 frames of which 1 % have a fault: memory and descriptors stay as they were.
+soak_stage() {
+    say 'soak: 200,000 frames, 1 % of them with a fault'
+    try_package soak python3 "$top/tests/cli/soak.py" "$builds/gcc/platform/cli/refocus"
+    head -n 4 "$builds/soak.log" | sed 's/^/    /'
+}
+
 lists=$top/tests/sanitizers # of what sanitizers pass over, and why
 
 # Memory that nobody wrote. Libraries of others are not built for it, so that only what the core and
@@ -347,26 +355,20 @@ integer_stage() {
 
 # The corpora, which every build's tests run, under clang's sanitizers, and a minute of searching each.
 fuzz_stage() {
-    local target name
+    local name log=$builds/fuzz_runs.log
     say 'fuzz targets'
     need_packages clang libclang-rt-dev || { skip fuzz 'no clang with libFuzzer'; return; }
     CC=clang CXX=clang++ build fuzz --buildtype=debugoptimized -Dfuzz=true \
         -Db_sanitize=address,undefined -Db_lundef=false -Dexamples=false \
         -Dc_args=-fno-sanitize-recover=all "${one_set[@]}" || return
     run fuzz --suite fuzz --timeout-multiplier 5
-    for target in $(find "$builds/fuzz/tests/fuzz" -name 'fuzz-*' -type f -perm -u+x | sort); do
-        name=${target##*/fuzz-}
-        say "fuzz target $name: $fuzz_seconds s"
-        mkdir -p "$builds/fuzz/found/$name"
-        if (cd "$builds/fuzz/found" && "$target" -max_total_time="$fuzz_seconds" -print_final_stats=1 \
-                -rss_limit_mb=2048 -timeout=20 "$name" \
-                "$top/tests/fuzz/${name%%-*}/corpus/${name#*-}" \
-                >"$name.log" 2>&1); then
-            passed=$((passed + 1))
-        else
-            fail "fuzz target $name" "$builds/fuzz/found/$name.log"
-        fi
-    done
+    say "fuzz targets: $fuzz_seconds s each"
+    "$top/tests/fuzz_runs.py" "$builds/fuzz" "$builds/fuzz/found" --seconds "$fuzz_seconds" \
+        2>&1 | tee "$log" | sed 's/^/    /'
+    passed=$((passed + $(grep -c ' edges$' "$log")))
+    while read -r name; do
+        fail "fuzz target $name" "$builds/fuzz/found/$name.log"
+    done < <(sed -n 's/: .*, FOUND SOMETHING$//p' "$log")
 }
 
 need_packages meson ninja-build pkg-config gcc g++ libc6-dev python3 libcmocka-dev ||
@@ -376,19 +378,32 @@ need_packages libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev lib
     skip 'picture files and the refocus command' 'their libraries are missing'
 need_packages libtiff-dev libopenexr-dev libwebp-dev libjxl-dev libraw-dev ||
     skip 'TIFF, OpenEXR, WebP, JPEG XL and camera raw' 'their libraries are missing'
+need_packages libheif-examples libjxl-tools webp ||
+    skip 'AVIF, JPEG XL and WebP in the corpus of photos' 'the programs that write them are missing'
 need_packages libcamera-dev || skip libcamera 'its library is missing'
 need_packages libmicrohttpd-dev || skip 'refocus serve' 'libmicrohttpd is missing'
-need_packages libsdl2-dev xvfb xdotool || skip 'the window' 'SDL2, Xvfb or xdotool is missing'
+need_packages libsdl2-dev libsdl2-ttf-dev fonts-dejavu-core xvfb xdotool ||
+    skip 'the window' 'SDL2, SDL2_ttf, a font, Xvfb or xdotool is missing'
 need_packages python3-dev python3-numpy python3-distributed ||
     skip 'the package for Python' 'Python.h, numpy or Dask is missing'
 need_packages libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev gstreamer1.0-tools \
     gstreamer1.0-plugins-base gstreamer1.0-plugins-good || skip 'the element of GStreamer' 'GStreamer is missing'
+need_packages libpipewire-0.3-dev pipewire pipewire-bin wireplumber dbus-daemon gstreamer1.0-pipewire ||
+    skip PipeWire 'its library, daemon, session manager or elements of GStreamer are missing'
 need_packages libgegl-dev gegl gimp || skip 'the operation of GEGL' 'GEGL or GIMP is missing'
 need_packages cmake || skip 'a program built by CMake' 'no cmake'
 need_packages abigail-tools || skip 'the ABI of the last release' 'no abidiff'
 need_packages clang-format || skip 'the layout of the source' 'no clang-format'
 [ "$mode" = one ] || need_packages "${page_packages[@]}" ||
     skip 'the page in a browser' 'Chromium, its driver or Selenium is missing'
+# Rules of axe-core, besides the checks of tests/web/audit.py, where npm can fetch them.
+axe=axe-core-4.10.3
+if [ "$mode" != one ] && command -v npm >/dev/null && mkdir -p "$builds/axe" &&
+    (cd "$builds/axe" && timeout 120 npm pack --silent "${axe%-*}@${axe##*-}" && tar xzf "$axe.tgz") >/dev/null 2>&1; then
+    export REFOCUS_AXE=$builds/axe/package/axe.min.js
+else
+    echo '    axe-core is not there: the page is tested by its own checks alone'
+fi
 
 gcc_stage
 if [ "$mode" != one ]; then
@@ -410,6 +425,7 @@ if [ "$mode" = long ]; then
     integer_stage
     fuzz_stage
     packages_stage
+    soak_stage
     contrib_stage
     libcamera_stage
 fi

@@ -206,8 +206,9 @@ static inline struct refocus_upsample_params refocus_upsample_params_default(voi
  * @param out     receives 16-bit disparities of the photo's size, 65535 nearest; may
  *                not overlap the map
  * @param stride  bytes from a row of @p out to the next; even; may be negative
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (about 7 bytes a pixel
- *         are needed), REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED, REFOCUS_ERR_THREAD.
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (up to 8 bytes a sample,
+ *         330 W (H / rows + 1) for W x H pixels and rows of samples, and 40000 a thread are
+ *         needed), REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED, REFOCUS_ERR_THREAD.
  *         On an error @p out is untouched.
  *
  * Thread-safe.

@@ -86,7 +86,7 @@ static inline struct refocus_depth_edges_report refocus_depth_edges_report_defau
  *                the map
  * @param stride  bytes from a row of @p out to the next; even; may be negative
  * @param report  receives what was found; may be NULL
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (about 30 bytes a pixel of the
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY (about 27 bytes a pixel of the
  *         size that the work is done at are needed, and 3 of the photo if it is Y, U, V),
  *         REFOCUS_ERR_SIZE, REFOCUS_ERR_UNSUPPORTED, REFOCUS_ERR_THREAD. On an error @p out holds
  *         nothing of use, and the report is untouched.

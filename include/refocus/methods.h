@@ -52,6 +52,7 @@ enum refocus_method_trait {
                                             others  render up to REFOCUS_PLAIN_BLUR_RADIUS */
     REFOCUS_METHOD_TAKES_YUV = 1 << 5,   /**< it renders photos of Y, U and V as they are */
     REFOCUS_METHOD_HIGHLIGHTS = 1 << 6,  /**< struct refocus_highlight_params counts */
+    REFOCUS_METHOD_TAKES_DEEP = 1 << 7,  /**< it renders photos and pictures of deep formats */
 };
 
 /** Bits of enum refocus_method_trait, or-ed; 0 for an unknown method. Thread-safe. */
@@ -111,8 +112,8 @@ struct refocus_scatter_params {
                                eq. 17 and 18 where it is 1.22 lambda N: 1.9 micrometres at f/2.8,
                                15 at f/22, by the size of a pixel on the sensor */
     float depth_ratio;    /**< z1 / z0, 1 to 1000, for the 1 / z^2 of eq. 20; 1 = all samples
-                               count the same, the default, for the library does not know metres;
-                               the command takes them of the depth map */
+                               count the same, the default: 1 / z^2 lets what is near and blurred
+                               outweigh what is sharp behind it */
 };
 
 static inline struct refocus_scatter_params refocus_scatter_params_default(void)

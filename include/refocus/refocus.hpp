@@ -181,6 +181,10 @@ class temporal : public handle<refocus_temporal, refocus_temporal_destroy>
     {
         refocus_temporal_reset(handle_);
     }
+    void cancel() noexcept
+    {
+        refocus_temporal_cancel(handle_);
+    }
 
     /** @param photo  nullptr = by depth alone */
     void run(const refocus_image *photo, const refocus_disparity &map, uint16_t *out,

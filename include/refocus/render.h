@@ -264,8 +264,9 @@ REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,
  * back to highlights is; where much of the photo is brighter than white, rays meet up to 16
  * times white. Means saturate at 4 times white. Pixels that come out as they went in do so in full,
  * U and V where all pixels do that share them. P010 and P016 are read as R, G and B, their chroma
- * as that of 2 x 2 pixels. Deep photos and pictures are rendered by the sweep alone, in linear
- * light and without sigma.
+ * as that of 2 x 2 pixels. Deep photos and pictures are rendered by the methods with the trait
+ * REFOCUS_METHOD_TAKES_DEEP, in linear
+ * light and without sigma; blur and interpolated take light above white for white.
  *
  * @param params  see struct refocus_render_params; of a photo of Y, U and V the region begins and
  *                ends at even columns and, in 4:2:0, rows, or at the picture's end
@@ -277,8 +278,8 @@ REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (nothing prepared),
  *         REFOCUS_ERR_UNSUPPORTED (another format than these; a field that this library
  *         does not know; a deep format, of the photo or of @p out, without params.deep, with
- *         another method than the sweep, another blend than linear, sigma below 1e6, star filter
- *         or grain; of a photo of Y, U and V another
+ *         a method without REFOCUS_METHOD_TAKES_DEEP, another blend than linear, sigma below 1e6,
+ *         star filter or grain; of a photo of Y, U and V another
  *         method than sweep and search, cat's eye, fringe, star filter,
  *         grain or an aperture that differs before and behind the focus),
  *         REFOCUS_ERR_CANCELLED, REFOCUS_ERR_BUSY. On REFOCUS_ERR_CANCELLED parts of @p out are

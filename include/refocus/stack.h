@@ -27,6 +27,17 @@ enum refocus_stack_align {
     REFOCUS_STACK_ALIGN_COUNT
 };
 
+/** The order of focus of frames without positions. */
+enum refocus_stack_order {
+    REFOCUS_STACK_ORDER_ADDED, /**< they follow each other as they are added, the farthest focus
+                                    first; the default */
+    REFOCUS_STACK_ORDER_FOUND, /**< sharpness tells it. No picture tells which of its ends is far:
+                                    of the order and its reverse the one is taken that has more
+                                    pairs of frames as they were added. Wrong where most blocks
+                                    hold two depths: a fence blurred over all that is behind it */
+    REFOCUS_STACK_ORDER_COUNT
+};
+
 /** How to work. Start from refocus_stack_params_default(). */
 struct refocus_stack_params {
     uint32_t struct_size; /**< sizeof(struct refocus_stack_params) */
@@ -37,6 +48,7 @@ struct refocus_stack_params {
     int32_t reference;    /**< the result has the geometry of this frame, 1 to frames in the order
                                that they are added in; 0 = the one in the middle of the focus */
     uint32_t align;       /**< enum refocus_stack_align */
+    uint32_t order;       /**< enum refocus_stack_order; frames with positions go by those */
 };
 
 static inline struct refocus_stack_params
@@ -72,6 +84,19 @@ struct refocus_stack_result {
                          are wrong. A stack that is reversed cannot be told from one that is not. */
     float moving;   /**< receives the share of the photo where something moved between the frames:
                          it is as in the reference, and its depth is filled from around it */
+    float order_margin; /**< receives how sure an order is that was found: how much deeper the
+                             valleys between peaks of sharpness would be in the next best one, a
+                             block of the picture, in parts of its sharpest frame. Below 0.01 it
+                             may be wrong; 1 where there was nothing to find */
+    float alike; /**< receives the least correlation of the luminance of a frame, as it was aligned,
+                      with its neighbour's, the greatest of three scales: 0.8 and more in stacks;
+                    where it is below 0.5 the camera was moved too far, or frames show different
+                    places */
+    int32_t reference; /**< receives the number of the frame whose geometry the result has */
+    /** Receives the numbers of the frames, from 1, from the farthest focus to the nearest; 0 after
+     *  them. */
+    uint8_t order[REFOCUS_STACK_MOST_FRAMES];
+    uint32_t reserved_too; /**< 0 */
 };
 
 static inline struct refocus_stack_result refocus_stack_result_default(void)
@@ -84,10 +109,11 @@ static inline struct refocus_stack_result refocus_stack_result_default(void)
 }
 
 /**
- * Make an empty stack. It takes all its memory here: for each frame 3 bytes a pixel and 2 a sample
- * of the map that the work is done at, which has at most 3 million samples; 3 more a sample for
- * each frame, their number rounded up to 8, 16 or 32; some 10 a sample and 3 a pixel. Nine frames
- * of 2 megapixels take 240 MB, of 12 megapixels 620 MB.
+ * Make an empty stack. It takes all its memory here: for each frame 3 bytes a pixel and 2 a
+ * sample of the map that the work is done at, which has at most 3 million samples; 3 more a sample
+ * for each depth, 13 to 17 with nine frames and fewer, their number rounded up to 16 or 24, else
+ * one for each frame, rounded up to 16, 24 or 32; some 10 a sample and 3 a pixel. Nine frames of 2
+ * megapixels take 290 MB, of 12 megapixels 700 MB.
  *
  * @param stack  receives it, or NULL on an error
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY, REFOCUS_ERR_SIZE (it would need
@@ -106,8 +132,10 @@ REFOCUS_API void refocus_stack_destroy(struct refocus_stack **stack);
  *                  exposure and white balance.
  * @param position  of the focus in dioptres, 1 / metres, or any number that is proportional to them
  *                  up to an offset: larger = nearer. NAN if it is not known: frames without
- *                  positions are taken for equally far apart, in the order that they are added in,
- *                  the farthest focus first. Either all frames have one or none has.
+ *                  positions are taken for equally far apart, in the order of enum
+ *                  refocus_stack_order. Either all frames have one or none has. Frames of one
+ *                  focus and several apertures are no stack: how their blur compares tells how far
+ *                  a surface is from the focus, but not on which side.
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (not an image of that size, a format of Y, U and V or
  *         of more than 8 bits, an infinite position, one that another frame has, one where others
  *         had none), REFOCUS_ERR_STATE (there are as many as were announced); on an error the
@@ -117,15 +145,25 @@ REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refo
                                   double position);
 
 /**
- * Make depth and the photo. With E the sharpness of a frame, the sum of absolute second differences
- * over one and two pixels, and E_k the mean of its square over a Gaussian of 1.4 samples, and that
- * over squares of 9 and 17, frame k costs
+ * Make depth and the photo. An order that is wanted is found first: the one in which the sharpness
+ * of blocks, 144 along the longer side, has the fewest and shallowest valleys between two peaks;
+ * the order that frames were added in stays where it is as good. With E the sharpness of a frame,
+ * the sum of absolute second differences over one and two pixels, and E_k the mean of its square
+ * over a Gaussian of 1.4 samples, and that over squares of 9 and 17, frame k costs
  *
  *     sum over the three of (max E - E_k) / (max E + noise)
  *
  * at a sample. Costs are aggregated along eight directions (semi-global matching, Hirschmueller
  * 2008), where steps of depth are cheaper across edges of the photo; the least one, with a parabola
  * through its neighbours, is the depth.
+ *
+ * With nine frames and fewer, depths between frames have costs, too: with s_k the share of frame k
+ * in the sum of all E_k, and x_k the steps between its focus and the depth, a depth costs
+ *
+ *     sum of abs(s_k - m_k) / 2,  m_k in proportion to 1 / (1 + rho x_k^2)
+ *
+ * in place of the above, by the best of six rho. Two frames have one rho for all of the photo:
+ * their focus should be on the nearest and the farthest surface.
  *
  * Where the mean of colour over a window, a tenth of the photo wide, is another one than in the
  * reference, something has moved: such a frame is not used there, and depth is filled from around
@@ -136,6 +174,19 @@ REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refo
  * is alike in all. Each sample takes the depth of most of the sure ones around it, on its side of
  * the photo's edges. So what is flat, clipped or grainy takes the depth of what is around it.
  * Integer arithmetic: the same bytes on every processor.
+ *
+ * Windows of sharpness take the silhouette of a surface for part of what is behind. So where depths
+ * that are a quarter of all apart lie within 8 samples (not with two frames), edges of the frame
+ * that is focused on the nearer one count, and votes are counted once more, those for the nearer
+ * side by half.
+ *
+ * In the photo, the blur of nearer surfaces lies over what is in focus behind. With F and A the
+ * light and the coverage of the pixels around, each spread over its circle of confusion, a pixel
+ * with A up to 3/4 becomes (I - F) / (1 - A) in linear light, of sRGB; each channel keeps a quarter
+ * of its light. Where what is nearer is clipped, the pixel is that of the frame that is focused on
+ * it. The blur radius is that of ten, up to a fortieth of the longer side for the whole range, by
+ * which the photo predicts the frames best away from depth edges; if it leaves more than three
+ * quarters of the squared error that no blur leaves, the photo stays as it is.
  *
  * A stack is finished once: what aligns its frames overwrites them.
  *

@@ -12,7 +12,8 @@
 extern "C" {
 #endif
 
-/** A filter over the depth maps of a video. Opaque; reentrant: one thread at a time. */
+/** A filter over the depth maps of a video. Opaque; reentrant: one thread at a time, but for
+ *  refocus_temporal_cancel(). */
 struct refocus_temporal;
 
 /** How to filter. Start from refocus_temporal_params_default(). */
@@ -42,7 +43,7 @@ static inline struct refocus_temporal_params refocus_temporal_params_default(int
 }
 
 /**
- * Make a filter. It takes all its memory, about 12 bytes a sample, here.
+ * Make a filter. It takes all its memory, about 43 bytes a sample, here.
  *
  * @param filter  receives the filter, or NULL on an error
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY
@@ -52,6 +53,13 @@ REFOCUS_API int refocus_temporal_create(struct refocus_temporal **filter,
 
 /** End a filter and set the handle to NULL; a NULL handle is fine. */
 REFOCUS_API void refocus_temporal_destroy(struct refocus_temporal **filter);
+
+/**
+ * End the refocus_temporal_run() that is running, if any, early: it returns REFOCUS_ERR_CANCELLED
+ * within eight rows of samples. Has no effect on later calls. With NULL it does nothing.
+ * Thread-safe.
+ */
+REFOCUS_API void refocus_temporal_cancel(struct refocus_temporal *filter);
 
 /** Forget the past: after a cut, or after a gap. With NULL it does nothing. */
 REFOCUS_API void refocus_temporal_reset(struct refocus_temporal *filter);
@@ -80,21 +88,27 @@ REFOCUS_API int refocus_temporal_rescale(struct refocus_temporal *filter, double
  *     out = d + k (1 - (d - p)^2 / noise^2) (p - d),    k = min(strength, n / (n + 1))
  *
  * while |d - p| < noise and the photo is alike in both places. Else out = d at once, so
- * that nothing trails behind what moves; but where the photo stands still and d jumps,
- * the last value stays until the next frame agrees with the new one.
+ * that nothing trails behind what moves. But where the photo is alike and d jumps, as it does
+ * beside edges, the last seven frames vote, each by how alike it is: p stays until another
+ * surface leads it by half of all votes, or until no frame of seven knows it, and out is then
+ * the mean of those that voted for the other. A block of which most lies elsewhere in this
+ * frame and in the last is believed at once.
  *
  * The scale of disparities has to be the same for all frames: give
  * refocus_depth_to_disparity() the near_m and far_m (value_near and value_far) that it
  * reported for the first one, or say how it changes by refocus_temporal_rescale(). Integer
  * arithmetic: the same bytes on every processor.
  *
- * @param photo   the photo of this frame, of any format and size, whose brightness is
- *                compared: of Y, U and V the codes of Y as they are; NULL = by depth alone
+ * @param photo   the photo of this frame, of any format of integers and any size, whose
+ *                brightness is compared: the upper 8 bits of codes as they are, of Y, U and V
+ *                those of Y; NULL = by depth alone
  * @param map     width x height samples
  * @param out     receives width x height samples of 16 bits; may be the map's own
  *                memory
  * @param stride  bytes from a row of @p out to the next; even; may be negative
- * @return REFOCUS_OK, or REFOCUS_ERR_ARGUMENT with @p out untouched
+ * @return REFOCUS_OK, or, with @p out untouched, REFOCUS_ERR_ARGUMENT,
+ *         REFOCUS_ERR_UNSUPPORTED with a photo of floats, or REFOCUS_ERR_CANCELLED, and the
+ *         filter has forgotten the past then
  */
 REFOCUS_API int refocus_temporal_run(struct refocus_temporal *filter,
                                      const struct refocus_image *photo,

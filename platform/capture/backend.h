@@ -26,6 +26,9 @@ struct refocus_source {
     bool streaming;
     int wake_fd;  /* eventfd: readable after an interrupt */
     uint64_t out; /* bit n: buffer n is the caller's */
+    bool focused; /* as the last refocus_source_set_focus() that was obeyed asked for: */
+    uint32_t focus_mode;
+    double focus_position;
     bool sequence_known;
     uint32_t sequence; /* number of the frame before */
 };
@@ -68,7 +71,8 @@ struct rf_source_ops {
 #define RF_DECLARE_SOURCE(name) extern const struct rf_source_ops rf_source_##name;
 RF_SOURCE_LIST(RF_DECLARE_SOURCE)
 #undef RF_DECLARE_SOURCE
-/* Kinds that a build may lack; libcamera is in a module of its own, see modules.h. */
+/* Kinds that a build may lack; libcamera and PipeWire are in modules of their own, see modules.h.
+ */
 extern const struct rf_source_ops rf_source_v4l2, rf_source_libcamera;
 
 /*

@@ -2,6 +2,7 @@
 #include "bytes.h"
 #include <errno.h>
 #include <poll.h>
+#include <string.h>
 #include <unistd.h>
 
 int rf_read_bytes(const struct refocus_source *source, int fd, void *bytes, size_t size,
@@ -23,10 +24,33 @@ int rf_read_bytes(const struct refocus_source *source, int fd, void *bytes, size
     return REFOCUS_OK;
 }
 
+/* A line of a file, in one go: what was read beyond it is read again. */
+static int read_line_at(const struct refocus_source *source, int fd, off_t at, char *line,
+                        size_t size, struct refocus_reason *reason)
+{
+    size_t got;
+    char *end;
+    const int status = rf_read_bytes(source, fd, line, size - 1, &got, reason);
+
+    if (status != REFOCUS_OK)
+        return status;
+    end = got > 0 ? memchr(line, '\n', got) : NULL;
+    if (!end)
+        return got == 0 ? REFOCUS_ERR_END : REFOCUS_ERR_FORMAT;
+    *end = '\0';
+    return lseek(fd, at + (end - line) + 1, SEEK_SET) >= 0
+               ? REFOCUS_OK
+               : rf_capture_fail_errno(reason, errno, source->name);
+}
+
 int rf_read_line(const struct refocus_source *source, int fd, char *line, size_t size,
                  struct refocus_reason *reason)
 {
-    for (size_t n = 0; n + 1 < size; n++) {
+    const off_t at = lseek(fd, 0, SEEK_CUR);
+
+    if (at >= 0)
+        return read_line_at(source, fd, at, line, size, reason);
+    for (size_t n = 0; n + 1 < size; n++) { /* the pipe keeps what is beyond it */
         size_t got;
         const int status = rf_read_bytes(source, fd, line + n, 1, &got, reason);
 

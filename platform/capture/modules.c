@@ -8,7 +8,7 @@
 #include <string.h>
 #include "modules.h"
 
-#if defined RF_HAVE_LIBCAMERA || defined RF_HAVE_WINDOW
+#if defined RF_HAVE_LIBCAMERA || defined RF_HAVE_PIPEWIRE || defined RF_HAVE_WINDOW
 static const int here;
 
 /* The address of a symbol in the module of that file, or NULL. */
@@ -58,6 +58,43 @@ const struct rf_source_ops *rf_libcamera(void)
 }
 #else
 const struct rf_source_ops *rf_libcamera(void)
+{
+    return NULL;
+}
+#endif
+
+#ifdef RF_HAVE_PIPEWIRE
+static pthread_once_t pipewire_once = PTHREAD_ONCE_INIT;
+static const struct rf_source_ops *pipewire_source;
+static const struct rf_sink_ops *pipewire_sink;
+
+static void load_pipewire(void)
+{
+    static const char installed[] = "refocus/refocus-pipewire";
+    static const char built[] = "../pipewire/refocus-pipewire";
+
+    pipewire_source = load(installed, built, "rf_source_pipewire");
+    pipewire_sink = load(installed, built, "rf_sink_pipewire");
+}
+
+const struct rf_source_ops *rf_pipewire_source(void)
+{
+    pthread_once(&pipewire_once, load_pipewire);
+    return pipewire_source;
+}
+
+const struct rf_sink_ops *rf_pipewire_sink(void)
+{
+    pthread_once(&pipewire_once, load_pipewire);
+    return pipewire_sink;
+}
+#else
+const struct rf_source_ops *rf_pipewire_source(void)
+{
+    return NULL;
+}
+
+const struct rf_sink_ops *rf_pipewire_sink(void)
 {
     return NULL;
 }

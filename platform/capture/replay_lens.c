@@ -25,12 +25,13 @@ void rf_lens_describe(const struct rf_lens *lens, const struct rf_script *script
     out->position = lens->shown;
 }
 
-/* Autofocus takes the middle for the subject. */
+/* Autofocus takes the middle for the subject. A lens that is switched off stops on its way. */
 void rf_lens_focus(struct rf_lens *lens, const struct rf_script *script, uint32_t mode,
                    double position)
 {
-    lens->target =
-        mode == REFOCUS_SOURCE_FOCUS_FIXED ? position : 0.5 * (script->lens[0] + script->lens[1]);
+    lens->target = mode == REFOCUS_SOURCE_FOCUS_FIXED ? position
+                   : mode == REFOCUS_SOURCE_FOCUS_OFF ? lens->position
+                                                      : 0.5 * (script->lens[0] + script->lens[1]);
 }
 
 void rf_lens_move(struct rf_lens *lens, const struct rf_script *script, struct refocus_frame *frame)

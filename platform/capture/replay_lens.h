@@ -1,5 +1,5 @@
-/* replay_lens.h: the lens of a scripted camera: it moves by frames, sticks, and may say what is not
- * so; which picture of a focus stack it sees. */
+/* replay_lens.h: the lens of a scripted camera: it moves frame by frame, may stick and report a
+ * wrong position, and decides which picture of a focus stack is seen. */
 #ifndef RF_CAPTURE_REPLAY_LENS_H
 #define RF_CAPTURE_REPLAY_LENS_H
 

@@ -75,10 +75,13 @@ static bool parse_event(struct rf_script *script, const char *word[4])
     return false;
 }
 
-static bool set_text(char **text, const char *value)
+static bool set_text(struct rf_script *script, char **text, const char *value)
 {
+    const bool there = value && *value;
+
     free(*text);
-    *text = value && *value ? strdup(value) : NULL;
+    *text = there ? strdup(value) : NULL;
+    script->lacks_memory |= there && !*text;
     return *text != NULL;
 }
 
@@ -90,11 +93,12 @@ static bool parse_line(struct rf_script *script, const char *word[4])
     if (strcmp(key, "at") == 0)
         return parse_event(script, word);
     if (strcmp(key, "from") == 0) /* scripts within scripts might never end */
-        return word[1] && strncmp(word[1], "replay:", 7) != 0 && set_text(&script->from, word[1]);
+        return word[1] && strncmp(word[1], "replay:", 7) != 0 &&
+               set_text(script, &script->from, word[1]);
     if (strcmp(key, "stack") == 0)
         return rf_pattern_check(word[1] ? word[1] : "") == 1 &&
                parse_number(word[2], 2, 1000, &script->pictures) &&
-               set_text(&script->stack, word[1]);
+               set_text(script, &script->stack, word[1]);
     if (strcmp(key, "lens") == 0)
         return parse_number(word[1], 0, 1e6, &script->lens[0]) &&
                parse_number(word[2], script->lens[0], 1e6, &script->lens[1]);
@@ -102,7 +106,7 @@ static bool parse_line(struct rf_script *script, const char *word[4])
         return parse_number(word[1], -1e6, 1e6, &script->lens_error);
     if (strcmp(key, "jpeg") == 0) {
         script->format = REFOCUS_FRAME_MJPEG;
-        return set_text(&script->jpeg, word[1]);
+        return set_text(script, &script->jpeg, word[1]);
     }
     if (strcmp(key, "format") == 0) {
         script->format = rf_format_by_name(word[1] ? word[1] : "");
@@ -159,11 +163,14 @@ int rf_script_parse(struct rf_script *script, char *text, struct refocus_reason 
         for (char *w = strtok_r(line, " \t\r", &within); w && n < 4;
              w = strtok_r(NULL, " \t\r", &within))
             word[n++] = w;
-        if (n > 0 && !parse_line(script, word))
+        if (n > 0 && !parse_line(script, word)) {
+            if (script->lacks_memory)
+                return rf_capture_fail_memory(reason);
             return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
                                    "line %d of the script: '%.40s %.40s' is not "
                                    "understood; platform/README.md lists what is",
                                    number, word[0], word[1] ? word[1] : "");
+        }
     }
     if (script->stride == 0)
         script->stride = rf_plane_row(script->format, 0, script->width);

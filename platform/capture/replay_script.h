@@ -49,6 +49,7 @@ struct rf_script {
     double lens_error;     /* the lens reports its place plus this */
     struct rf_event event[RF_MOST_EVENTS];
     int events;
+    bool lacks_memory; /* a text could not be copied */
 };
 
 /* Fill a script from a text of lines, or of parts with semicolons. On an error the

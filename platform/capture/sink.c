@@ -75,6 +75,16 @@ static const struct rf_sink_ops *find_window(struct refocus_reason *reason)
     return window;
 }
 
+static const struct rf_sink_ops *find_pipewire(struct refocus_reason *reason)
+{
+    const struct rf_sink_ops *pipewire = rf_pipewire_sink();
+
+    if (!pipewire)
+        rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                        "this build has no pipewire, or its module is gone");
+    return pipewire;
+}
+
 static const struct rf_sink_ops *find(const char *name, const char **rest,
                                       struct refocus_reason *reason)
 {
@@ -90,6 +100,10 @@ static const struct rf_sink_ops *find(const char *name, const char **rest,
             return kinds[i];
         }
     }
+    if (strncmp(name, "pipewire:", 9) == 0) {
+        *rest = name + 9;
+        return find_pipewire(reason);
+    }
 #ifndef RF_HAVE_V4L2
     if (strncmp(name, "v4l2:", 5) == 0) {
         rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED, "this build has no v4l2");
@@ -99,7 +113,7 @@ static const struct rf_sink_ops *find(const char *name, const char **rest,
     if (rf_pattern_check(name) == 1)
         return &rf_sink_pictures;
     rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                    "no such kind of sink; give window, v4l2:DEVICE, y4m:FILE, "
+                    "no such kind of sink; give window, v4l2:DEVICE, pipewire:[NAME], y4m:FILE, "
                     "raw:FILE[,FORMAT], null or a pattern of pictures such as frames-%%04d.png");
     return NULL;
 }

@@ -16,7 +16,7 @@ static const struct rf_source_ops *const backends[] = {
 enum { BACKENDS = sizeof backends / sizeof *backends };
 
 /* Kinds that a build may lack; all of them are cameras. */
-static const char *const optional[] = {"v4l2", "libcamera"};
+static const char *const optional[] = {"v4l2", "libcamera", "pipewire"};
 enum { OPTIONAL = sizeof optional / sizeof *optional };
 
 const char *refocus_source_backends(void)
@@ -50,8 +50,10 @@ static const struct rf_source_ops *find(const char *name, const char **rest)
         if (*rest)
             return backends[i];
     }
-    *rest = behind(name, "libcamera");
-    return *rest ? rf_libcamera() : NULL;
+    if ((*rest = behind(name, "libcamera")))
+        return rf_libcamera();
+    *rest = behind(name, "pipewire");
+    return *rest ? rf_pipewire_source() : NULL;
 }
 
 static int unknown(const char *name, struct refocus_reason *reason)
@@ -294,6 +296,11 @@ int refocus_source_restart(struct refocus_source *source, struct refocus_source_
     if (rf_source_poll(source, -1, 0, 0, NULL) == REFOCUS_ERR_CANCELLED)
         return rf_capture_fail(reason, REFOCUS_ERR_CANCELLED, "interrupted");
     status = source->ops->reopen(source, reason);
+    /* A device that lost its power forgets its focus. Pictures out of focus are better than none:
+     * whether it obeys is not asked. */
+    if (status == REFOCUS_OK && source->focused)
+        source->ops->set_focus(source, source->focus_mode, source->focus_position,
+                               &(struct refocus_reason){""});
     if (status == REFOCUS_OK)
         status = begin(source, mode, reason);
     source->counters.restarts += status == REFOCUS_OK;
@@ -342,8 +349,10 @@ int refocus_source_list(refocus_source_found *found, void *user)
 
     if (!found)
         return REFOCUS_ERR_ARGUMENT;
-    for (int i = 0; i <= BACKENDS; i++) {
-        const struct rf_source_ops *ops = i < BACKENDS ? backends[i] : rf_libcamera();
+    for (int i = 0; i < BACKENDS + 2; i++) {
+        const struct rf_source_ops *ops = i < BACKENDS    ? backends[i]
+                                          : i == BACKENDS ? rf_libcamera()
+                                                          : rf_pipewire_source();
         const int n = ops && ops->list ? ops->list(found, user) : 0;
 
         if (n < 0)

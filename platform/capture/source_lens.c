@@ -44,7 +44,13 @@ int refocus_source_set_focus(struct refocus_source *source, uint32_t mode, doubl
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "%g is no position of its lens; give %g to %g", position, lens.least,
                                lens.greatest);
-    return source->ops->set_focus(source, mode, position, reason);
+    status = source->ops->set_focus(source, mode, position, reason);
+    if (status == REFOCUS_OK) {
+        source->focused = true;
+        source->focus_mode = mode;
+        source->focus_position = position;
+    }
+    return status;
 }
 
 int refocus_source_lock_exposure(struct refocus_source *source, int lock,

@@ -41,13 +41,13 @@ static uint32_t colour_space(const char *name)
     return strcmp(name, "mono16") == 0 ? REFOCUS_FRAME_Y16 : REFOCUS_FRAME_ANY;
 }
 
-/* A side of the picture; 0, which is out of the range, where the text says more than an int holds.
- */
+/* A side of the picture; 0, which is out of the range, where the text is no such number. */
 static int parse_side(const char *text)
 {
-    const long side = strtol(text, NULL, 10);
+    char *end;
+    const long side = strtol(text, &end, 10);
 
-    return side > 0 && side <= REFOCUS_MAX_SIDE ? (int)side : 0;
+    return *end == '\0' && side > 0 && side <= REFOCUS_MAX_SIDE ? (int)side : 0;
 }
 
 static int parse_y4m(const struct refocus_source *source, struct refocus_reason *reason)

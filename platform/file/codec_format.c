@@ -199,7 +199,7 @@ int rf_codec_write(const struct rf_format *format, struct rf_codec_slot *slot,
                    struct rf_store *store, const struct rf_rows *rows,
                    const struct refocus_write_options *options, struct refocus_reason *reason)
 {
-    struct rf_xmp_keep keep = {.count = 0};
+    struct rf_xmp_keep keep = {.cut = RF_XMP_CUT_EDITABLE | RF_XMP_CUT_EXTENDED};
     struct rf_extras extras = {.upright = true};
     struct refocus_blob file = {NULL, 0};
     struct rf_bytes xmp = {NULL, 0};

@@ -1,4 +1,4 @@
-/* editable.h: a JPEG that is written holds the all-in-focus original and the depth. */
+/* editable.h: a picture that is written holds the all-in-focus original and the depth. */
 #ifndef RF_FILE_EDITABLE_H
 #define RF_FILE_EDITABLE_H
 
@@ -11,9 +11,10 @@ struct rf_editable {
     struct rf_text standard, extended;
 };
 
-/* Make them of options->keep and options->editable. */
+/* Make them of options->keep and options->editable, for a JPEG or for one packet that holds both.
+ */
 int rf_editable_make(struct rf_editable *editable, const struct refocus_write_options *options,
-                     struct refocus_reason *reason);
+                     bool one_packet, struct refocus_reason *reason);
 void rf_editable_free(struct rf_editable *editable);
 
 #endif

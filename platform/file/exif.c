@@ -161,7 +161,8 @@ static void join_camera(struct rf_exif *exif, const char *make, const char *mode
     if (make[0] == '\0' || strncmp(model, make, strlen(make)) == 0) {
         snprintf(exif->camera, sizeof exif->camera, "%s", model);
     } else {
-        snprintf(exif->camera, sizeof exif->camera, "%s%s%s", make, model[0] ? " " : "", model);
+        snprintf(exif->camera, sizeof exif->camera, "%s%s%.*s", make, model[0] ? " " : "",
+                 (int)(sizeof exif->camera - 2 - strlen(make)), model);
     }
 }
 

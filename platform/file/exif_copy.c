@@ -139,6 +139,7 @@ static bool copy_entry(struct copy *copy, const struct entry *entry, uint8_t *pl
             return false;
         }
         put(copy, place + 2, 2, 4); /* LONG, as EXIF wants it; TIFF has a type of its own, too */
+        put(copy, place + 4, 4, 1); /* however four bytes were counted */
         put(copy, place + 8, 4, offset + copy->base);
     } else if (entry->bytes > 4) {
         if (!append(copy, copy->from.data + entry->value, entry->bytes, &offset)) {

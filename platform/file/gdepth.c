@@ -17,8 +17,8 @@
 
 /* The pictures of a packet, unpacked from Base64 in the places of their texts. */
 struct pictures {
-    struct rf_bytes depth, confidence,
-        original; /* data NULL: not there, not wanted, or no Base64 */
+    /* data NULL: not there, not wanted, or no Base64 */
+    struct rf_bytes depth, confidence, original, matte;
 };
 
 static struct rf_bytes unpack(const struct rf_xmp *xmp, enum rf_xmp_key key)
@@ -39,9 +39,11 @@ static int unpack_pictures(const struct rf_read *read, const struct rf_xmp *xmp,
     pictures->depth = unpack(xmp, RF_XMP_DEPTH_DATA);
     pictures->confidence = unpack(xmp, RF_XMP_DEPTH_CONFIDENCE);
     pictures->original = read->picture_always ? unpack(xmp, RF_XMP_IMAGE_DATA) : none;
-    return rf_check_parts(
-        read, (const struct rf_bytes[]){pictures->depth, pictures->confidence, pictures->original},
-        3, "GDepth and GImage");
+    pictures->matte = read->picture_always ? unpack(xmp, RF_XMP_NOTE_MATTE) : none;
+    return rf_check_parts(read,
+                          (const struct rf_bytes[]){pictures->depth, pictures->confidence,
+                                                    pictures->original, pictures->matte},
+                          4, "GDepth and GImage");
 }
 
 /* Decode an unpacked picture by one of the functions of depth_part.h; the property is used up. */
@@ -224,6 +226,18 @@ static int read_original(struct rf_read *read, struct rf_xmp *xmp, struct rf_byt
     return status;
 }
 
+/* A matte that was given for an earlier result, upright, in place of the original's own. */
+static int read_matte(struct rf_read *read, struct rf_xmp *xmp, struct rf_bytes part)
+{
+    if (!read->picture_always || !xmp->value[RF_XMP_NOTE_MATTE]) {
+        return REFOCUS_OK;
+    }
+    rf_raster_free(&read->matte);
+    read->kept.matte = true;
+    rf_note(read->info, "Refocus: a matte in the file says how much of a pixel is subject");
+    return decode_data(read, xmp, RF_XMP_NOTE_MATTE, part, "Refocus:Matte", rf_take_matte);
+}
+
 int rf_read_gdepth(struct rf_read *read, struct rf_xmp *xmp)
 {
     static const struct rf_range_keys keys = {
@@ -256,6 +270,9 @@ int rf_read_gdepth(struct rf_read *read, struct rf_xmp *xmp)
     }
     if (status == REFOCUS_OK) {
         status = read_original(read, xmp, pictures.original);
+    }
+    if (status == REFOCUS_OK) {
+        status = read_matte(read, xmp, pictures.matte);
     }
     if (status == REFOCUS_OK) {
         read->info->depth_source = REFOCUS_DEPTH_SOURCE_GDEPTH;

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "formats.h"
 #include "orient.h"
@@ -37,6 +38,14 @@ static void fill_depth(uint16_t *out, const struct refocus_depth_write *depth)
         for (int32_t x = 0; x < depth->width; x++) {
             *out++ = (uint16_t)(65535 - in[x]);
         }
+    }
+}
+
+static void fill_samples(uint16_t *out, const struct refocus_depth_write *depth)
+{
+    for (int32_t y = 0; y < depth->height; y++) {
+        memcpy(out + (size_t)y * (size_t)depth->width,
+               (const char *)depth->disparity + y * depth->stride, 2 * (size_t)depth->width);
     }
 }
 
@@ -101,6 +110,12 @@ static int put_png(struct rf_text *text, const char *begin,
     }
     free(png.data);
     return status;
+}
+
+int rf_gdepth_put_samples(struct rf_text *text, const char *begin,
+                          const struct refocus_depth_write *samples, struct refocus_reason *reason)
+{
+    return put_png(text, begin, fill_samples, samples, 1, reason);
 }
 
 int rf_gdepth_put_data(struct rf_text *text, const struct refocus_depth_write *depth,

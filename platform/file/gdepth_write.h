@@ -12,6 +12,9 @@ bool rf_gdepth_is_good(const struct refocus_depth_write *depth);
  * upright. */
 int rf_gdepth_put_data(struct rf_text *text, const struct refocus_depth_write *depth,
                        int orientation, struct refocus_reason *reason);
+/* Write an attribute that begins so: a PNG of 16 bits of samples with this size and stride. */
+int rf_gdepth_put_samples(struct rf_text *text, const char *begin,
+                          const struct refocus_depth_write *samples, struct refocus_reason *reason);
 /* The attributes of GDepth and GFocus beside it, with their namespaces. */
 void rf_gdepth_put(struct rf_text *text, const struct refocus_depth_write *depth, int orientation);
 

@@ -1,8 +1,9 @@
-/* heic_format.c: HEIC and AVIF as a picture format, which needs libheif and is only read. */
+/* heic_format.c: HEIC and AVIF as a picture format, which needs libheif; HEIC is written, too. */
 #include <string.h>
 
 #include "format.h"
 #include "heic_read.h"
+#include "heic_write.h"
 
 /* ISO 14496-12: a file begins with a size, "ftyp", the main brand, a version and compatible
  * brands. */
@@ -25,9 +26,12 @@ static bool recognise(struct rf_bytes file)
 const struct rf_format rf_format_heic = {
     .name = "HEIC",
     .library = "libheif",
+    .endings = {".heic"},
+    .writes_pictures = true,
     .has_second = true,
     .recognise = recognise,
 #ifdef RF_HAVE_HEIC
     .read = rf_read_heic,
+    .write = rf_write_heic,
 #endif
 };

@@ -245,17 +245,18 @@ static int run(struct rf_heic *heic)
         status = read_icc(heic);
     }
     if (status == REFOCUS_OK) {
+        status = rf_heic_keep(read, heic->primary);
+    }
+    if (status == REFOCUS_OK) {
         status = read_auxiliaries(heic);
     }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK && !read->samples.pixels) {
         status = rf_heic_depth(heic);
     }
-    if (status == REFOCUS_OK && (read->picture_always || !read->samples.pixels)) {
+    if (status == REFOCUS_OK && !read->image.pixels &&
+        (read->picture_always || !read->samples.pixels)) {
         status = rf_heic_decode(heic, heic->primary, true, &read->image);
         status = status == REFOCUS_OK ? rf_heic_settle_light(read, heic->primary) : status;
-    }
-    if (status == REFOCUS_OK) {
-        status = rf_heic_keep(read, heic->primary);
     }
     return status;
 }

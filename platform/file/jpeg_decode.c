@@ -1,9 +1,11 @@
 /* jpeg_decode.c: the pixels of a JPEG are decoded by TurboJPEG, which needs no jumps. */
 #include "jpeg_decode.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <turbojpeg.h>
 
+#include "jpeg_chroma.h"
 #include "jpeg_walk.h"
 #include "reason.h"
 
@@ -12,20 +14,23 @@ static int fail_jpeg(const struct rf_read *read, tjhandle jpeg)
     return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged JPEG: %s", tjGetErrorStr2(jpeg));
 }
 
-enum { MARKER_SOS = 0xda };
+enum { MARKER_SOS = 0xda, MARKER_APP14 = 0xee };
 
-/* Count the scans. TurboJPEG paints a missing rest grey without an error, so the end of the picture
- * must be there. */
-static int survey(const struct rf_read *read, struct rf_bytes file, uint32_t *scans)
+/* Count the scans, and see whether Adobe wrote it. TurboJPEG paints a missing rest grey without an
+ * error, so the end of the picture must be there. */
+static int survey(const struct rf_read *read, struct rf_bytes file, uint32_t *scans, bool *adobe)
 {
     struct rf_jpeg_walk walk;
     enum rf_jpeg_step step = RF_JPEG_DAMAGED;
     uint32_t segments = 0;
 
     *scans = 0;
+    *adobe = false;
     if (rf_jpeg_walk_begin(&walk, file)) {
         while ((step = rf_jpeg_walk_next(&walk)) == RF_JPEG_SEGMENT) {
             *scans += walk.marker == MARKER_SOS;
+            *adobe |= walk.marker == MARKER_APP14 && walk.segment.size >= 5 &&
+                      memcmp(walk.segment.data, "Adobe", 5) == 0;
             if (++segments > read->limits.max_segments || *scans > read->limits.max_scans) {
                 return rf_fail(
                     read->reason, REFOCUS_ERR_SIZE, "its %s are more than the limit of %u",
@@ -55,7 +60,7 @@ static int check_work(const struct rf_read *read, const struct rf_raster *raster
 }
 
 static int read_header(const struct rf_read *read, tjhandle jpeg, struct rf_bytes file,
-                       struct rf_raster *raster)
+                       struct rf_raster *raster, bool *half)
 {
     int width = 0, height = 0, sampling = -1, space = -1;
 
@@ -66,16 +71,13 @@ static int read_header(const struct rf_read *read, tjhandle jpeg, struct rf_byte
     if (width < 1 || height < 1 || space < 0) {
         return fail_jpeg(read, jpeg);
     }
-    if (space == TJCS_CMYK || space == TJCS_YCCK) {
-        return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
-                       "it is a JPEG for print (CMYK); convert it to RGB");
-    }
     raster->width = width;
     raster->height = height;
-    raster->channels = space == TJCS_GRAY ? 1 : 3;
+    raster->channels = space == TJCS_GRAY ? 1 : space == TJCS_CMYK || space == TJCS_YCCK ? 4 : 3;
     raster->sample = REFOCUS_SAMPLE_U8;
     raster->max_value = 255;
     raster->lossy = true;
+    *half = space == TJCS_YCbCr && sampling == TJSAMP_420;
     return rf_check_size(read, (uint64_t)width, (uint64_t)height, (uint64_t)raster->channels);
 }
 
@@ -90,40 +92,108 @@ static bool few_bytes_too_many(const char *words)
            end - words <= (ptrdiff_t)sizeof before + 1; /* two digits */
 }
 
-static int read_pixels(const struct rf_read *read, tjhandle jpeg, struct rf_bytes file,
-                       struct rf_raster *raster)
+/* The planes that a JPEG with colour of half the size stores, behind each other. */
+struct planes {
+    uint8_t *plane[3];
+    int stride[3];
+};
+
+/* One try: the pixels, or the planes where there are some. */
+static int decode(tjhandle jpeg, struct rf_bytes file, struct rf_raster *raster,
+                  struct planes *planes, int flags)
 {
-    const int format = raster->channels == 1 ? TJPF_GRAY : TJPF_RGB;
+    const unsigned long size = (unsigned long)file.size;
+    const int format = raster->channels == 1   ? TJPF_GRAY
+                       : raster->channels == 4 ? TJPF_CMYK
+                                               : TJPF_RGB;
+
+    return planes ? tjDecompressToYUVPlanes(jpeg, file.data, size, planes->plane, raster->width,
+                                            planes->stride, raster->height, flags)
+                  : tjDecompress2(jpeg, file.data, size, raster->pixels, raster->width,
+                                  (int)rf_raster_stride(raster), raster->height, format, flags);
+}
+
+static int read_pixels(const struct rf_read *read, tjhandle jpeg, struct rf_bytes file,
+                       struct rf_raster *raster, struct planes *planes)
+{
     int flags = TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS | TJFLAG_STOPONWARNING;
-    int failed =
-        tjDecompress2(jpeg, file.data, (unsigned long)file.size, raster->pixels, raster->width,
-                      (int)rf_raster_stride(raster), raster->height, format, flags);
+    int failed = decode(jpeg, file, raster, planes, flags);
 
     if (failed && few_bytes_too_many(tjGetErrorStr2(jpeg))) {
         flags &= ~TJFLAG_STOPONWARNING;
         failed =
-            tjDecompress2(jpeg, file.data, (unsigned long)file.size, raster->pixels, raster->width,
-                          (int)rf_raster_stride(raster), raster->height, format, flags) != 0 &&
-            tjGetErrorCode(jpeg) != TJERR_WARNING;
+            decode(jpeg, file, raster, planes, flags) != 0 && tjGetErrorCode(jpeg) != TJERR_WARNING;
     }
     return failed ? fail_jpeg(read, jpeg) : REFOCUS_OK;
+}
+
+/* Colour of half the size, as cameras and phones store it, follows luma where it is enlarged. */
+static int read_half(const struct rf_read *read, tjhandle jpeg, struct rf_bytes file,
+                     struct rf_raster *raster)
+{
+    /* TurboJPEG writes an even number of columns and rows of luma. */
+    const uint64_t columns = ((uint64_t)raster->width + 1) / 2;
+    const uint64_t samples = columns * (((uint64_t)raster->height + 1) / 2), luma = 4 * samples;
+    const uint64_t work = (rf_jpeg_chroma_bytes(raster->width, raster->height) + 7) / 8 * 8;
+    struct planes planes = {.stride = {2 * (int)columns, (int)columns, (int)columns}};
+    uint8_t *memory;
+    int status = rf_check_memory(read, work + luma + 2 * samples);
+
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    memory = malloc((size_t)(work + luma + 2 * samples));
+    if (!memory) {
+        return rf_fail_memory(read->reason);
+    }
+    planes.plane[0] = memory + work;
+    planes.plane[1] = planes.plane[0] + luma;
+    planes.plane[2] = planes.plane[1] + samples;
+    status = read_pixels(read, jpeg, file, raster, &planes);
+    if (status == REFOCUS_OK) {
+        rf_jpeg_chroma(
+            raster, &(struct rf_jpeg_planes){planes.plane[0], {planes.plane[1], planes.plane[2]}},
+            memory);
+    }
+    free(memory);
+    return status;
+}
+
+/* Ink on white paper becomes R, G, B, in place: each ink takes its own colour away and black all of
+ * them, as other programs have it who do not know the profile. Adobe stores how much is left. */
+static void cmyk_to_rgb(struct rf_raster *raster, bool adobe)
+{
+    const size_t count = (size_t)raster->width * (size_t)raster->height;
+    const unsigned flip = adobe ? 0 : 255;
+    const uint8_t *in = raster->pixels;
+    uint8_t *out = raster->pixels;
+
+    for (size_t i = 0; i < count; i++, in += 4) {
+        const unsigned black = in[3] ^ flip;
+
+        for (int c = 0; c < 3; c++) {
+            *out++ = (uint8_t)(((in[c] ^ flip) * black + 127) / 255);
+        }
+    }
+    raster->channels = 3;
 }
 
 int rf_jpeg_decode(const struct rf_read *read, struct rf_bytes file, struct rf_raster *raster)
 {
     tjhandle jpeg;
     uint32_t scans;
+    bool adobe, half = false;
     int status;
 
     memset(raster, 0, sizeof *raster);
-    if ((status = survey(read, file, &scans)) != REFOCUS_OK) {
+    if ((status = survey(read, file, &scans, &adobe)) != REFOCUS_OK) {
         return status;
     }
     jpeg = tjInitDecompress();
     if (!jpeg) {
         return rf_fail_memory(read->reason);
     }
-    status = read_header(read, jpeg, file, raster);
+    status = read_header(read, jpeg, file, raster, &half);
     if (status == REFOCUS_OK) {
         status = check_work(read, raster, scans);
     }
@@ -131,7 +201,11 @@ int rf_jpeg_decode(const struct rf_read *read, struct rf_bytes file, struct rf_r
         status = rf_raster_alloc(read, raster);
     }
     if (status == REFOCUS_OK) {
-        status = read_pixels(read, jpeg, file, raster);
+        status = half ? read_half(read, jpeg, file, raster)
+                      : read_pixels(read, jpeg, file, raster, NULL);
+    }
+    if (status == REFOCUS_OK && raster->channels == 4) {
+        cmyk_to_rgb(raster, adobe);
     }
     if (status != REFOCUS_OK) {
         rf_raster_free(raster);

@@ -57,7 +57,7 @@ static void put_packet(struct rf_store *store, const struct rf_xmp_packet *packe
     if (standard.size > 0) {
         rf_jpeg_put_xmp(store, standard);
     }
-    if (packet->edit_extended.fate == RF_XMP_CHANGED) {
+    if (packet->edit_extended.outcome == RF_XMP_CHANGED) {
         rf_jpeg_put_extended(store, bytes_of(&packet->edit_extended.packet), packet->new_guid);
     }
 }
@@ -80,7 +80,7 @@ static bool put_xmp(struct rf_store *store, const struct rf_xmp_keep *keep, stru
         return false;
     }
     for (int i = 0; i < keep->count; i++) {
-        if (keep->packet[i].guid[0] && keep->packet[i].edit_extended.fate != RF_XMP_SAME &&
+        if (keep->packet[i].guid[0] && keep->packet[i].edit_extended.outcome != RF_XMP_SAME &&
             rest.size >= 32 && memcmp(rest.data, keep->packet[i].guid, 32) == 0) {
             return true;
         }
@@ -173,7 +173,7 @@ int rf_jpeg_put_kept(struct rf_store *store, const struct refocus_write_options 
     int status = REFOCUS_OK;
 
     if (options->editable) {
-        status = rf_editable_make(&editable, options, reason);
+        status = rf_editable_make(&editable, options, false, reason);
         keep.cut = editable.cut;
     }
     rf_behind_put_xmp(&editable.standard, behind, options);

@@ -192,9 +192,9 @@ static int read_xmp(struct rf_read *read, struct rf_bytes file, struct rf_bytes 
 static int read_older(struct rf_read *read, struct rf_bytes file, struct rf_bytes packet,
                       struct rf_xmp *xmp)
 {
-    static const enum rf_xmp_key keys[] = {RF_XMP_IMAGE_MIME, RF_XMP_IMAGE_DATA,
+    static const enum rf_xmp_key keys[] = {RF_XMP_IMAGE_MIME,    RF_XMP_IMAGE_DATA,
                                            RF_XMP_NOTE_ORIGINAL, RF_XMP_NOTE_FOCUS,
-                                           RF_XMP_NOTE_BLUR};
+                                           RF_XMP_NOTE_BLUR,     RF_XMP_NOTE_MATTE};
     const int count = sizeof keys / sizeof *keys;
     struct rf_xmp older = {.items = 0};
     bool found;

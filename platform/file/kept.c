@@ -82,7 +82,7 @@ struct rf_bytes rf_xmp_kept(const struct rf_xmp_packet *packet)
 {
     const struct rf_text *const text = &packet->edit.packet;
 
-    return packet->edit.fate == RF_XMP_SAME
+    return packet->edit.outcome == RF_XMP_SAME
                ? packet->standard
                : (struct rf_bytes){(const uint8_t *)text->data, text->size};
 }

@@ -204,20 +204,21 @@ static int put_jpeg(struct rf_text *out, const struct refocus_photo *photo,
 }
 
 /* A JPEG goes in as it lies. HEIC becomes a JPEG, which other readers of GImage know; HEIC bytes
- * they do not. What lost nothing so far goes on so, as a PNG. */
+ * they do not; so does the original of a result that becomes a file of another kind. What lost
+ * nothing so far goes on so, as a PNG. */
 int rf_original_put(struct rf_text *out, const struct refocus_photo *photo, bool *is_png,
                     struct refocus_reason *reason)
 {
     const struct rf_kept *const kept = rf_kept_of(photo);
-    const bool is_deep = photo->deep->plane[0];
+    const bool is_deep = photo->deep->plane[0], is_used = photo->info->original_used;
 
     *is_png = false;
-    if (kept->kind == RF_KEPT_JPEG) {
+    if (kept->kind == RF_KEPT_JPEG && !is_used) {
         put_plain(out, (struct rf_bytes){kept->bytes.data, kept->bytes.size},
                   photo->info->orientation);
         return REFOCUS_OK;
     }
-    if (strcmp(photo->info->container, "HEIC") == 0) {
+    if (strcmp(photo->info->container, "HEIC") == 0 || (is_used && !is_deep)) {
         return put_jpeg(out, photo, reason);
     }
     *is_png = true;

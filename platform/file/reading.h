@@ -14,6 +14,7 @@ struct rf_kept {
     enum rf_kept_kind kind;
     struct refocus_blob bytes; /* owned */
     bool gain_map;             /* the file has one, outside of these bytes or in them */
+    bool matte;                /* the photo's was given to an earlier result, see editable.c */
     /* EXIF orientations by which the original and the depth in these bytes lie: */
     int original_orientation, depth_orientation;
 };

@@ -63,7 +63,7 @@ static bool is_storable(const struct refocus_photo *photo)
 static int check_editable(struct refocus_write_options *parts, const struct rf_format *format,
                           struct editable *own, struct refocus_reason *reason)
 {
-#if defined(RF_HAVE_XMP) && defined(RF_HAVE_PNG)
+#if defined(RF_HAVE_XMP) && defined(RF_HAVE_PNG) && defined(RF_HAVE_JPEG)
     const bool can = true;
 #else
     const bool can = false;
@@ -84,15 +84,21 @@ static int check_editable(struct refocus_write_options *parts, const struct rf_f
         return rf_fail(reason, status, "the depth is not of a known size of struct");
     if (!parts->keep || !isfinite(own->given.focus_disparity) ||
         !isfinite(own->given.max_blur_radius) || !isfinite(own->given.simulated_f_number) ||
-        ((own->given.depth || !own->given.own_depth) && !rf_gdepth_is_good(&own->depth))) {
-        return rf_fail(reason, REFOCUS_ERR_ARGUMENT,
-                       "there is no photo to keep, or the depth or lens is out of its range");
+        ((own->given.depth || !own->given.own_depth) && !rf_gdepth_is_good(&own->depth)) ||
+        (own->given.matte &&
+         (own->given.matte_stride % 2 != 0 ||
+          !fits(own->given.matte_width, own->given.matte_height, own->given.matte_stride, 2)))) {
+        return rf_fail(
+            reason, REFOCUS_ERR_ARGUMENT,
+            "there is no photo to keep, or the depth, matte or lens is out of its range");
     }
-    if (format != &rf_format_jpeg || !can || !is_storable(parts->keep)) {
+    if ((format != &rf_format_jpeg && format != &rf_format_heic) || !can ||
+        !is_storable(parts->keep)) {
         return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED, "%s",
-                       can ? "a picture is editable as a JPEG, made from a photo that is not of "
-                             "floats"
-                           : "an editable picture needs expat and libpng, which this build lacks");
+                       can ? "a picture is editable as a JPEG or HEIC, made from a photo that is "
+                             "not of floats"
+                           : "an editable picture needs expat, libpng and TurboJPEG, one of which "
+                             "this build lacks");
     }
     own->given.depth = own->given.depth ? &own->depth : NULL;
     parts->editable = &own->given;

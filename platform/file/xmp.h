@@ -43,6 +43,7 @@ enum rf_xmp_key {
     RF_XMP_NOTE_FOCUS,
     RF_XMP_NOTE_BLUR,
     RF_XMP_NOTE_F_NUMBER,
+    RF_XMP_NOTE_MATTE,
     /* Found in the first DepthMap and the first Image of Dynamic Depth's cameras. */
     RF_XMP_MAP_FORMAT,
     RF_XMP_MAP_NEAR,

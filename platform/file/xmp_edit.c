@@ -276,16 +276,16 @@ static int finish(struct editing *editing)
     struct rf_xmp_edit *const edit = editing->edit;
 
     if (editing->count == 0 && edit->insert.size == 0) {
-        edit->fate = RF_XMP_SAME;
+        edit->outcome = RF_XMP_SAME;
         return REFOCUS_OK;
     }
-    edit->fate = RF_XMP_CHANGED;
+    edit->outcome = RF_XMP_CHANGED;
     if (editing->has && (editing->place > 0 || edit->insert.size == 0)) {
         put_edited(editing);
     } else if (edit->insert.size > 0) {
         put_new(edit);
     } else {
-        edit->fate = RF_XMP_EMPTY;
+        edit->outcome = RF_XMP_EMPTY;
     }
     return edit->packet.failed ? rf_fail_memory(editing->read->reason) : REFOCUS_OK;
 }

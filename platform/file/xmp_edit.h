@@ -25,13 +25,14 @@ enum {
     RF_XMP_CUT_EDITABLE = 2 | 4 | 8 | 16 | 32,
 };
 
-enum rf_xmp_fate { RF_XMP_SAME, RF_XMP_CHANGED, RF_XMP_EMPTY };
+enum rf_xmp_outcome { RF_XMP_SAME, RF_XMP_CHANGED, RF_XMP_EMPTY };
 struct rf_xmp_edit {
     unsigned cut;
     struct rf_bytes insert; /* whole rdf:Description elements with their own namespaces */
-    enum rf_xmp_fate fate;  /* RF_XMP_EMPTY: nothing was left but the frame, and nothing put in */
-    unsigned found;         /* properties of `cut` that were there */
-    struct rf_text packet;  /* the new packet, when it is RF_XMP_CHANGED */
+    enum rf_xmp_outcome
+        outcome;           /* RF_XMP_EMPTY: nothing was left but the frame, and nothing put in */
+    unsigned found;        /* properties of `cut` that were there */
+    struct rf_text packet; /* the new packet, when it is RF_XMP_CHANGED */
 };
 
 /* Properties that hold nothing any more go with the rdf:Description that held them. Without a

@@ -41,7 +41,7 @@ static int edit(struct rf_xmp_keep *keep, struct rf_bytes packet, struct rf_xmp_
     const int status = rf_xmp_edit(&keep->read, packet, edit);
 
     if (may_stay(status)) {
-        edit->fate = RF_XMP_SAME;
+        edit->outcome = RF_XMP_SAME;
         keep->damaged = true;
         return REFOCUS_OK;
     }
@@ -59,11 +59,11 @@ static int edit_extended(struct rf_xmp_keep *keep, struct rf_xmp_packet *packet,
     const int status = edit(keep, (struct rf_bytes){packet->extended.data, packet->extended.size},
                             &packet->edit_extended);
 
-    if (status != REFOCUS_OK || packet->edit_extended.fate == RF_XMP_SAME) {
+    if (status != REFOCUS_OK || packet->edit_extended.outcome == RF_XMP_SAME) {
         return status;
     }
     packet->edit.cut |= RF_XMP_CUT_EXTENDED;
-    if (packet->edit_extended.fate == RF_XMP_CHANGED) {
+    if (packet->edit_extended.outcome == RF_XMP_CHANGED && !(keep->cut & RF_XMP_CUT_EXTENDED)) {
         rf_md5_hex(bytes_of(&packet->edit_extended.packet), packet->new_guid);
         rf_text_words(insert, "<rdf:Description xmlns:rdf=\"" RF_NS_RDF
                               "\" rdf:about=\"\" xmlns:xmpNote=\"" RF_NS_NOTE

@@ -58,6 +58,7 @@ static const struct {
     {RF_XMP_NOTE_FOCUS, REFOCUS "FocusDisparity"},
     {RF_XMP_NOTE_BLUR, REFOCUS "MaxBlurRadius"},
     {RF_XMP_NOTE_F_NUMBER, REFOCUS "SimulatedFNumber"},
+    {RF_XMP_NOTE_MATTE, REFOCUS "Matte"},
     {RF_XMP_MAP_FORMAT, MAP "Format"},
     {RF_XMP_MAP_NEAR, MAP "Near"},
     {RF_XMP_MAP_FAR, MAP "Far"},

@@ -16,6 +16,8 @@ typedef struct {
     GeglOperationComposerClass parent_class;
 } RefocusLensBlurClass;
 
+static const char type_name[] = "RefocusLensBlur";
+
 static RefocusLensBlur *self_of(gpointer object)
 {
     return object;
@@ -214,6 +216,15 @@ static void instance_init(GTypeInstance *instance, gpointer class)
     rf_gegl_settings_begin(&self_of(instance)->settings);
 }
 
+/* A second copy of the plug-in, as one in a build beside the one that is installed, leaves the
+ * operation to the first on GEGL's path; GObject would leave it there too, with a warning. */
+static gboolean is_anothers(GTypeModule *module)
+{
+    const GType type = g_type_from_name(type_name);
+
+    return type && g_type_get_plugin(type) != G_TYPE_PLUGIN(module);
+}
+
 void rf_gegl_operation_register(GTypeModule *module)
 {
     const GTypeInfo info = {
@@ -223,6 +234,8 @@ void rf_gegl_operation_register(GTypeModule *module)
         .instance_init = instance_init,
     };
 
-    g_type_module_register_type(module, GEGL_TYPE_OPERATION_COMPOSER, "RefocusLensBlur", &info,
+    if (is_anothers(module))
+        return;
+    g_type_module_register_type(module, GEGL_TYPE_OPERATION_COMPOSER, type_name, &info,
                                 (GTypeFlags)0);
 }

@@ -122,8 +122,9 @@ static int make_aperture(const struct rf_gegl_settings *settings,
     return refocus_aperture_create(aperture, &params);
 }
 
-static struct refocus_settings params_of(const struct rf_gegl_settings *settings)
+static struct refocus_settings params_of(const struct rf_gegl_shot *shot)
 {
+    const struct rf_gegl_settings *const settings = shot->settings;
     struct refocus_settings params =
         refocus_settings_default((float)settings->focus, (float)settings->blur);
 
@@ -135,6 +136,7 @@ static struct refocus_settings params_of(const struct rf_gegl_settings *settings
                                                                      : settings->focus_transition);
     params.look.cat_eye = (float)settings->cat_eye;
     params.look.fringe = (float)settings->fringe;
+    params.look.grain = is_deep(shot->photo->format) || is_deep(shot->out->format) ? 0 : 1;
     if (settings->highlights >= 1)
         params.highlights.gain = (float)settings->highlights;
     else
@@ -207,7 +209,7 @@ static int find_focus(struct refocus_renderer *renderer, const struct rf_gegl_sh
 static int render(struct refocus_renderer *renderer, const struct rf_gegl_shot *shot,
                   const struct refocus_aperture *aperture)
 {
-    struct refocus_settings params = params_of(shot->settings);
+    struct refocus_settings params = params_of(shot);
     const int status = find_focus(renderer, shot, &params.render.focus_disparity);
 
     if (status != REFOCUS_OK)

@@ -5,7 +5,8 @@ GST_DEBUG_CATEGORY(rf_gst_debug);
 
 #define PROGRESSIVE ", interlace-mode = progressive"
 #define VIDEO_CAPS                                                                                 \
-    GST_VIDEO_CAPS_MAKE("{ " RF_GST_FORMATS_YUV ", " RF_GST_FORMATS_RGB " }")                      \
+    GST_VIDEO_CAPS_MAKE("{ " RF_GST_FORMATS_YUV ", " RF_GST_FORMATS_RGB ", " RF_GST_FORMATS_DEEP   \
+                        " }")                                                                      \
     PROGRESSIVE
 
 static GstStaticPadTemplate sink_template =

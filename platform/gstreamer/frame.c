@@ -26,14 +26,32 @@ static uint32_t format_of(GstVideoFormat format)
     case GST_VIDEO_FORMAT_BGRA:
     case GST_VIDEO_FORMAT_BGRx:
         return REFOCUS_FORMAT_BGRA8;
+    case GST_VIDEO_FORMAT_P010_10LE:
+    case GST_VIDEO_FORMAT_P010_10BE:
+        return REFOCUS_FORMAT_P010;
     default:
         return REFOCUS_FORMAT_NONE;
     }
 }
 
-bool rf_gst_format_is_yuv(const GstVideoInfo *info)
+/* Curves of standards for a dim room are taken for sRGB's, as those of 8 bits are. */
+static uint32_t transfer_of(GstVideoTransferFunction transfer)
 {
-    return refocus_format_is_yuv(format_of(GST_VIDEO_INFO_FORMAT(info)));
+    switch (transfer) {
+    case GST_VIDEO_TRANSFER_SMPTE2084:
+        return REFOCUS_TRANSFER_PQ;
+    case GST_VIDEO_TRANSFER_ARIB_STD_B67:
+        return REFOCUS_TRANSFER_HLG;
+    case GST_VIDEO_TRANSFER_GAMMA10:
+        return REFOCUS_TRANSFER_LINEAR;
+    default:
+        return REFOCUS_TRANSFER_SRGB;
+    }
+}
+
+bool rf_gst_is_deep(const struct refocus_image *picture)
+{
+    return picture->format == REFOCUS_FORMAT_P010;
 }
 
 static bool add_chroma(struct rf_gst_chroma *chroma, struct refocus_image *picture)
@@ -59,9 +77,11 @@ bool rf_gst_picture(const GstVideoFrame *frame, struct rf_gst_chroma *chroma,
 {
     const GstVideoColorimetry *const colour = &frame->info.colorimetry;
     const bool grey = GST_VIDEO_FRAME_FORMAT(frame) == GST_VIDEO_FORMAT_GRAY8;
+    bool deep;
 
     *picture = refocus_image_packed(format_of(GST_VIDEO_FRAME_FORMAT(frame)), NULL,
                                     GST_VIDEO_FRAME_WIDTH(frame), GST_VIDEO_FRAME_HEIGHT(frame), 0);
+    deep = rf_gst_is_deep(picture);
     for (guint i = 0; i < GST_VIDEO_FRAME_N_PLANES(frame); i++) {
         picture->plane[i] = GST_VIDEO_FRAME_PLANE_DATA(frame, i);
         picture->stride[i] = GST_VIDEO_FRAME_PLANE_STRIDE(frame, i);
@@ -70,11 +90,13 @@ bool rf_gst_picture(const GstVideoFrame *frame, struct rf_gst_chroma *chroma,
         picture->plane[1] = GST_VIDEO_FRAME_COMP_DATA(frame, 1);
         picture->plane[2] = GST_VIDEO_FRAME_COMP_DATA(frame, 2);
     }
-    /* Weights of BT.2020 are not known for 8 bits; those of BT.709 are the nearest. */
-    picture->matrix = colour->matrix == GST_VIDEO_COLOR_MATRIX_BT709 ||
-                              colour->matrix == GST_VIDEO_COLOR_MATRIX_BT2020
-                          ? REFOCUS_MATRIX_BT709
-                          : REFOCUS_MATRIX_BT601;
+    picture->matrix = REFOCUS_MATRIX_BT601;
+    if (colour->matrix == GST_VIDEO_COLOR_MATRIX_BT709)
+        picture->matrix = REFOCUS_MATRIX_BT709;
+    else if (colour->matrix == GST_VIDEO_COLOR_MATRIX_BT2020) /* BT.709 is the nearest of 8 bits */
+        picture->matrix = deep ? REFOCUS_MATRIX_BT2020 : REFOCUS_MATRIX_BT709;
+    if (deep)
+        picture->transfer = transfer_of(colour->transfer);
     picture->range = colour->range == GST_VIDEO_COLOR_RANGE_0_255 ||
                              (grey && colour->range != GST_VIDEO_COLOR_RANGE_16_235)
                          ? REFOCUS_RANGE_FULL

@@ -8,6 +8,11 @@
 
 #define RF_GST_FORMATS_YUV "NV12, NV21, I420, YV12, YUY2, GRAY8"
 #define RF_GST_FORMATS_RGB "RGB, BGR, RGBA, BGRA, RGBx, BGRx"
+#if G_BYTE_ORDER == G_LITTLE_ENDIAN
+#define RF_GST_FORMATS_DEEP "P010_10LE"
+#else
+#define RF_GST_FORMATS_DEEP "P010_10BE"
+#endif
 
 /* The chroma that frames of grey have to the renderer, which knows none without. */
 struct rf_gst_chroma {
@@ -15,12 +20,12 @@ struct rf_gst_chroma {
     size_t bytes;
 };
 
-bool rf_gst_format_is_yuv(const GstVideoInfo *info);
-
 /* The picture that a frame holds, in the frame's memory. Of GRAY8 the planes of U and V are those
  * of `chroma`, set to neutral; false: there is no memory for them. */
 bool rf_gst_picture(const GstVideoFrame *frame, struct rf_gst_chroma *chroma,
                     struct refocus_image *picture);
+/* Whether it has more than 8 bits a channel. */
+bool rf_gst_is_deep(const struct refocus_image *picture);
 void rf_gst_chroma_end(struct rf_gst_chroma *chroma);
 
 #endif

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include "frame.h"
 #include "shot.h"
 
 static int fail(struct refocus_reason *reason, int status, const char *text)
@@ -69,20 +70,23 @@ static float room_for(float blur)
     return REFOCUS_MAX_BLUR_RADIUS;
 }
 
-static int fit(struct rf_gst_shot *shot, const struct rf_gst_settings *settings, int32_t width,
-               int32_t height, float blur, struct refocus_reason *reason)
+static int fit(struct rf_gst_shot *shot, const struct rf_gst_settings *settings,
+               const struct refocus_image *photo, float blur, struct refocus_reason *reason)
 {
+    const int32_t width = photo->width, height = photo->height;
     struct refocus_renderer_params params =
         refocus_renderer_params_default(width, height, room_for(blur));
     int status;
 
     params.threads = settings->threads;
     params.papers = refocus_papers();
+    params.deep = rf_gst_is_deep(photo);
     params.methods = REFOCUS_METHOD_BIT((uint32_t)settings->method);
     params.depth_edges = settings->place_edges ? REFOCUS_DEPTH_EDGES_STEADY : 0;
     if (shot->renderer && width <= shot->made.max_width && height <= shot->made.max_height &&
         blur <= shot->made.max_blur_radius && params.threads == shot->made.threads &&
-        params.methods == shot->made.methods && params.depth_edges == shot->made.depth_edges)
+        params.methods == shot->made.methods && params.depth_edges == shot->made.depth_edges &&
+        params.deep == shot->made.deep)
         return REFOCUS_OK;
     refocus_renderer_destroy(&shot->renderer);
     status = refocus_renderer_create(&shot->renderer, &params);
@@ -147,7 +151,7 @@ int rf_gst_shot_take(struct rf_gst_shot *shot, const struct rf_gst_settings *set
     if (status == REFOCUS_OK)
         status = find_blur(settings, depths, photo->width, &blur, reason);
     if (status == REFOCUS_OK)
-        status = fit(shot, settings, photo->width, photo->height, blur, reason);
+        status = fit(shot, settings, photo, blur, reason);
     if (status == REFOCUS_OK)
         status = fit_aperture(shot, settings, reason);
     if (status != REFOCUS_OK)

@@ -1,6 +1,7 @@
 /* capture.cpp: a camera of libcamera is configured, and its requests are queued and delivered as
  * frames. */
 #include "capture.hpp"
+#include "lens.hpp"
 
 #include <cerrno>
 #include <cmath>
@@ -98,9 +99,11 @@ int Capture::start(struct refocus_source *source, struct refocus_source_mode *mo
         stop();
         return status;
     }
+    const uint32_t focus =
+        source->focused ? source->focus_mode : (uint32_t)REFOCUS_SOURCE_FOCUS_CONTINUOUS;
     ControlList controls(camera_->controls());
-    if (has(controls::AfMode))
-        controls.set(controls::AfMode, controls::AfModeContinuous);
+    for (const auto &control : focus_controls(camera_->controls(), focus, source->focus_position))
+        controls.set(control.first, control.second);
     position_ = NAN;
     int error = camera_->start(&controls);
     running_ = error == 0;
@@ -204,40 +207,25 @@ int Capture::set_control(const char *name, double value, struct refocus_reason *
 
 bool Capture::has(const ControlId &control) const
 {
-    return camera_->controls().find(control.id()) != camera_->controls().end();
+    return has_control(camera_->controls(), control);
 }
 
 int Capture::get_lens(struct refocus_source_lens *lens, struct refocus_reason *reason)
 {
     if (!camera_)
         return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the camera is gone");
-    if (!has(controls::AfMode))
-        return REFOCUS_OK;
-    lens->modes = 1 << REFOCUS_SOURCE_FOCUS_CONTINUOUS | 1 << REFOCUS_SOURCE_FOCUS_ONCE;
-    const auto range = camera_->controls().find(controls::LensPosition.id());
-    if (range == camera_->controls().end())
-        return REFOCUS_OK;
-    lens->modes |= 1 << REFOCUS_SOURCE_FOCUS_FIXED;
-    lens->dioptres = 1;
-    lens->least = range->second.min().get<float>();
-    lens->greatest = range->second.max().get<float>();
+    describe_lens(camera_->controls(), lens);
     lens->position = position_;
     return REFOCUS_OK;
 }
 
 int Capture::set_focus(uint32_t mode, double position, struct refocus_reason *reason)
 {
-    static const int32_t modes[] = {controls::AfModeContinuous, controls::AfModeAuto,
-                                    controls::AfModeManual};
-
     if (!camera_)
         return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the camera is gone");
     std::lock_guard<std::mutex> guard(lock_);
-    wanted_[controls::AfMode.id()] = ControlValue(modes[mode]);
-    if (mode == REFOCUS_SOURCE_FOCUS_ONCE && has(controls::AfTrigger))
-        wanted_[controls::AfTrigger.id()] = ControlValue((int32_t)controls::AfTriggerStart);
-    if (mode == REFOCUS_SOURCE_FOCUS_FIXED)
-        wanted_[controls::LensPosition.id()] = ControlValue((float)position);
+    for (const auto &control : focus_controls(camera_->controls(), mode, position))
+        wanted_[control.first] = control.second;
     return REFOCUS_OK;
 }
 

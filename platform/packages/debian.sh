@@ -2,7 +2,7 @@
 # usage: debian.sh WORK_FOLDER [small]
 #
 # Makes Debian's packages of the sources that git has, in WORK_FOLDER. With `small` without OpenCV,
-# libcamera, SDL2, vector kernels and optimisation, which is enough to try the packages out.
+# libcamera, PipeWire, SDL2, vector kernels and optimisation, which is enough to try the packages out.
 set -eu -o pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 work=$(mkdir -p "$1" && cd "$1" && pwd)

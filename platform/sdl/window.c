@@ -181,19 +181,32 @@ static void free_window(struct window *window)
     free(window);
 }
 
+/* A lock, and a condition whose time-outs follow CLOCK_MONOTONIC: both or none. */
+static bool init_lock(struct window *window)
+{
+    pthread_condattr_t attributes;
+    int error;
+
+    if (pthread_condattr_init(&attributes))
+        return false;
+    error = pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    if (!error)
+        error = pthread_mutex_init(&window->lock, NULL);
+    if (!error && (error = pthread_cond_init(&window->changed, &attributes)))
+        pthread_mutex_destroy(&window->lock);
+    pthread_condattr_destroy(&attributes);
+    return !error;
+}
+
 static int open_window(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason)
 {
     struct window *window = calloc(1, sizeof *window);
-    pthread_condattr_t attributes;
 
     (void)rest;
-    if (!window)
+    if (!window || !init_lock(window)) {
+        free(window);
         return rf_capture_fail_memory(reason);
-    pthread_mutex_init(&window->lock, NULL);
-    pthread_condattr_init(&attributes);
-    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_cond_init(&window->changed, &attributes);
-    pthread_condattr_destroy(&attributes);
+    }
     if (pthread_create(&window->thread, NULL, run, window) != 0) {
         free_window(window);
         return rf_capture_fail_memory(reason);

@@ -132,9 +132,8 @@ void rf_v4l2_unmap(struct rf_v4l2 *device)
     struct v4l2_requestbuffers request;
     int type = (int)device->type;
 
-    if (device->streaming)
-        rf_v4l2_ioctl(device->fd, VIDIOC_STREAMOFF, &type);
-    device->streaming = false;
+    if (device->streaming && rf_v4l2_ioctl(device->fd, VIDIOC_STREAMOFF, &type) == 0)
+        device->streaming = false;
     for (int n = 0; n < device->count; n++)
         for (int i = 0; i < 3; i++) {
             struct rf_v4l2_buffer *buffer = &device->buffer[n];

@@ -18,7 +18,7 @@ struct camera {
     struct refocus_frame frame[RF_MOST_BUFFERS];
     bool source_changed; /* the signal at the input, not yet looked at */
     bool failed;
-    int stuck; /* buffers that the driver did not take back */
+    uint32_t stuck; /* bit n: the driver did not take buffer n back */
     double fps;
 };
 
@@ -258,6 +258,7 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
 
     if (device->fd < 0)
         return rf_v4l2_fail(device, reason, ENODEV, "starting it");
+    rf_v4l2_unmap(device); /* the last stream, if the driver did not end it */
     follow_signal(camera);
     status = choose_format(source, reason);
     if (status != REFOCUS_OK)
@@ -339,6 +340,22 @@ static void fill(struct camera *camera, const struct rf_v4l2_done *done,
     frame->timestamp_ns = done->timestamp_ns;
 }
 
+static int bits_of(uint64_t mask)
+{
+    int bits = 0;
+
+    for (; mask; mask &= mask - 1)
+        bits++;
+    return bits;
+}
+
+/* True when the driver has no buffer that it could fill. */
+static bool all_are_out(const struct refocus_source *source)
+{
+    const struct camera *camera = source->state;
+    return bits_of(source->out | camera->stuck) >= camera->device.count;
+}
+
 static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
                       struct refocus_frame **result, struct refocus_reason *reason)
 {
@@ -363,7 +380,7 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
             break;
         if (error == EAGAIN && !(events & (POLLERR | POLLHUP | POLLNVAL)))
             continue;
-        if (error == EAGAIN && source->out)
+        if (error == EAGAIN && all_are_out(source))
             return rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; release one");
         return rf_v4l2_fail(device, reason, error == EAGAIN ? EIO : error,
                             "taking a frame from the driver");
@@ -375,19 +392,27 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     return REFOCUS_OK;
 }
 
+/* Buffers that the driver refused before are offered again with each that comes back. */
 static void release(struct refocus_source *source, struct refocus_frame *frame)
 {
     struct camera *camera = source->state;
     struct rf_v4l2 *device = &camera->device;
-    int error;
+    int error = 0;
 
     rf_v4l2_sync(&device->buffer[frame->buffer], false);
-    error = rf_v4l2_queue(device, (int)frame->buffer, 0);
-    if (error && error != ENODEV)
-        error = rf_v4l2_queue(device, (int)frame->buffer, 0); /* some refuse once */
-    if (error == 0)
-        source->counters.queued++;
-    else if (device->count - ++camera->stuck < 2)
+    camera->stuck |= 1u << frame->buffer;
+    for (int round = 0; round < 2 && camera->stuck && error != ENODEV;
+         round++) /* some refuse once */
+        for (int n = 0; n < device->count && error != ENODEV; n++) {
+            if (!(camera->stuck >> n & 1))
+                continue;
+            error = rf_v4l2_queue(device, n, 0);
+            if (error == 0) {
+                camera->stuck &= ~(1u << n);
+                source->counters.queued++;
+            }
+        }
+    if (device->count - bits_of(camera->stuck) < 2)
         camera->failed = error != ENODEV; /* wait will report it by itself */
 }
 

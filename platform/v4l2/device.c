@@ -133,6 +133,7 @@ void rf_v4l2_close(struct rf_v4l2 *device)
     if (device->fd >= 0)
         close(device->fd);
     device->fd = -1;
+    device->streaming = false;
 }
 
 /* How Y, U and V were made, by what the driver says. */

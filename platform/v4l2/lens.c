@@ -59,6 +59,8 @@ int rf_v4l2_get_lens(struct refocus_source *source, struct refocus_source_lens *
         lens->modes |= 1 << REFOCUS_SOURCE_FOCUS_CONTINUOUS;
     if (has(device, V4L2_CID_AUTO_FOCUS_START))
         lens->modes |= 1 << REFOCUS_SOURCE_FOCUS_ONCE;
+    if (lens->modes)
+        lens->modes |= 1 << REFOCUS_SOURCE_FOCUS_OFF;
     return REFOCUS_OK;
 }
 

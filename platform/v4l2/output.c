@@ -12,7 +12,7 @@ enum { BUFFERS = 4, PATIENCE_MS = 1000 };
 
 struct output {
     struct rf_v4l2 device;
-    int fresh; /* buffers that were never queued */
+    uint32_t ours; /* bit n: buffer n is not the driver's, and may be filled */
 };
 
 static int open_output(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason)
@@ -139,11 +139,25 @@ static int start(struct refocus_sink *sink, int width, int height, double fps,
     rate.parm.output.timeperframe.denominator = (uint32_t)(fps * 1000 + 0.5);
     rf_v4l2_ioctl(output->device.fd, VIDIOC_S_PARM, &rate); /* where it can be set */
     status = rf_v4l2_map(&output->device, BUFFERS, false, reason);
-    output->fresh = status == REFOCUS_OK ? output->device.count : 0;
+    output->ours = status == REFOCUS_OK ? UINT32_MAX >> (32 - output->device.count) : 0;
     return status;
 }
 
-/* A buffer to fill: one of the first, or one that the device has shown. */
+static int stream_on(struct rf_v4l2 *device, struct refocus_reason *reason)
+{
+    int type = (int)device->type, error;
+
+    if (device->streaming)
+        return REFOCUS_OK;
+    error = rf_v4l2_ioctl(device->fd, VIDIOC_STREAMON, &type);
+    if (error)
+        return rf_v4l2_fail(device, reason, error, "starting the stream");
+    device->streaming = true;
+    return REFOCUS_OK;
+}
+
+/* A buffer to fill: one that is ours, or one that the device has shown. It is ours until it is
+ * queued, so that none is lost where the driver refuses it. */
 static int take_buffer(struct output *output, int *index, struct refocus_reason *reason)
 {
     struct rf_v4l2 *device = &output->device;
@@ -152,10 +166,14 @@ static int take_buffer(struct output *output, int *index, struct refocus_reason 
     struct rf_v4l2_done done;
     int error;
 
-    if (output->fresh > 0) {
-        *index = device->count - output->fresh--;
+    if (output->ours) {
+        for (*index = 0; !(output->ours >> *index & 1);)
+            ++*index;
         return REFOCUS_OK;
     }
+    error = stream_on(device, reason); /* all are queued, but it never began */
+    if (error != REFOCUS_OK)
+        return error;
     for (;;) {
         const int64_t left = (deadline - rf_now_ns()) / 1000000;
         const int n = poll(&wait, 1, left > 0 ? (int)left : 0);
@@ -163,6 +181,7 @@ static int take_buffer(struct output *output, int *index, struct refocus_reason 
         error = rf_v4l2_dequeue(device, &done);
         if (error == 0) {
             *index = done.index;
+            output->ours |= 1u << done.index;
             return REFOCUS_OK;
         }
         if (error != EAGAIN)
@@ -182,7 +201,7 @@ static int write_frame(struct refocus_sink *sink, const struct refocus_image *im
     struct output *output = sink->state;
     struct rf_v4l2 *device = &output->device;
     struct refocus_frame frame;
-    int type = (int)device->type, index = 0, error, status;
+    int index = 0, error, status;
 
     status = take_buffer(output, &index, reason);
     if (status != REFOCUS_OK)
@@ -195,13 +214,8 @@ static int write_frame(struct refocus_sink *sink, const struct refocus_image *im
     error = rf_v4l2_queue(device, index, rf_now_ns());
     if (error)
         return rf_v4l2_fail(device, reason, error, "queuing a frame");
-    if (!device->streaming) {
-        error = rf_v4l2_ioctl(device->fd, VIDIOC_STREAMON, &type);
-        if (error)
-            return rf_v4l2_fail(device, reason, error, "starting the stream");
-        device->streaming = true;
-    }
-    return REFOCUS_OK;
+    output->ours &= ~(1u << index);
+    return stream_on(device, reason);
 }
 
 static int close_output(struct refocus_sink *sink, struct refocus_reason *reason)

@@ -22,7 +22,7 @@ struct rf_v4l2 {
     uint32_t matrix, flags;      /* flags of struct refocus_frame */
     struct rf_v4l2_buffer buffer[RF_MOST_BUFFERS];
     int count;
-    bool streaming;
+    bool streaming; /* until the driver has ended the stream, or the device is closed */
 };
 
 /* device.c ------------------------------------------------------------------------- */

@@ -1,11 +1,12 @@
-/* input.h: events of the mouse, fingers and keys, and the buttons along the lower border. */
+/* input.h: events of the mouse, fingers and keys. */
 #ifndef RF_VIEW_INPUT_H
 #define RF_VIEW_INPUT_H
 
 #include "window_state.h"
 
 void rf_window_event(struct rf_window *w, const SDL_Event *event);
-int rf_window_buttons(const struct rf_window *w);
-SDL_Rect rf_window_button(const struct rf_window *w, int index, const char **label, bool *on);
+
+/* Keys and gestures, and what they do, two of each line; NULL ends them. */
+const char *rf_window_help(int index, const char **what);
 
 #endif

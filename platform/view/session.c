@@ -12,21 +12,16 @@ static int take_memory(struct rf_session *s)
     const struct refocus_image *const photo = s->setup.photo;
     const uint64_t pixels = (uint64_t)photo->width * (uint64_t)photo->height;
     const size_t small = (size_t)s->width * (size_t)s->height;
-    const struct refocus_disparity map = refocus_disparity16(
-        s->setup.disparity, photo->width, photo->height, 2 * (ptrdiff_t)photo->width);
 
     if (pixels > SIZE_MAX / 4)
         return REFOCUS_ERR_SIZE;
     s->small_photo = malloc(3 * small);
     s->small_out = malloc(3 * small);
-    s->selection = malloc(small);
     s->small_disparity = malloc(2 * small);
     s->full_out = malloc(3 * (size_t)pixels);
-    if (!s->small_photo || !s->small_out || !s->selection || !s->small_disparity || !s->full_out)
+    if (!s->small_photo || !s->small_out || !s->small_disparity || !s->full_out)
         return REFOCUS_ERR_MEMORY;
-    if (s->strokes)
-        return REFOCUS_OK;
-    return refocus_strokes_create(&s->strokes, photo, s->setup.disparity ? &map : NULL);
+    return REFOCUS_OK;
 }
 
 int rf_session_create(struct rf_session **session, const struct rf_session_setup *setup)
@@ -38,8 +33,16 @@ int rf_session_create(struct rf_session **session, const struct rf_session_setup
     *session = NULL;
     if (!s)
         return REFOCUS_ERR_MEMORY;
+    if (pthread_mutex_init(&s->lock, NULL)) {
+        free(s);
+        return REFOCUS_ERR_THREAD;
+    }
+    if (pthread_cond_init(&s->wake, NULL)) {
+        pthread_mutex_destroy(&s->lock);
+        free(s);
+        return REFOCUS_ERR_THREAD;
+    }
     s->setup = *setup;
-    s->strokes = setup->strokes;
     s->reduction = 1;
     while ((int64_t)(photo->width / s->reduction) * (photo->height / s->reduction) > PREVIEW_PIXELS)
         s->reduction++;
@@ -47,9 +50,6 @@ int rf_session_create(struct rf_session **session, const struct rf_session_setup
     s->height = (photo->height + s->reduction - 1) / s->reduction;
     s->ready = -1;
     s->back = 1;
-    s->small_stale = s->full_stale = true;
-    pthread_mutex_init(&s->lock, NULL);
-    pthread_cond_init(&s->wake, NULL);
     status = take_memory(s);
     if (status == REFOCUS_OK && pthread_create(&s->thread, NULL, rf_worker_run, s) != 0)
         status = REFOCUS_ERR_THREAD;
@@ -91,32 +91,17 @@ void rf_session_destroy(struct rf_session **session)
     }
     refocus_renderer_destroy(&s->small);
     refocus_renderer_destroy(&s->full);
-    if (!s->setup.strokes)
-        refocus_strokes_destroy(&s->strokes);
     for (int i = 0; i < 3; i++)
         free(s->frames[i].pixels);
-    free(s->orders);
     free(s->small_photo);
     free(s->small_out);
     free(s->full_out);
-    free(s->selection);
     free(s->small_disparity);
     free(s->scratch);
     pthread_mutex_destroy(&s->lock);
     pthread_cond_destroy(&s->wake);
     free(s);
     *session = NULL;
-}
-
-/* Called with the lock held: there is something new to do. */
-static uint64_t renew(struct rf_session *s)
-{
-    const uint64_t request = ++s->request;
-
-    pthread_cond_signal(&s->wake);
-    if (s->rendering)
-        refocus_cancel(s->full);
-    return request;
 }
 
 uint64_t rf_session_show(struct rf_session *s, const struct rf_view_state *state)
@@ -126,68 +111,33 @@ uint64_t rf_session_show(struct rf_session *s, const struct rf_view_state *state
     pthread_mutex_lock(&s->lock);
     s->state = *state;
     s->shown = true;
-    request = renew(s);
+    request = ++s->request;
+    pthread_cond_signal(&s->wake);
+    if (s->rendering)
+        refocus_cancel(s->full);
     pthread_mutex_unlock(&s->lock);
     return request;
 }
 
-static uint64_t order(struct rf_session *s, const struct order *one)
+void rf_session_save(struct rf_session *s, uint32_t what)
 {
-    uint64_t request = 0;
-
-    pthread_mutex_lock(&s->lock);
-    if (s->order_count == s->order_room) {
-        const int room = s->order_room > 0 ? 2 * s->order_room : 16;
-        struct order *const more = realloc(s->orders, (size_t)room * sizeof *more);
-
-        if (more) {
-            s->orders = more;
-            s->order_room = room;
-        }
-    }
-    if (s->order_count < s->order_room) {
-        s->orders[s->order_count++] = *one;
-        request = renew(s);
-    } else if (s->status == REFOCUS_OK) {
-        s->status = REFOCUS_ERR_MEMORY;
-    }
-    pthread_mutex_unlock(&s->lock);
-    return request;
-}
-
-uint64_t rf_session_begin(struct rf_session *s, const struct refocus_stroke *stroke,
-                          bool end_from_depth)
-{
-    const struct order one = {
-        .kind = ORDER_BEGIN, .stroke = *stroke, .end_from_depth = end_from_depth};
-
-    return order(s, &one);
-}
-
-uint64_t rf_session_extend(struct rf_session *s, float x, float y)
-{
-    const struct order one = {.kind = ORDER_POINT, .x = x, .y = y};
-
-    return order(s, &one);
-}
-
-uint64_t rf_session_undo(struct rf_session *s)
-{
-    const struct order one = {.kind = ORDER_UNDO};
-
-    return order(s, &one);
-}
-
-uint64_t rf_session_save(struct rf_session *s, uint32_t what)
-{
-    uint64_t request;
-
     pthread_mutex_lock(&s->lock);
     s->save |= what;
-    request = s->request;
     pthread_cond_signal(&s->wake);
     pthread_mutex_unlock(&s->lock);
-    return request;
+}
+
+bool rf_session_words(struct rf_session *s, char words[RF_VIEW_WORDS])
+{
+    bool fresh;
+
+    pthread_mutex_lock(&s->lock);
+    fresh = s->words[0] != '\0';
+    if (fresh)
+        memcpy(words, s->words, sizeof s->words);
+    s->words[0] = '\0';
+    pthread_mutex_unlock(&s->lock);
+    return fresh;
 }
 
 void rf_session_tick(struct rf_session *s)

@@ -13,14 +13,14 @@ struct rf_session;
 int rf_session_create(struct rf_session **session, const struct rf_session_setup *setup);
 void rf_session_destroy(struct rf_session **session);
 
-/* These return the number of the request, which frames answer; 0 = no memory for it. A
- * newer request replaces one that is not done. */
+/* The number of the request, which frames answer. A newer request replaces one that is not done. */
 uint64_t rf_session_show(struct rf_session *session, const struct rf_view_state *state);
-uint64_t rf_session_begin(struct rf_session *session, const struct refocus_stroke *stroke,
-                          bool end_from_depth);
-uint64_t rf_session_extend(struct rf_session *session, float x, float y);
-uint64_t rf_session_undo(struct rf_session *session);
-uint64_t rf_session_save(struct rf_session *session, uint32_t what);
+
+/* Save what is shown: enum rf_view_save, or-ed. */
+void rf_session_save(struct rf_session *session, uint32_t what);
+
+/* Words about what was saved, when there are some that were not taken yet. */
+bool rf_session_words(struct rf_session *session, char words[RF_VIEW_WORDS]);
 
 /* Call it some times a second: ends work on requests that are out of date. */
 void rf_session_tick(struct rf_session *session);

@@ -165,20 +165,6 @@ static void draw_depth(const struct rf_show *show, const struct rf_view_state *s
         out[i] = (uint32_t)(from[columns->nearest[i]] >> 8) * 0x010101;
 }
 
-static void mark_selection(const struct rf_show *show, const struct rf_view_state *state, int row,
-                           uint32_t *out, const struct columns *columns)
-{
-    enum { TINT = 0xff7010 };
-    const int n = show->selection_reduction;
-    const int y =
-        clamp((photo_place(state->y, state->scale, row) + 0.5) / n, 0, show->selection_height - 1);
-    const uint8_t *const from = show->selection + (size_t)y * (size_t)show->selection_width;
-
-    for (int i = 0; i < state->width; i++)
-        if (from[columns->nearest[i] / n])
-            out[i] = mix(out[i], TINT, 96);
-}
-
 static int luma(uint32_t pixel)
 {
     return (int)(2 * (pixel >> 16 & 255) + 5 * (pixel >> 8 & 255) + (pixel & 255)) / 8;
@@ -238,8 +224,6 @@ void rf_show(const struct rf_show *show, const struct rf_view_state *state, uint
         if (state->peaking)
             mark_sharp(show, state, row, out, row + 1 < state->height ? out + state->width : out,
                        &columns);
-        if (state->selection && show->selection)
-            mark_selection(show, state, row, out, &columns);
         blank_outside(show, state, row, out);
     }
 }

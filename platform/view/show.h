@@ -12,8 +12,6 @@ struct rf_show {
     int reduction;             /* pixels of the photo for one of these, each way */
     const uint16_t *disparity; /* the photo's disparities, packed */
     int photo_width, photo_height;
-    const uint8_t *selection; /* packed, 255 = covered; NULL: none */
-    int selection_width, selection_height, selection_reduction;
     float focus; /* for peaking */
 };
 

@@ -7,8 +7,8 @@
 /* From an event to the first picture that answers it, and to the full one;
  * milliseconds, < 0 when something newer came before it. */
 struct rf_view_time {
-    const char *cause; /* "open", "tap", "aperture", "paint", "zoom" or the name of a
-                          key's action */
+    const char *cause; /* "open", "tap", "aperture", "release", "zoom", "size" or the name of
+                          a key's action */
     double first_ms, full_ms;
     double first_cpu_ms; /* processor time of all threads up to the first one */
 };
@@ -17,8 +17,11 @@ struct rf_view_setup {
     struct rf_session_setup session; /* filled but for notify, which is the window's */
     struct rf_view_state state;      /* focus, blur and method to begin with */
     const char *title;               /* UTF-8 */
-    const char *settings;            /* lines that tell what else the picture is made by; may be ""
-                                        or NULL */
+    double dpi;                      /* dots per inch; 0: as the screen says */
+    const char *font;                /* a file, NULL: one that systems have, or "none" */
+    /* Words about the lens of a state; NULL: plain ones. */
+    void (*describe)(void *user, const struct rf_view_state *state, char *words, size_t size);
+    void *describe_user;
     uint32_t methods;  /* REFOCUS_METHOD_BIT() of those to choose from, or-ed; 0 = all */
     int width, height; /* size of the window; 0 = as large as the photo asks for */
     bool fullscreen;
@@ -34,7 +37,6 @@ struct rf_view_report {
     char driver[32];   /* SDL's driver: "x11", "wayland", "kmsdrm", ... */
     int width, height; /* size of the window, pixels */
     int reduction;     /* reduction of the first pictures */
-    int strokes;       /* strokes that the painting has in the end */
     struct rf_view_state last;
 };
 
@@ -48,8 +50,5 @@ struct rf_view_report {
  * reason (256 bytes). To be called from the main thread. */
 RF_VIEW_CALL int rf_view_run(const struct rf_view_setup *setup, struct rf_view_report *report,
                              char *reason);
-
-/* Keys and what they do, two of each line; NULL ends them. */
-const char *rf_view_key(int index, const char **what);
 
 #endif

@@ -5,7 +5,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <refocus/settings.h>
-#include <refocus/platform/strokes.h>
 
 enum rf_view_mode { RF_VIEW_RESULT, RF_VIEW_BEFORE, RF_VIEW_DEPTH, RF_VIEW_MODES };
 
@@ -19,7 +18,6 @@ struct rf_view_state {
     uint32_t mode;       /* enum rf_view_mode */
     bool hold;           /* quick pictures only, as long as something is being dragged */
     bool peaking;        /* mark what is sharp */
-    bool selection;      /* mark what the last layer of the painting covers */
     double x, y, scale;  /* photo pixel at the window's corner; window pixels a photo pixel */
     int width, height;   /* size of the window, 1 to 16384 */
 };
@@ -31,7 +29,6 @@ struct rf_view_frame {
     struct rf_view_state of; /* the state it shows, with the focus that was found */
     uint64_t request;        /* number of the request that it answers */
     bool full;               /* it has the whole photo's resolution, not a reduced one */
-    int strokes;             /* strokes that the painting has */
 };
 
 /* The things that can be written; the callback gets it on the session's thread. */
@@ -40,20 +37,17 @@ struct rf_view_result {
     uint32_t what; /* enum rf_view_save, or-ed */
     const struct refocus_image *picture;
     const struct refocus_settings *params;
-    const uint16_t *disparity; /* the photo's disparities, packed */
-    const struct refocus_strokes *strokes;
+    const uint16_t *disparity;         /* the photo's disparities, packed */
     const struct rf_view_state *state; /* the state, with the focus that was found */
 };
 
+enum { RF_VIEW_WORDS = 256 };
 struct rf_session_setup {
     const struct refocus_image *photo; /* RGB8; the caller's, until the end */
-    const uint16_t *disparity; /* disparities of its size, packed, which are copied; NULL: all 0 */
+    const uint16_t *disparity;         /* disparities of its size, packed; the caller's, too */
     const struct refocus_disparity
-        *matte;                      /* matte of any size, or NULL; the caller's, until the end */
-    struct refocus_strokes *strokes; /* the painting so far, over those disparities,
-                                        or NULL: none. The caller's, but the
-                                        session's to change until its end */
-    struct refocus_settings params;  /* the settings that the state does not hold */
+        *matte;                     /* matte of any size, or NULL; the caller's, until the end */
+    struct refocus_settings params; /* the settings that the state does not hold */
     /* Set other parameters that follow from a focus that was found: it changes params, which have
      * it, the method and the blur already; lengths in pixels are the photo's. From the session's
      * thread; NULL: nothing. */
@@ -63,7 +57,8 @@ struct rf_session_setup {
     uint32_t cpu;
     void (*notify)(void *user); /* a frame is there; from the session's thread */
     void *notify_user;
-    void (*save)(void *user, const struct rf_view_result *result);
+    /* From the session's thread; words: what the window is to say of it. */
+    void (*save)(void *user, const struct rf_view_result *result, char words[RF_VIEW_WORDS]);
     void *save_user;
 };
 

@@ -3,8 +3,8 @@
 #include <string.h>
 #include <refocus/status.h>
 #include "actions.h"
+#include "draw.h"
 #include "input.h"
-#include "text.h"
 
 /* It is called from the session's thread. */
 static void notify(void *user)
@@ -42,10 +42,27 @@ static void choose_size(const struct rf_view_setup *setup, int *width, int *heig
     *height = setup->height > 0 ? setup->height : (int)fmax(240, photo->height * scale);
 }
 
+/* The sizes of what is drawn; a screen whose driver does not tell its dpi, or that is far away, has
+ * 96 in a unit of the window system's. */
+void rf_window_measure(struct rf_window *w)
+{
+    const int screen = SDL_GetWindowDisplayIndex(w->window);
+    float dpi = 0;
+    int width = 0;
+
+    SDL_GetRendererOutputSize(w->renderer, &w->width, &w->height);
+    SDL_GetWindowSize(w->window, &width, NULL);
+    w->density = width > 0 ? (double)w->width / width : 1;
+    if (SDL_GetDisplayDPI(screen, &dpi, NULL, NULL) != 0)
+        dpi = 0;
+    w->unit = w->setup->dpi > 0 ? w->setup->dpi / 96 : fmax(w->density, fmin((double)dpi / 96, 4));
+}
+
 static int open_window(struct rf_window *w, char *reason)
 {
     const Uint32 flags = SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI |
                          (w->setup->fullscreen ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
+    char why[256];
     int width, height;
 
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
@@ -67,16 +84,21 @@ static int open_window(struct rf_window *w, char *reason)
         w->renderer = SDL_CreateRenderer(w->window, -1, SDL_RENDERER_SOFTWARE);
     if (!w->renderer)
         return fail(reason, "nothing can be drawn into the window");
-    SDL_GetRendererOutputSize(w->renderer, &w->width, &w->height);
-    SDL_GetWindowSize(w->window, &width, NULL);
-    w->density = width > 0 ? (double)w->width / width : 1;
+    rf_window_measure(w);
     w->frame_event = SDL_RegisterEvents(1);
     SDL_SetRenderDrawBlendMode(w->renderer, SDL_BLENDMODE_BLEND);
-    return REFOCUS_OK;
+    if (w->setup->font && SDL_strcmp(w->setup->font, "none") == 0)
+        return REFOCUS_OK;
+    w->text = rf_text_open(w->renderer, w->setup->font, why);
+    if (w->text || !w->setup->font)
+        return REFOCUS_OK;
+    SDL_snprintf(reason, 256, "the font %.100s: %.120s", w->setup->font, why);
+    return REFOCUS_ERR_UNSUPPORTED;
 }
 
 static void close_window(struct rf_window *w)
 {
+    rf_text_close(&w->text);
     if (w->texture)
         SDL_DestroyTexture(w->texture);
     if (w->renderer)
@@ -101,161 +123,6 @@ static void take_frame(struct rf_window *w)
     }
     if (w->texture)
         SDL_UpdateTexture(w->texture, NULL, w->frame->pixels, 4 * of->width);
-}
-
-static void set_grey(struct rf_window *w, int grey, int alpha)
-{
-    SDL_SetRenderDrawColor(w->renderer, (Uint8)grey, (Uint8)grey, (Uint8)grey, (Uint8)alpha);
-}
-
-static void draw_circle(struct rf_window *w, double x, double y, double radius)
-{
-    enum { CORNERS = 48 };
-    SDL_FPoint points[CORNERS + 1];
-
-    for (int i = 0; i <= CORNERS; i++) {
-        points[i].x = (float)(x + radius * cos(i * 6.283185307 / CORNERS));
-        points[i].y = (float)(y + radius * sin(i * 6.283185307 / CORNERS));
-    }
-    SDL_RenderDrawLinesF(w->renderer, points, CORNERS + 1);
-}
-
-/* Draw the focus point, the path that is being painted, and the brush. */
-static void draw_marks(struct rf_window *w)
-{
-    if (w->tool == RF_TOOL_FOCUS && w->state.focus_tap > 0 && w->state.mode == RF_VIEW_RESULT) {
-        const int half = (int)(14 * w->density);
-        const int x = (int)((w->state.tap_x + 0.5 - w->state.x) * w->state.scale);
-        const int y = (int)((w->state.tap_y + 0.5 - w->state.y) * w->state.scale);
-        const SDL_Rect box = {x - half, y - half, 2 * half, 2 * half};
-
-        SDL_SetRenderDrawColor(w->renderer, 255, 210, 60, 255);
-        SDL_RenderDrawRect(w->renderer, &box);
-    }
-    if (w->tool == RF_TOOL_FOCUS)
-        return;
-    SDL_SetRenderDrawColor(w->renderer, 255, 255, 255, 200);
-    if (w->path_count > 1)
-        SDL_RenderDrawLinesF(w->renderer, w->path, w->path_count);
-    if (w->tool == RF_TOOL_PAINT)
-        draw_circle(w, w->last_x, w->last_y, w->brush);
-    else if (w->pressed)
-        SDL_RenderDrawLine(w->renderer, (int)w->press_x, (int)w->press_y, (int)w->last_x,
-                           (int)w->last_y);
-}
-
-static void draw_buttons(struct rf_window *w)
-{
-    for (int i = 0; i < rf_window_buttons(w); i++) {
-        const char *label;
-        bool on;
-        const SDL_Rect place = rf_window_button(w, i, &label, &on);
-        const int dot = place.w > rf_text_width(label, 2) + 6 ? (int)(2 * w->density) : 1;
-
-        set_grey(w, on ? 90 : 20, 180);
-        SDL_RenderFillRect(w->renderer, &place);
-        set_grey(w, 120, 255);
-        SDL_RenderDrawRect(w->renderer, &place);
-        set_grey(w, 240, 255);
-        rf_text(w->renderer, label, place.x + (place.w - rf_text_width(label, dot)) / 2,
-                place.y + (place.h - 5 * dot) / 2, dot);
-    }
-}
-
-/* Above: what it is set to, and the disparity that a stroke fills with. */
-static void draw_status(struct rf_window *w)
-{
-    const int dot = (int)(2 * w->density);
-    const char *const more = w->setup->settings && *w->setup->settings ? "  + i" : "";
-    char text[120];
-    SDL_Rect bar = {0, 0, w->width, 11 * dot};
-
-    SDL_snprintf(text, sizeof text, "%s  focus %.3f  blur %.1f%s%s",
-                 refocus_method_name(w->state.method),
-                 w->frame ? (double)w->frame->of.focus : (double)w->state.focus,
-                 (double)w->state.blur, more, w->frame && w->frame->full ? "" : "  ...");
-    set_grey(w, 20, 150);
-    SDL_RenderFillRect(w->renderer, &bar);
-    set_grey(w, 240, 255);
-    rf_text(w->renderer, text, 4 * dot, 3 * dot, dot);
-    if (w->tool == RF_TOOL_FOCUS)
-        return;
-    bar = (SDL_Rect){w->width - 30 * dot, dot, 28 * dot, 9 * dot};
-    set_grey(w, (int)(w->value * 255), 255);
-    SDL_RenderFillRect(w->renderer, &bar);
-    SDL_snprintf(text, sizeof text, "%.2f", w->value);
-    set_grey(w, w->value > 0.5 ? 0 : 255, 255);
-    rf_text(w->renderer, text, bar.x + 5 * dot, bar.y + 2 * dot, dot);
-}
-
-/* Darkens what lies under a page of text. */
-static void begin_page(struct rf_window *w, int dot)
-{
-    const SDL_Rect all = {0, 11 * dot, w->width, w->height};
-
-    set_grey(w, 10, 200);
-    SDL_RenderFillRect(w->renderer, &all);
-    set_grey(w, 240, 255);
-}
-
-/* Draw the settings of the picture beside focus, blur and method. */
-static void draw_settings(struct rf_window *w)
-{
-    const int dot = (int)(2 * w->density);
-    const char *line = w->setup->settings;
-    char text[120];
-
-    begin_page(w, dot);
-    if (!line || !*line)
-        line = "a plain lens: no settings beside focus and blur";
-    for (int i = 0; *line; i++) {
-        const size_t length = strcspn(line, "\n");
-
-        SDL_snprintf(text, sizeof text, "%.*s", (int)length, line);
-        rf_text(w->renderer, text, 6 * dot, (16 + 8 * i) * dot, dot);
-        line += length + (line[length] != '\0');
-    }
-}
-
-static void draw_help(struct rf_window *w)
-{
-    const int dot = (int)(2 * w->density);
-    const char *what, *key;
-
-    begin_page(w, dot);
-    for (int i = 0; (key = rf_view_key(i, &what)) != NULL; i++) {
-        rf_text(w->renderer, key, 6 * dot, (16 + 8 * i) * dot, dot);
-        rf_text(w->renderer, what, 50 * dot, (16 + 8 * i) * dot, dot);
-    }
-}
-
-/* Find the place of the frame now: the view may have moved since. */
-static void draw_frame(struct rf_window *w)
-{
-    const struct rf_view_state *const of = &w->frame->of;
-    const double zoom = w->state.scale / of->scale;
-    const SDL_FRect place = {(float)((of->x - w->state.x) * w->state.scale),
-                             (float)((of->y - w->state.y) * w->state.scale),
-                             (float)(of->width * zoom), (float)(of->height * zoom)};
-
-    SDL_RenderCopyF(w->renderer, w->texture, NULL, &place);
-}
-
-static void draw(struct rf_window *w)
-{
-    set_grey(w, 32, 255);
-    SDL_RenderClear(w->renderer);
-    if (w->texture)
-        draw_frame(w);
-    draw_marks(w);
-    draw_status(w);
-    if (w->help)
-        draw_help(w);
-    else if (w->settings)
-        draw_settings(w);
-    draw_buttons(w);
-    SDL_RenderPresent(w->renderer);
-    w->redraw = false;
 }
 
 /* Note the requests that the frame just shown answers. */
@@ -301,8 +168,9 @@ static void run(struct rf_window *w)
         fresh = rf_session_frame(w->session, &w->frame);
         if (fresh)
             take_frame(w);
+        w->redraw |= rf_session_words(w->session, w->words);
         if (fresh || w->redraw)
-            draw(w);
+            rf_window_draw(w);
         if (fresh)
             note_times(w);
         if (w->setup->stop && w->setup->stop(w->setup->stop_user))
@@ -341,9 +209,6 @@ int rf_view_run(const struct rf_view_setup *setup, struct rf_view_report *report
     w->setup = setup;
     w->report = report;
     w->state = setup->state;
-    w->brush = 14;
-    w->value = 0.5;
-    w->stroke_kind = REFOCUS_STROKE_OBJECT;
     status = open_window(w, reason);
     if (status == REFOCUS_OK)
         status = start_session(w, reason);
@@ -352,7 +217,6 @@ int rf_view_run(const struct rf_view_setup *setup, struct rf_view_report *report
         report->width = w->width;
         report->height = w->height;
         report->reduction = rf_session_reduction(w->session);
-        w->brush *= w->density;
         rf_window_fit(w);
         rf_window_show(w, "open");
         run(w);
@@ -360,10 +224,8 @@ int rf_view_run(const struct rf_view_setup *setup, struct rf_view_report *report
         if (status != REFOCUS_OK)
             SDL_snprintf(reason, 256, "%s", refocus_strerror(status));
         report->last = w->state;
-        if (w->frame) {
+        if (w->frame)
             report->last.focus = w->frame->of.focus;
-            report->strokes = w->frame->strokes;
-        }
     }
     rf_session_destroy(&w->session);
     close_window(w);

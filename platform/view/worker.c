@@ -6,7 +6,8 @@
 #include "show.h"
 #include "worker.h"
 
-void rf_worker_note(struct rf_session *s, int status)
+/* Keep the first status that was no success. */
+static void note_status(struct rf_session *s, int status)
 {
     pthread_mutex_lock(&s->lock);
     if (s->status == REFOCUS_OK)
@@ -14,17 +15,12 @@ void rf_worker_note(struct rf_session *s, int status)
     pthread_mutex_unlock(&s->lock);
 }
 
-static const uint16_t *disparity_of(const struct rf_session *s)
-{
-    return refocus_strokes_disparity(s->strokes);
-}
-
 /* The surface at a pixel, as --focus-at has it. */
 static float focus_at(const struct rf_session *s, double at_x, double at_y)
 {
     const int w = s->setup.photo->width, h = s->setup.photo->height;
     const struct refocus_disparity map =
-        refocus_disparity16(disparity_of(s), w, h, 2 * (ptrdiff_t)w);
+        refocus_disparity16(s->setup.disparity, w, h, 2 * (ptrdiff_t)w);
     const int x = (int)(at_x + 0.5), y = (int)(at_y + 0.5);
     float focus = 0;
 
@@ -81,59 +77,6 @@ static bool same_lens(const struct refocus_settings *a, const struct refocus_set
            is_same(a->focus.tilt_down, b->focus.tilt_down);
 }
 
-/* Depth of the gradient's far end: what lies there before it is painted. */
-static void look_up_end(const struct rf_session *s, struct refocus_fill *fill)
-{
-    const int w = s->setup.photo->width, h = s->setup.photo->height;
-    const int x = fill->x1 < 0 ? 0 : fill->x1 > (float)(w - 1) ? w - 1 : (int)fill->x1;
-    const int y = fill->y1 < 0 ? 0 : fill->y1 > (float)(h - 1) ? h - 1 : (int)fill->y1;
-
-    fill->d1 = (float)disparity_of(s)[(size_t)y * (size_t)w + (size_t)x] / 65535;
-}
-
-/* Points that follow each other are one segment, however late this comes to them. */
-static int paint_points(struct rf_session *s, const struct order *orders, int count)
-{
-    float *const points = malloc(2 * (size_t)count * sizeof *points);
-    int status = REFOCUS_ERR_MEMORY;
-
-    if (points) {
-        for (int i = 0; i < count; i++) {
-            points[2 * i] = orders[i].x;
-            points[2 * i + 1] = orders[i].y;
-        }
-        status = refocus_strokes_extend(s->strokes, points, count, NULL);
-    }
-    free(points);
-    return status;
-}
-
-static void paint(struct rf_session *s, struct order *orders, int count)
-{
-    for (int i = 0, next; i < count; i = next) {
-        int status;
-
-        next = i + 1;
-        if (orders[i].kind == ORDER_POINT) {
-            while (next < count && orders[next].kind == ORDER_POINT)
-                next++;
-            status = paint_points(s, orders + i, next - i);
-        } else if (orders[i].kind == ORDER_UNDO) {
-            status = refocus_strokes_undo(s->strokes, NULL);
-        } else {
-            if (orders[i].end_from_depth)
-                look_up_end(s, &orders[i].stroke.fill);
-            status = refocus_strokes_begin(s->strokes, &orders[i].stroke, NULL);
-        }
-        /* More without an object before it, or nothing to undo, is no failure of ours.
-         */
-        if (status != REFOCUS_OK && status != REFOCUS_ERR_STATE)
-            rf_worker_note(s, status);
-        s->small_stale = s->full_stale = true;
-        s->have_full = false;
-    }
-}
-
 static int make_renderer(struct rf_session *s, struct refocus_renderer **renderer, int width,
                          int height, int reduction)
 {
@@ -176,24 +119,18 @@ static void publish(struct rf_session *s, const struct rf_view_state *state, uin
                            .width = s->width,
                            .height = s->height,
                            .reduction = s->reduction,
-                           .disparity = disparity_of(s),
+                           .disparity = s->setup.disparity,
                            .photo_width = photo->width,
                            .photo_height = photo->height,
-                           .selection_width = s->width,
-                           .selection_height = s->height,
-                           .selection_reduction = s->reduction,
                            .focus = state->focus};
     uint32_t *const pixels = back_pixels(s, state);
     struct rf_view_frame *const frame = &s->frames[s->back];
     int swap;
 
     if (!pixels) {
-        rf_worker_note(s, REFOCUS_ERR_MEMORY);
+        note_status(s, REFOCUS_ERR_MEMORY);
         return;
     }
-    if (state->selection &&
-        !refocus_strokes_selection(s->strokes, s->selection, s->width, s->height, s->width))
-        show.selection = s->selection;
     if (full && (result || photo->stride[0] == 3 * (ptrdiff_t)photo->width)) {
         show.rgb = result ? s->full_out : photo->plane[0];
         show.width = photo->width;
@@ -204,7 +141,6 @@ static void publish(struct rf_session *s, const struct rf_view_state *state, uin
     frame->of = *state;
     frame->request = request;
     frame->full = full;
-    frame->strokes = refocus_strokes_count(s->strokes);
     pthread_mutex_lock(&s->lock);
     swap = s->ready >= 0 ? s->ready : 3 - s->front - s->back;
     s->ready = s->back;
@@ -231,12 +167,12 @@ static int prepare_small(struct rf_session *s)
         refocus_disparity16(s->small_disparity, s->width, s->height, 2 * (ptrdiff_t)s->width);
     int status;
 
-    if (!s->small_stale)
+    if (s->small_prepared)
         return REFOCUS_OK;
-    rf_reduce_disparity(disparity_of(s), photo->width, photo->height, s->reduction,
+    rf_reduce_disparity(s->setup.disparity, photo->width, photo->height, s->reduction,
                         s->small_disparity);
     status = prepare(s, s->small, &image, &map);
-    s->small_stale = status != REFOCUS_OK;
+    s->small_prepared = status == REFOCUS_OK;
     return status;
 }
 
@@ -258,17 +194,17 @@ static int render_full(struct rf_session *s, const struct rf_view_state *state)
     const struct refocus_image out = refocus_image_packed(
         REFOCUS_FORMAT_RGB8, s->full_out, photo->width, photo->height, 3 * (ptrdiff_t)photo->width);
     const struct refocus_disparity map = refocus_disparity16(
-        disparity_of(s), photo->width, photo->height, 2 * (ptrdiff_t)photo->width);
+        s->setup.disparity, photo->width, photo->height, 2 * (ptrdiff_t)photo->width);
     int status = REFOCUS_OK;
 
     if (s->have_full && same_lens(&params, &s->full_of))
         return REFOCUS_OK;
     s->have_full = false;
-    if (s->full_stale)
+    if (!s->full_prepared)
         status = prepare(s, s->full, photo, &map);
     if (status != REFOCUS_OK)
         return status;
-    s->full_stale = false;
+    s->full_prepared = true;
     status = refocus_render_settings(s->full, &params, &out);
     s->have_full = status == REFOCUS_OK;
     s->full_of = params;
@@ -328,7 +264,7 @@ static bool answer(struct rf_session *s, struct rf_view_state *state, uint64_t r
     if (status == REFOCUS_OK)
         publish(s, state, request, true);
     else
-        rf_worker_note(s, status);
+        note_status(s, status);
     return true;
 }
 
@@ -341,35 +277,27 @@ static void save(struct rf_session *s, const struct rf_view_state *state, uint32
     const struct rf_view_result result = {.what = what,
                                           .picture = &picture,
                                           .params = &params,
-                                          .disparity = disparity_of(s),
-                                          .strokes = s->strokes,
+                                          .disparity = s->setup.disparity,
                                           .state = state};
+    char words[RF_VIEW_WORDS] = "";
     int status = REFOCUS_OK;
 
     /* Nothing cancels this one: what is saved is what was asked for. */
     if (what & RF_SAVE_PICTURE)
         status = render_full(s, state);
     if (status == REFOCUS_OK)
-        s->setup.save(s->setup.save_user, &result);
+        s->setup.save(s->setup.save_user, &result, words);
     else
-        rf_worker_note(s, status);
-}
-
-/* The focus of the state's tap; of a newer depth only after a newer tap. */
-static void find_focus(struct rf_session *s, struct rf_view_state *state)
-{
-    if (state->focus_tap == 0)
-        return;
-    if (state->focus_tap != s->tap) {
-        s->tap = state->focus_tap;
-        s->tap_focus = focus_at(s, state->tap_x, state->tap_y);
-    }
-    state->focus = s->tap_focus;
+        note_status(s, status);
+    pthread_mutex_lock(&s->lock);
+    memcpy(s->words, words, sizeof words);
+    pthread_mutex_unlock(&s->lock);
+    s->setup.notify(s->setup.notify_user);
 }
 
 /* Wait for something to do; false at the end. */
 static bool take_work(struct rf_session *s, struct rf_view_state *state, uint64_t *request,
-                      struct order **orders, int *count, uint32_t *what)
+                      uint32_t *what)
 {
     bool quit;
 
@@ -378,11 +306,7 @@ static bool take_work(struct rf_session *s, struct rf_view_state *state, uint64_
         pthread_cond_wait(&s->wake, &s->lock);
     *state = s->state;
     *request = s->request;
-    *orders = s->orders;
-    *count = s->order_count;
     *what = s->save;
-    s->orders = NULL;
-    s->order_count = s->order_room = 0;
     s->save = 0;
     quit = s->quit;
     pthread_mutex_unlock(&s->lock);
@@ -394,14 +318,13 @@ void *rf_worker_run(void *argument)
     struct rf_session *const s = argument;
     const struct refocus_image *const photo = s->setup.photo;
     struct rf_view_state state;
-    struct order *orders = NULL;
     uint64_t request;
     uint32_t what;
-    int count, status;
+    int status;
 
     rf_reduce_photo(photo, s->reduction, s->small_photo);
     memcpy(s->small_out, s->small_photo, 3 * (size_t)s->width * (size_t)s->height);
-    while (take_work(s, &state, &request, &orders, &count, &what)) {
+    while (take_work(s, &state, &request, &what)) {
         if (!s->small) {
             /* The photo at once; then the renderers, which take their time. */
             publish(s, &state, 0, false);
@@ -409,15 +332,13 @@ void *rf_worker_run(void *argument)
             if (status == REFOCUS_OK)
                 status = make_renderer(s, &s->full, photo->width, photo->height, 1);
             if (status != REFOCUS_OK) {
-                rf_worker_note(s, status);
+                note_status(s, status);
                 s->setup.notify(s->setup.notify_user);
                 break;
             }
         }
-        paint(s, orders, count);
-        free(orders);
-        orders = NULL;
-        find_focus(s, &state);
+        if (state.focus_tap > 0)
+            state.focus = focus_at(s, state.tap_x, state.tap_y);
         if (what)
             save(s, &state, what);
         if (answer(s, &state, request)) {
@@ -426,7 +347,6 @@ void *rf_worker_run(void *argument)
             pthread_mutex_unlock(&s->lock);
         }
     }
-    free(orders);
     pthread_mutex_lock(&s->lock);
     s->finished = true;
     pthread_mutex_unlock(&s->lock);

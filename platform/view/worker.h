@@ -8,14 +8,6 @@
 /* Pixels of the reduced photo: a picture of them in a few hundredths of a second. */
 enum { PREVIEW_PIXELS = 600000, PREVIEW_RAYS = 32 };
 
-/* Orders for the painting, in sequence. */
-struct order {
-    enum { ORDER_BEGIN, ORDER_POINT, ORDER_UNDO } kind;
-    struct refocus_stroke stroke;
-    bool end_from_depth;
-    float x, y;
-};
-
 struct rf_session {
     struct rf_session_setup setup;
     int reduction, width, height; /* size of the reduced photo */
@@ -27,33 +19,26 @@ struct rf_session {
     /* Under the lock. */
     struct rf_view_state state;
     uint64_t request, answered; /* the newest one, and the last that is wholly done */
-    struct order *orders;
-    int order_count, order_room;
     uint32_t save;
     bool shown, quit, finished;
     bool rendering;    /* the full picture, */
     uint64_t rendered; /* the request that it is for */
     int status;
+    char words[RF_VIEW_WORDS]; /* words about what was saved, or "" */
     struct rf_view_frame frames[3];
     int front, ready, back; /* ready: -1 when it was taken */
 
     /* The thread's own. */
-    struct refocus_strokes *strokes;
     struct refocus_renderer *small, *full;
-    uint8_t *small_photo, *small_out, *full_out, *selection;
+    uint8_t *small_photo, *small_out, *full_out;
     uint16_t *small_disparity;
     uint32_t *scratch;
     int scratch_room;
-    bool small_stale, full_stale; /* the depth has changed since it was prepared */
-    bool have_full;               /* full_out is what full_of says */
+    bool small_prepared, full_prepared;
+    bool have_full; /* full_out is what full_of says */
     struct refocus_settings full_of;
-    uint64_t tap; /* the last one that was looked up */
-    float tap_focus;
 };
 
 void *rf_worker_run(void *session);
-
-/* Keep the first status that was no success. */
-void rf_worker_note(struct rf_session *s, int status);
 
 #endif

@@ -82,6 +82,7 @@ static void add_headers(struct MHD_Response *response, const struct request *req
         {"Cross-Origin-Resource-Policy", "same-origin"},
         {"Cross-Origin-Opener-Policy", "same-origin"},
     };
+    char frame[16];
 
     for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++)
         MHD_add_response_header(response, fixed[i][0], fixed[i][1]);
@@ -91,6 +92,10 @@ static void add_headers(struct MHD_Response *response, const struct request *req
         add_attachment(response, request);
     if (request->action == ACTION_THUMBNAIL && request->depth >= 0)
         MHD_add_response_header(response, "Refocus-Depth", request->depth ? "yes" : "no");
+    if (request->frame > 0) {
+        snprintf(frame, sizeof frame, "%u", request->frame);
+        MHD_add_response_header(response, "Refocus-Frame", frame);
+    }
     if (request->status >= 400)
         MHD_add_response_header(response, "Connection", "close");
     if (request->status == MHD_HTTP_METHOD_NOT_ALLOWED)

@@ -115,8 +115,21 @@ static void replace_pictures(struct server *server, struct process *process)
 
 static bool replaces_pictures(uint32_t what)
 {
-    return what == RF_WEB_PICTURE || what == RF_WEB_FOCUS || what == RF_WEB_STROKE ||
-           what == RF_WEB_UNDO || what == RF_WEB_REDO;
+    return what == RF_WEB_PICTURE || what == RF_WEB_FOCUS || what == RF_WEB_DRAFT ||
+           what == RF_WEB_STROKE || what == RF_WEB_UNDO || what == RF_WEB_REDO;
+}
+
+/* Hand a request to its process, when that is free. */
+static void process_queue(struct server *server, struct request *request)
+{
+    struct process *const process = request->process;
+
+    if (process->waiting_count >= MOST_WAITING) {
+        answer_error(request, MHD_HTTP_SERVICE_UNAVAILABLE, "too much is asked at once");
+        return;
+    }
+    queue(process, request);
+    go_on(server, process);
 }
 
 void process_ask(struct server *server, struct request *request)
@@ -129,12 +142,7 @@ void process_ask(struct server *server, struct request *request)
     }
     if (replaces_pictures(request->ask.what))
         replace_pictures(server, process);
-    if (process->waiting_count >= MOST_WAITING) {
-        answer_error(request, MHD_HTTP_SERVICE_UNAVAILABLE, "too much is asked at once");
-        return;
-    }
-    queue(process, request);
-    go_on(server, process);
+    process_queue(server, request);
 }
 
 struct process *process_find(const struct server *server, const char *id)
@@ -186,6 +194,24 @@ void process_open(struct server *server, struct request *request, int fd)
     go_on(server, request->process);
 }
 
+void process_live(struct server *server, struct request *request)
+{
+    struct process *process = server->processes;
+
+    while (process && !process->live)
+        process = process->next;
+    if (!process)
+        process = process_start(server, "live", true, -1);
+    if (!process) {
+        answer_error(request, MHD_HTTP_SERVICE_UNAVAILABLE, no_memory);
+        return;
+    }
+    request->ask.what = RF_WEB_OPEN;
+    request->ask.bytes = 0;
+    request->process = process;
+    process_queue(server, request);
+}
+
 /* Make thumbnails that wait for a process. */
 static void begin_thumbnails(struct server *server)
 {
@@ -233,7 +259,8 @@ static void finish(struct server *server, struct process *process)
     process->used_ms = server_now_ms();
     reply->type[sizeof reply->type - 1] = reply->ending[sizeof reply->ending - 1] = '\0';
     request->depth = reply->depth > 0 ? 1 : reply->depth < 0 ? -1 : 0;
-    if (reply->depth >= 0 && request->action != ACTION_UPLOAD)
+    request->frame = reply->frame;
+    if (reply->depth >= 0 && request->action != ACTION_UPLOAD && !process->live)
         folder_note_depth(&server->folder, process->name, request->depth);
     if (reply->status == MHD_HTTP_OK) {
         answer_text(request, process->body, (size_t)reply->bytes, reply->type);
@@ -360,7 +387,7 @@ void process_tick(struct server *server)
         next = p->next;
         if (p->running && now > p->until_ms)
             process_end(server, p, MHD_HTTP_SERVICE_UNAVAILABLE, "it takes too long");
-        else if (!p->running && now > p->used_ms + 1e3 * SECONDS_SESSION)
+        else if (!p->running && now > p->used_ms + 1e3 * (p->live ? SECONDS_LIVE : SECONDS_SESSION))
             process_end(server, p, MHD_HTTP_GONE, "this session has ended");
     }
     if (now > server->looked_ms + LOOK_MS) {

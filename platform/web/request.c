@@ -19,10 +19,13 @@ static const struct way {
     {"photos", "GET", ACTION_PHOTOS, RF_WEB_NOTHING},
     {"thumbnail", "GET", ACTION_THUMBNAIL, RF_WEB_THUMBNAIL},
     {"open", "POST", ACTION_OPEN, RF_WEB_OPEN},
+    {"live", "POST", ACTION_LIVE, RF_WEB_OPEN},
+    {"frame", "POST", ACTION_ASK, RF_WEB_FRAME},
     {"upload", "POST", ACTION_UPLOAD, RF_WEB_OPEN},
     {"focus", "POST", ACTION_ASK, RF_WEB_FOCUS},
     {"picture", "POST", ACTION_ASK, RF_WEB_PICTURE},
     {"overlay", "POST", ACTION_ASK, RF_WEB_OVERLAY},
+    {"draft", "POST", ACTION_ASK, RF_WEB_DRAFT},
     {"stroke", "POST", ACTION_ASK, RF_WEB_STROKE},
     {"undo", "POST", ACTION_ASK, RF_WEB_UNDO},
     {"redo", "POST", ACTION_ASK, RF_WEB_REDO},
@@ -95,6 +98,12 @@ static void take_picture(struct request *request)
     }
     if (picture)
         process->newest = number;
+    word = argument(request, "after", &length);
+    if (request->ask.what == RF_WEB_FRAME && !rf_check_number(word, 0, 999999999, &number)) {
+        answer_error(request, MHD_HTTP_BAD_REQUEST, "after: give the number of the last frame");
+        return;
+    }
+    request->ask.after = (uint32_t)number;
     request->ask.size = (int32_t)size;
     request->ask.quick = strcmp(argument(request, "quick", &length), "1") == 0;
 }
@@ -107,6 +116,10 @@ static void take_word(struct request *request)
         const char *of, *words[5], *why;
     } kinds[] = {
         {RF_WEB_OVERLAY, "kind", {"depth", "blur", "peaking"}, "kind: give depth, blur or peaking"},
+        {RF_WEB_FRAME,
+         "kind",
+         {"picture", "depth", "blur", "peaking"},
+         "kind: give picture, depth, blur or peaking"},
         {RF_WEB_SAVE,
          "as",
          {"jpeg", "png", "settings", "depth"},
@@ -134,8 +147,8 @@ static void take_arguments(struct server *server, struct request *request)
 
     if (request->action == ACTION_ASK || request->action == ACTION_CLOSE)
         find_process(server, request);
-    if (request->status == 0 &&
-        (what == RF_WEB_PICTURE || what == RF_WEB_OVERLAY || what == RF_WEB_PULL))
+    if (request->status == 0 && (what == RF_WEB_PICTURE || what == RF_WEB_OVERLAY ||
+                                 what == RF_WEB_PULL || what == RF_WEB_FRAME))
         take_picture(request);
     if (request->status == 0)
         take_word(request);
@@ -238,7 +251,8 @@ static void list_photos(struct server *server, struct request *request)
             list, json_pack("{s:s, s:o}", "name", photo->name, "depth",
                             photo->depth < 0 ? json_null() : json_boolean(photo->depth)));
     }
-    object = json_pack("{s:b, s:o, s:o, s:I}", "folder", folder->fd >= 0, "photos", list, "open",
+    object = json_pack("{s:b, s:b, s:o, s:o, s:I}", "folder", folder->fd >= 0, "live",
+                       server->setup->live, "photos", list, "open",
                        folder->file >= 0 ? json_string(folder->photos[0].name) : json_null(),
                        "upload_limit", (json_int_t)server->setup->most_upload);
     text = object ? json_dumps(object, JSON_COMPACT) : NULL;
@@ -277,6 +291,12 @@ static void dispatch(struct server *server, struct request *request)
     case ACTION_OPEN:
         open_photo(server, request);
         break;
+    case ACTION_LIVE:
+        if (server->setup->live)
+            process_live(server, request);
+        else
+            answer_error(request, MHD_HTTP_NOT_FOUND, "no camera is given; start it with --live");
+        break;
     case ACTION_UPLOAD:
         fd = upload_end(server, request);
         if (fd >= 0)
@@ -291,7 +311,10 @@ static void dispatch(struct server *server, struct request *request)
     case ACTION_CLOSE:
         find_process(server, request);
         if (request->status == 0) {
-            process_end(server, request->process, MHD_HTTP_GONE, "this session has been closed");
+            /* Others may look at the cameras, which end when nobody does. */
+            if (!request->process->live)
+                process_end(server, request->process, MHD_HTTP_GONE,
+                            "this session has been closed");
             answer_text(request, strdup("{\"closed\":true}"), 15, "application/json");
         }
         break;

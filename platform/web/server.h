@@ -27,6 +27,7 @@ enum {
     SECONDS_IDLE = 60,
     SECONDS_WORK = 600,
     SECONDS_SESSION = 7200, /* a session that nobody asks */
+    SECONDS_LIVE = 10,      /* cameras at which nobody looks */
 };
 
 struct line { /* a connection */
@@ -44,6 +45,7 @@ struct request {
         ACTION_PHOTOS,
         ACTION_THUMBNAIL,
         ACTION_OPEN,
+        ACTION_LIVE, /* the session of the cameras */
         ACTION_UPLOAD,
         ACTION_ASK, /* a request to a session */
         ACTION_CLOSE,
@@ -58,6 +60,7 @@ struct request {
     uint64_t uploaded;
     /* The answer, once status is not 0. */
     int status, depth;
+    uint32_t frame;
     char *text;
     size_t size;
     uint64_t held; /* bytes of it that count as the server's */
@@ -69,6 +72,7 @@ struct process {
     pid_t pid;
     int socket, control;
     bool session; /* the process keeps its photo open; false: it makes a thumbnail and ends */
+    bool live;    /* the session of the cameras, which all clients share */
     bool open;    /* the photo is open */
     char id[RF_WEB_SESSION + 1], name[256];
     char folder[1024]; /* for its temporary files, which end with it */
@@ -123,7 +127,7 @@ enum MHD_Result answer_queue(struct request *request);
 
 /* start.c */
 
-/* A new process for a photo, whose fd is closed; NULL: none can be had. */
+/* A new process for a photo, whose fd is closed, or, -1, for the cameras; NULL: none can be had. */
 struct process *process_start(struct server *server, const char *name, bool session, int fd);
 void process_remove_folder(const struct process *process);
 
@@ -131,6 +135,8 @@ void process_remove_folder(const struct process *process);
 
 /* Start a session; fd is closed. */
 void process_open(struct server *server, struct request *request, int fd);
+/* Start the session of the cameras, or join it. */
+void process_live(struct server *server, struct request *request);
 void process_thumbnail(struct server *server, struct request *request);
 void process_ask(struct server *server, struct request *request);
 struct process *process_find(const struct server *server, const char *id);

@@ -74,7 +74,7 @@ static void live(struct server *server, const struct process *process, const int
     char path[32];
     const struct rf_web_work work = {.socket = FILE_SOCKET,
                                      .control = FILE_CONTROL,
-                                     .photo = path,
+                                     .photo = process->live ? NULL : path,
                                      .name = process->name,
                                      .session = process->id};
     int moved[3];
@@ -113,6 +113,10 @@ struct process *process_start(struct server *server, const char *name, bool sess
     struct process *const process = calloc(1, sizeof *process);
     int sockets[4];
 
+    if (process && fd < 0) {
+        process->live = true;
+        fd = open("/dev/null", O_RDONLY | O_CLOEXEC);
+    }
     if (!process || !server_random(process->id) || !make_folder(process) ||
         !make_sockets(sockets)) {
         if (process)

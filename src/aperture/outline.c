@@ -78,8 +78,12 @@ static double square_of(const struct refocus_aperture *a, double x, double y)
 
 static int outline_open(const struct refocus_aperture *a, double x, double y)
 {
-    const double square = square_of(a, x / a->squeeze_x, -y / a->squeeze_y);
+    const double wide = x / a->squeeze_x, high = -y / a->squeeze_y;
+    double square;
 
+    if (wide * wide + high * high > 1.0001) /* no figure is larger than its circle */
+        return 0;
+    square = square_of(a, wide, high);
     return square <= 1 ? rf_shape_light(a, 255, square) : 0;
 }
 

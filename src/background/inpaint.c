@@ -93,7 +93,7 @@ bool rf_next_unknown(const int16_t *blur, int n, struct rf_unknown *run)
 
 /* Pulls a row of level i from the next level, in so many planes of light. */
 static void pull_row(const struct rf_executor *exec, const struct rf_pyramid *pyramid, int i,
-                     int planes, uint16_t *scratch, int y)
+                     int planes, int16_t apart, uint16_t *scratch, int y)
 {
     const struct rf_level *fine = &pyramid->level[i], *coarse = &pyramid->level[i + 1];
     const int near_y = y / 2, width = fine->width;
@@ -108,13 +108,19 @@ static void pull_row(const struct rf_executor *exec, const struct rf_pyramid *py
     far = far_y * coarse->light.stride;
     while (rf_next_unknown(blur, width, &run)) {
         const int x = run.x0, parent = x / 2, pairs = (run.x1 - x + 1) / 2;
+        const struct rf_mixed_parents mixed = {scratch, (int16_t *)scratch + pairs + 2};
+        struct rf_parents parents = {
+            .near_blur = coarse->blur.at + near_y * coarse->blur.stride + parent,
+            .far_blur = coarse->blur.at + far_y * coarse->blur.stride + parent,
+            .apart = apart,
+        };
 
-        for (int c = 0; c < planes; c++)
-            exec->kernels->pull(fine->light.channel[c] + at + x, blur + x,
-                                coarse->light.channel[c] + near + parent,
-                                coarse->light.channel[c] + far + parent, scratch, pairs);
-        exec->kernels->pull_blur(blur + x, coarse->blur.at + near_y * coarse->blur.stride + parent,
-                                 pairs);
+        for (int c = 0; c < planes; c++) {
+            parents.near_light = coarse->light.channel[c] + near + parent;
+            parents.far_light = coarse->light.channel[c] + far + parent;
+            exec->kernels->pull(fine->light.channel[c] + at + x, blur + x, &parents, mixed, pairs);
+        }
+        exec->kernels->pull_blur(blur + x, &parents, mixed.blur, pairs);
     }
 }
 
@@ -133,6 +139,7 @@ struct step {
     const struct rf_viewport *view;
     const struct rf_pyramid *pyramid;
     int level;
+    int16_t apart;
 };
 
 static int end_of(int band, int height)
@@ -156,7 +163,8 @@ static void pull_item(void *context, int band, int worker)
     const int y0 = band * BAND, y1 = end_of(band, level->height);
 
     for (int y = y0; y < y1; y++)
-        pull_row(step->exec, step->pyramid, step->level, 3, rf_scratch(step->exec, worker), y);
+        pull_row(step->exec, step->pyramid, step->level, 3, step->apart,
+                 rf_scratch(step->exec, worker), y);
     if (step->level == 0)
         extend_background(step->view, level, 3, y0, y1);
 }
@@ -182,9 +190,9 @@ void rf_background_push(const struct rf_executor *exec, const struct rf_pyramid 
 }
 
 void rf_background_pull(const struct rf_executor *exec, const struct rf_viewport *view,
-                        const struct rf_pyramid *pyramid, int from, int to)
+                        const struct rf_pyramid *pyramid, int from, int to, int16_t apart)
 {
-    struct step step = {exec, view, pyramid, to - 1};
+    struct step step = {exec, view, pyramid, to - 1, apart};
 
     for (; step.level >= from; step.level--)
         run(&step, pull_item, pyramid->level[step.level].height);
@@ -257,7 +265,8 @@ static void pull_yuv_band(void *context, int band, int worker)
     const int down = step->chroma->size.down;
 
     for (int y = y0; y < y1; y++)
-        pull_row(step->exec, step->pyramid, 0, 1, rf_scratch(step->exec, worker), y);
+        pull_row(step->exec, step->pyramid, 0, 1, step->chroma->apart,
+                 rf_scratch(step->exec, worker), y);
     extend_background(step->view, &step->pyramid->level[0], 1, y0, y1);
     pull_chroma(step, y0 >> down, rf_chroma_end(down, y1));
 }
@@ -283,6 +292,6 @@ void rf_background_inpaint_yuv(const struct rf_executor *exec, const struct rf_v
     }
     rf_pool_run(exec->pool, push_yuv_band, &step, rf_bands(view));
     rf_background_push(exec, pyramid, 1, pyramid->levels);
-    rf_background_pull(exec, view, pyramid, 1, pyramid->levels);
+    rf_background_pull(exec, view, pyramid, 1, pyramid->levels, chroma->apart);
     rf_pool_run(exec->pool, pull_yuv_band, &step, rf_bands(view));
 }

@@ -8,6 +8,7 @@
 #include "background/inpaint.h"
 #include "image/border.h"
 #include "kernels/kernels.h"
+#include "kernels/pull_mix.h"
 #include "support/compare.h"
 
 enum {
@@ -68,11 +69,6 @@ struct site {
     int at[MOST]; /* known pixels, in the window */
 };
 
-static int quarters(int three, int one)
-{
-    return (3 * three + one + 2) >> 2;
-}
-
 /* The light of a pixel by the next level, as the kernel pull computes it. */
 static int pulled(const struct step *step, int c, int x, int y)
 {
@@ -81,11 +77,17 @@ static int pulled(const struct step *step, int c, int x, int y)
     const int near_x = x / 2, near_y = y / 2;
     const int far_x = rf_within(x % 2 ? near_x + 1 : near_x - 1, coarse->width - 1);
     const int far_y = rf_within(y % 2 ? near_y + 1 : near_y - 1, coarse->height - 1);
-    const uint16_t *near_row = light + near_y * coarse->light.stride;
-    const uint16_t *far_row = light + far_y * coarse->light.stride;
+    const ptrdiff_t near = near_y * coarse->light.stride, far = far_y * coarse->light.stride;
+    const int16_t *near_blur = coarse->blur.at + near_y * coarse->blur.stride;
+    const int16_t *far_blur = coarse->blur.at + far_y * coarse->blur.stride;
+    const struct rf_two_blurs beside = {near_blur[near_x], far_blur[near_x]};
+    const struct rf_two_blurs beyond = {near_blur[far_x], far_blur[far_x]};
+    const int16_t apart = step->texture->apart;
 
-    return quarters(quarters(near_row[near_x], far_row[near_x]),
-                    quarters(near_row[far_x], far_row[far_x]));
+    return rf_mix_light(
+        rf_mix_light(light[near + near_x], light[far + near_x], beside, apart),
+        rf_mix_light(light[near + far_x], light[far + far_x], beyond, apart),
+        (struct rf_two_blurs){rf_mix_blur(beside, apart), rf_mix_blur(beyond, apart)}, apart);
 }
 
 static int code_of(const struct step *step, int light)
@@ -221,6 +223,15 @@ static void set_equations(const struct step *step, const struct window *w, const
     }
 }
 
+/* A residual in whole codes. Covariances of few pairs need not be those of any texture: where that
+ * leaves the equations without a finite solution, nothing is predicted. */
+static int whole_residual(float residual)
+{
+    const float whole = floorf(residual + 0.5f);
+
+    return whole < -255 ? -255 : whole > 255 ? 255 : isnan(whole) ? 0 : (int)whole;
+}
+
 /* Predicts the residuals of up to LANES sites and adds them to the light. */
 static void predict(const struct step *step, const struct window *w, const struct site *site,
                     int sites)
@@ -241,11 +252,8 @@ static void predict(const struct step *step, const struct window *w, const struc
 
             for (int k = 0; k < site[i].count; k++)
                 sum += s->weight[k][i] * s->residual[c][site[i].at[k]];
-            sum = floorf(sum * (float)site[i].fade * (1.0f / 256) + 0.5f);
-            *light = (uint16_t)changed(step, *light,
-                                       (int)(sum < -255  ? -255
-                                             : sum > 255 ? 255
-                                                         : sum));
+            sum *= (float)site[i].fade * (1.0f / 256);
+            *light = (uint16_t)changed(step, *light, whole_residual(sum));
         }
     }
 }
@@ -316,15 +324,23 @@ static void pull_blur_band(void *context, int band, int worker)
     const struct rf_level *fine = step->fine, *coarse = step->coarse;
     const int y0 = band * BAND, y1 = rf_smaller(y0 + BAND, fine->height);
 
-    (void)worker;
     for (int y = y0; y < y1; y++) {
+        const int far_y = rf_within(y % 2 ? y / 2 + 1 : y / 2 - 1, coarse->height - 1);
         int16_t *const blur = fine->blur.at + y * fine->blur.stride;
         struct rf_unknown run = {0};
 
-        while (rf_next_unknown(blur, fine->width, &run))
-            step->exec->kernels->pull_blur(
-                blur + run.x0, coarse->blur.at + y / 2 * coarse->blur.stride + run.x0 / 2,
-                (run.x1 - run.x0 + 1) / 2);
+        while (rf_next_unknown(blur, fine->width, &run)) {
+            const int16_t *parent = coarse->blur.at + run.x0 / 2;
+            const struct rf_parents parents = {
+                .near_blur = parent + y / 2 * coarse->blur.stride,
+                .far_blur = parent + far_y * coarse->blur.stride,
+                .apart = step->texture->apart,
+            };
+
+            step->exec->kernels->pull_blur(blur + run.x0, &parents,
+                                           (int16_t *)rf_scratch(step->exec, worker),
+                                           (run.x1 - run.x0 + 1) / 2);
+        }
     }
     if (step->level > 0)
         return;
@@ -361,5 +377,5 @@ void rf_background_pull_textured(const struct rf_executor *exec, const struct rf
         rf_pool_run(exec->pool, pull_blur_band, &step, (step.fine->height + BAND - 1) / BAND);
     }
     if (pyramid->levels == 0) /* a picture of one pixel: nothing is unknown */
-        rf_background_pull(exec, view, pyramid, 0, 0);
+        rf_background_pull(exec, view, pyramid, 0, 0, texture->apart);
 }

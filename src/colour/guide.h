@@ -1,5 +1,5 @@
-/* guide.h: colours of a photo of Y, U and V in R, G and B, as far as they tell one thing from
- * another. */
+/* guide.h: turns a photo of Y, U and V into R, G and B that guide where edges of its
+ * depth are placed: exact enough to tell one surface from another, not to be shown. */
 #ifndef RF_GUIDE_H
 #define RF_GUIDE_H
 

@@ -5,6 +5,8 @@
 
 #include <refocus/render.h>
 
+#include <string.h>
+
 #include "tables/transfer.inc"
 
 const uint16_t *rf_light_of_codes(uint32_t blend)
@@ -20,14 +22,14 @@ void rf_transfer_init(struct rf_transfer *transfer, int blend)
     const uint16_t *const boundary = blend == REFOCUS_BLEND_STORED  ? stored_boundary
                                      : blend == REFOCUS_BLEND_GAMMA ? gamma_boundary
                                                                     : srgb_boundary;
-    int code = 0;
+    size_t mean = 0;
 
-    for (int i = 0; i < 256; i++)
-        transfer->to_light[i] = light[i];
-    for (int mean = 0; mean < (int)sizeof transfer->to_code; mean++) {
-        while (code < 255 && mean >= boundary[code])
-            code++;
-        transfer->to_code[mean] = (uint8_t)code;
+    for (int code = 0; code < 256; code++) {
+        const size_t next = code < 255 ? boundary[code] : sizeof transfer->to_code;
+
+        transfer->to_light[code] = light[code];
+        memset(transfer->to_code + mean, code, next - mean);
+        mean = next;
     }
 }
 

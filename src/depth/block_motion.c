@@ -1,6 +1,7 @@
 /* block_motion.c: finds where each block of a depth map was in the frame before. */
 #include "depth/temporal.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 
 enum {
@@ -78,11 +79,11 @@ static struct rf_motion follow(const struct block *b, const struct rf_motion *ca
 }
 
 void rf_find_motion(struct rf_motion *motion, const struct rf_frame *now,
-                    const struct rf_frame *last, int width, int height)
+                    const struct rf_frame *last, int width, int height, struct rf_run *run)
 {
     const int columns = (width + RF_BLOCK - 1) / RF_BLOCK;
 
-    for (int y = 0; y < height; y += RF_BLOCK) {
+    for (int y = 0; y < height && !rf_run_cancelled(run); y += RF_BLOCK) {
         struct rf_motion *row = motion + (long)(y / RF_BLOCK) * columns;
 
         for (int i = 0; i < columns; i++) {

@@ -12,6 +12,8 @@
  * where F and N are colours well within the surfaces. The nearer surface takes those beyond its
  * edge of which it has more than LEAST, up to the first one of which it has not.
  *
+ * A median of 3 x 3 then smooths the silhouettes.
+ *
  * A photo that is sharp to the pixel has at most two mixtures across most of its silhouettes. There
  * a whole pixel would be too much, and nothing is done: of 720 x 540 pixels path-traced through a
  * camera's lens 45 to 78 % are so sharp, of photos of 3 and 12 megapixels from phones 5 to 18 %.
@@ -21,6 +23,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
+#include "depth/median.h"
 #include "image/format.h"
 
 enum {
@@ -210,6 +213,7 @@ static void put_band(void *context, int band, int worker)
     }
 }
 
+/* Makes `nearer` the map with what nearer surfaces take. */
 static void take_nearer(void *context, int band, int worker)
 {
     const struct work *work = context;
@@ -219,11 +223,50 @@ static void take_nearer(void *context, int band, int worker)
 
     (void)worker;
     for (int y = band * BAND; y < end; y++) {
-        uint16_t *restrict map = mixed->map.at + y * mixed->map.stride;
-        const uint16_t *restrict nearer = mixed->nearer.at + y * mixed->nearer.stride;
+        const uint16_t *restrict map = mixed->map.at + y * mixed->map.stride;
+        uint16_t *restrict nearer = mixed->nearer.at + y * mixed->nearer.stride;
 
         for (int x = 0; x < mixed->photo->width; x++)
-            map[x] = nearer[x] > map[x] ? nearer[x] : map[x];
+            nearer[x] = nearer[x] > map[x] ? nearer[x] : map[x];
+    }
+}
+
+/* Whether one of BLOCK pixels lies beside a step, on either side. */
+static bool has_edge(const uint16_t *map, ptrdiff_t stride)
+{
+    int any = 0;
+
+    for (int i = 0; i < BLOCK; i++) {
+        const int across = map[i - 1] - map[i + 1], down = map[i - stride] - map[i + stride];
+
+        any |= (across > STEP) | (across < -STEP) | (down > STEP) | (down < -STEP);
+    }
+    return any != 0;
+}
+
+/* Each row or column is taken by itself, which leaves teeth of a pixel along silhouettes, and what
+ * is sharp beside what is blurred shows. No surface of a soft photo is so thin: a median of 3 x 3
+ * takes teeth and single pixels away. */
+static void smooth_silhouettes(void *context, int band, int worker)
+{
+    const struct work *work = context;
+    const struct rf_mixed_pixels *mixed = &work->mixed;
+    const int width = mixed->photo->width, height = mixed->photo->height;
+    const int end = (band + 1) * BAND < height ? (band + 1) * BAND : height;
+    const ptrdiff_t stride = mixed->nearer.stride;
+
+    (void)worker;
+    for (int y = band * BAND; y < end; y++) {
+        uint16_t *map = mixed->map.at + y * mixed->map.stride;
+        const uint16_t *nearer = mixed->nearer.at + y * stride;
+
+        memcpy(map, nearer, (size_t)width * sizeof *map);
+        if (y < 1 || y >= height - 1)
+            continue;
+        for (int x = 1; x + BLOCK < width; x += BLOCK)
+            if (has_edge(nearer + x, stride))
+                for (int i = x; i < x + BLOCK; i++)
+                    map[i] = rf_median_of_nine(nearer + i, stride);
     }
 }
 
@@ -243,4 +286,5 @@ void rf_claim_mixed_pixels(const struct rf_mixed_pixels *mixed, struct rf_pool *
         return;
     rf_pool_run(pool, put_band, &work, bands);
     rf_pool_run(pool, take_nearer, &work, bands);
+    rf_pool_run(pool, smooth_silhouettes, &work, bands);
 }

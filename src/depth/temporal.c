@@ -11,8 +11,7 @@
 #include "support/arena.h"
 
 enum {
-    ALIKE = 12, /* codes of the guide that are the same thing in two frames */
-    STILL = 6,  /* codes of the guide up to which nothing has moved */
+    NEARLY = 3, /* codes of the guide that are not worth to look beside for less */
     MOST_COUNT = 255,
 };
 
@@ -20,13 +19,15 @@ struct refocus_temporal {
     int width, height;
     uint32_t strength; /* Q8 */
     int noise;         /* disparities */
-    bool begun, guided;
-    struct rf_frame now, last; /* last.disparity is filtered */
-    uint16_t *before;          /* the last map as it came */
-    uint16_t *filtered;
-    uint8_t *count, *counted; /* frames that each sample has been seen in */
-    struct rf_motion *motion;
+    bool guided;
+    int frames;                      /* Known ones, up to RF_LOOKS. */
+    struct rf_frame frame[RF_LOOKS]; /* as they came, the newest first */
+    uint16_t *last, *filtered;       /* the filtered map of the last frame and of this one */
+    uint8_t *count, *counted;        /* frames that each sample has been seen in */
+    uint8_t *calm, *calmed;          /* Frames since each jumped. */
+    struct rf_motion *motion;        /* One vector a block. */
     void *block;
+    struct rf_run run;
 };
 
 static bool good(const struct refocus_temporal_params *p)
@@ -42,14 +43,17 @@ static void lay_out(struct refocus_temporal *f, struct rf_arena *arena)
     const uint64_t blocks = (uint64_t)((f->width + RF_BLOCK - 1) / RF_BLOCK) *
                             (uint64_t)((f->height + RF_BLOCK - 1) / RF_BLOCK);
 
-    f->now.disparity = rf_arena_take(arena, samples, 2);
-    f->last.disparity = rf_arena_take(arena, samples, 2);
-    f->before = rf_arena_take(arena, samples, 2);
+    for (int k = 0; k < RF_LOOKS; k++) {
+        f->frame[k].disparity = rf_arena_take(arena, samples, 2);
+        f->frame[k].guide = rf_arena_take(arena, samples, 1);
+        f->frame[k].from = rf_arena_take(arena, samples, sizeof *f->frame[k].from);
+    }
+    f->last = rf_arena_take(arena, samples, 2);
     f->filtered = rf_arena_take(arena, samples, 2);
-    f->now.guide = rf_arena_take(arena, samples, 1);
-    f->last.guide = rf_arena_take(arena, samples, 1);
     f->count = rf_arena_take(arena, samples, 1);
     f->counted = rf_arena_take(arena, samples, 1);
+    f->calm = rf_arena_take(arena, samples, 1);
+    f->calmed = rf_arena_take(arena, samples, 1);
     f->motion = rf_arena_take(arena, blocks, sizeof *f->motion);
 }
 
@@ -108,8 +112,21 @@ void refocus_temporal_reset(struct refocus_temporal *f)
         return;
     blocks = (size_t)((f->width + RF_BLOCK - 1) / RF_BLOCK) *
              (size_t)((f->height + RF_BLOCK - 1) / RF_BLOCK);
-    f->begun = false;
+    f->frames = 0;
     memset(f->motion, 0, blocks * sizeof *f->motion);
+}
+
+void refocus_temporal_cancel(struct refocus_temporal *f)
+{
+    int running = RF_RUN_RUNNING;
+
+    if (f)
+        atomic_compare_exchange_strong(&f->run.state, &running, RF_RUN_CANCELLED);
+}
+
+struct rf_run *rf_run_of_temporal(struct refocus_temporal *f)
+{
+    return &f->run;
 }
 
 static uint16_t rescale(uint16_t d, double scale, double offset)
@@ -125,19 +142,17 @@ int refocus_temporal_rescale(struct refocus_temporal *f, double scale, double of
 
     if (!f || !(scale > 0) || !isfinite(scale) || !isfinite(offset))
         return REFOCUS_ERR_ARGUMENT;
-    samples = f->begun ? (size_t)f->width * (size_t)f->height : 0;
-    for (size_t i = 0; i < samples; i++) {
-        f->last.disparity[i] = rescale(f->last.disparity[i], scale, offset);
-        f->before[i] = rescale(f->before[i], scale, offset);
-        if (!f->guided) /* then depth is its own guide */
-            f->last.guide[i] = (uint8_t)(f->before[i] >> 8);
-    }
+    samples = (size_t)f->width * (size_t)f->height;
+    for (size_t i = 0; i < samples; i++)
+        f->last[i] = rescale(f->last[i], scale, offset);
+    for (int k = 0; k < RF_LOOKS;
+         k++) /* Planes that no frame has filled yet are never looked at. */
+        for (size_t i = 0; i < samples && k < f->frames; i++) {
+            f->frame[k].disparity[i] = rescale(f->frame[k].disparity[i], scale, offset);
+            if (!f->guided) /* then depth is its own guide */
+                f->frame[k].guide[i] = (uint8_t)(f->frame[k].disparity[i] >> 8);
+        }
     return REFOCUS_OK;
-}
-
-static int place(int i, int samples, int size)
-{
-    return (int)((2 * (int64_t)i + 1) * size / (2 * (int64_t)samples));
 }
 
 static int clamp(int v, int most)
@@ -145,77 +160,44 @@ static int clamp(int v, int most)
     return v < 0 ? 0 : v > most ? most : v;
 }
 
-/* Bytes from one brightness in plane 0 to the next: of Y, or of a pixel of R, G and B. */
-static int step_of(uint32_t format)
+/* Filters one sample as refocus_temporal_run() says. A block of which most
+ * changes needs no majority of looks. */
+static void filter(struct refocus_temporal *f, size_t i, bool changes)
 {
-    if (!refocus_format_is_yuv(format))
-        return refocus_format_bytes(format);
-    return format == REFOCUS_FORMAT_YUYV ? 2 : 1;
-}
-
-/* Brightness of the photo around a sample, Y or (c0 + 2 c1 + c2) / 4: of 3 x 3 pixels a third of
- * a sample apart, which calms noise and does not alias. */
-static uint8_t guide_at(const struct refocus_image *photo, int x, int y, int dx, int dy)
-{
-    const bool luma = refocus_format_is_yuv(photo->format);
-    const ptrdiff_t step = step_of(photo->format);
-    int sum = 0;
-
-    for (int j = -1; j <= 1; j++) {
-        const uint8_t *row =
-            photo->plane[0] + clamp(y + j * dy, photo->height - 1) * photo->stride[0];
-
-        for (int i = -1; i <= 1; i++) {
-            const uint8_t *p = row + clamp(x + i * dx, photo->width - 1) * step;
-
-            sum += luma ? 4 * p[0] : p[0] + 2 * p[1] + p[2];
-        }
-    }
-    return (uint8_t)(sum / 36);
-}
-
-static void load(struct refocus_temporal *f, const struct refocus_image *photo,
-                 const struct refocus_disparity *map)
-{
-    const int dx = photo ? photo->width / (3 * f->width) : 0;
-    const int dy = photo ? photo->height / (3 * f->height) : 0;
-
-    for (int y = 0; y < f->height; y++) {
-        const uint8_t *in = (const uint8_t *)map->samples + y * map->stride;
-        const size_t row = (size_t)y * (size_t)f->width;
-
-        for (int x = 0; x < f->width; x++) {
-            const uint16_t d =
-                (uint16_t)(map->bits == 16 ? ((const uint16_t *)in)[x] : in[x] * 257);
-
-            f->now.disparity[row + (size_t)x] = d;
-            f->now.guide[row + (size_t)x] =
-                photo ? guide_at(photo, place(x, f->width, photo->width),
-                                 place(y, f->height, photo->height), dx ? dx : 1, dy ? dy : 1)
-                      : (uint8_t)(d >> 8);
-        }
-    }
-}
-
-/* Filters one sample as refocus_temporal_run() says. q is where it was. */
-static void filter(struct refocus_temporal *f, size_t i, size_t q)
-{
-    const int d = f->now.disparity[i], p = f->last.disparity[q], apart = abs(d - p);
-    const int changed = abs(f->now.guide[i] - f->last.guide[q]);
+    const struct rf_motion from = f->frame[0].from[i];
+    const size_t q =
+        from.x == RF_NOWHERE ? i : (size_t)((ptrdiff_t)i + from.y * (ptrdiff_t)f->width + from.x);
+    const int d = f->frame[0].disparity[i], p = f->last[q], apart = abs(d - p);
+    const int changed = abs(f->frame[0].guide[i] - f->frame[1].guide[q]);
     const int n = f->count[q];
     const int64_t square = (int64_t)f->noise * f->noise;
     uint32_t keep;
 
     f->filtered[i] = (uint16_t)d;
     f->counted[i] = 1;
-    if (f->guided && changed > ALIKE)
+    f->calmed[i] = RF_LOOKS;
+    if (f->strength == 0 || from.x == RF_NOWHERE ||
+        (f->guided ? changed >= RF_ALIKE : apart >= f->noise)) {
+        f->frame[0].from[i].x = RF_NOWHERE;
         return;
-    if (apart >= f->noise) {
-        /* The photo does not explain the jump: it is not believed before it is seen twice. */
-        if (f->guided && f->strength > 0 && changed <= STILL && abs(d - f->before[q]) >= f->noise) {
-            f->filtered[i] = (uint16_t)p;
-            f->counted[i] = (uint8_t)n;
+    }
+    f->calmed[i] =
+        apart >= f->noise ? 0 : (uint8_t)(f->calm[q] < RF_LOOKS ? f->calm[q] + 1 : RF_LOOKS);
+    /* The photo does not explain a jump: looks vote. */
+    if (f->guided && f->calmed[i] < RF_LOOKS) {
+        struct rf_looks looks;
+        int of;
+
+        rf_look_back(&looks, f->frame, changes ? 2 : f->frames, f->width, i);
+        of = rf_vote_of_looks(&looks, p, f->noise, &f->filtered[i]);
+        if (of) {
+            f->counted[i] = (uint8_t)of;
+            return;
         }
+    }
+    if (apart >= f->noise) {
+        f->filtered[i] = (uint16_t)p;
+        f->counted[i] = (uint8_t)n;
         return;
     }
     keep = (uint32_t)(256 * n / (n + 1));
@@ -225,22 +207,72 @@ static void filter(struct refocus_temporal *f, size_t i, size_t q)
     f->counted[i] = (uint8_t)(n < MOST_COUNT ? n + 1 : n);
 }
 
-static void filter_all(struct refocus_temporal *f)
+/* Where a sample was: by the vector of its block, or beside that where the photo is more alike, as
+ * blocks move by whole samples. */
+static struct rf_motion find_origin(const struct refocus_temporal *f, int x, int y,
+                                    struct rf_motion v)
 {
-    const int columns = (f->width + RF_BLOCK - 1) / RF_BLOCK;
+    const uint8_t *const guide = f->frame[1].guide;
+    const int here = f->frame[0].guide[(size_t)y * (size_t)f->width + (size_t)x];
+    const int tx = x + v.x, ty = y + v.y;
+    struct rf_motion best = v;
+    int least;
 
-    rf_find_motion(f->motion, &f->now, &f->last, f->width, f->height);
-    for (int y = 0; y < f->height; y++) {
-        const struct rf_motion *motion = f->motion + (size_t)(y / RF_BLOCK) * (size_t)columns;
+    if (tx < 0 || ty < 0 || tx >= f->width || ty >= f->height)
+        return (struct rf_motion){RF_NOWHERE, 0};
+    least = abs(here - guide[(size_t)ty * (size_t)f->width + (size_t)tx]);
+    if (!f->guided || least <= NEARLY)
+        return best;
+    for (int k = 0; k < 9; k++) {
+        const int bx = clamp(tx + k % 3 - 1, f->width - 1),
+                  by = clamp(ty + k / 3 - 1, f->height - 1);
+        const int apart = abs(here - guide[(size_t)by * (size_t)f->width + (size_t)bx]);
 
-        for (int x = 0; x < f->width; x++) {
-            const struct rf_motion v = motion[x / RF_BLOCK];
-            const size_t from = (size_t)clamp(y + v.y, f->height - 1) * (size_t)f->width +
-                                (size_t)clamp(x + v.x, f->width - 1);
-
-            filter(f, (size_t)y * (size_t)f->width + (size_t)x, from);
+        if (apart < least) {
+            least = apart;
+            best = (struct rf_motion){(int8_t)(bx - x), (int8_t)(by - y)};
         }
     }
+    return best;
+}
+
+/* Fills in where the samples of a block were. Returns whether for most of them this frame and the
+ * last agree on a place where they were not before. */
+static bool find_origins(struct refocus_temporal *f, int x0, int y0, int columns, int rows,
+                         struct rf_motion v)
+{
+    const uint16_t *const d = f->frame[0].disparity, *const before = f->frame[1].disparity;
+    int jumps = 0;
+
+    for (int y = y0; y < y0 + rows; y++)
+        for (int x = x0; x < x0 + columns; x++) {
+            const size_t i = (size_t)y * (size_t)f->width + (size_t)x;
+            const struct rf_motion from = find_origin(f, x, y, v);
+            const size_t q = (size_t)((ptrdiff_t)i + from.y * (ptrdiff_t)f->width + from.x);
+
+            f->frame[0].from[i] = from;
+            if (from.x != RF_NOWHERE)
+                jumps += abs(d[i] - f->last[q]) >= f->noise && abs(d[i] - before[q]) < f->noise;
+        }
+    return 2 * jumps > columns * rows;
+}
+
+static void filter_all(struct refocus_temporal *f)
+{
+    const struct rf_frame last = {f->last, f->frame[1].guide, NULL};
+    const struct rf_motion *motion = f->motion;
+
+    rf_find_motion(f->motion, &f->frame[0], &last, f->width, f->height, &f->run);
+    for (int y = 0; y < f->height && !rf_run_cancelled(&f->run); y += RF_BLOCK)
+        for (int x = 0; x < f->width; x += RF_BLOCK) {
+            const int columns = f->width - x < RF_BLOCK ? f->width - x : RF_BLOCK;
+            const int rows = f->height - y < RF_BLOCK ? f->height - y : RF_BLOCK;
+            const bool changes = find_origins(f, x, y, columns, rows, *motion++);
+
+            for (int j = y; j < y + rows; j++)
+                for (int i = x; i < x + columns; i++)
+                    filter(f, (size_t)j * (size_t)f->width + (size_t)i, changes);
+        }
 }
 
 static void swap16(uint16_t **a, uint16_t **b)
@@ -264,14 +296,18 @@ int refocus_temporal_run(struct refocus_temporal *f, const struct refocus_image 
 {
     struct refocus_image own_photo;
     struct refocus_disparity own_map;
+    struct rf_frame oldest;
     size_t samples;
     int status;
 
     if (!f)
         return REFOCUS_ERR_ARGUMENT;
-    if ((photo && (status = rf_read_image(NULL, "photo", &own_photo, photo))) ||
+    if ((photo && (status = rf_read_any_image(NULL, "photo", &own_photo, photo))) ||
         (status = rf_read_map(NULL, "map", &own_map, map)))
         return status;
+    if (photo && own_photo.format >= REFOCUS_FORMAT_RGB_HALF &&
+        own_photo.format <= REFOCUS_FORMAT_RGBA_FLOAT)
+        return REFOCUS_ERR_UNSUPPORTED;
     photo = photo ? &own_photo : NULL;
     map = &own_map;
     if (map->width != f->width || map->height != f->height || !out || ((uintptr_t)out & 1) ||
@@ -279,22 +315,30 @@ int refocus_temporal_run(struct refocus_temporal *f, const struct refocus_image 
         return REFOCUS_ERR_ARGUMENT;
     samples = (size_t)f->width * (size_t)f->height;
     if (f->guided != (photo != NULL))
-        f->begun = false; /* another guide: nothing to compare with */
+        f->frames = 0; /* another guide: nothing to compare with */
     f->guided = photo != NULL;
-    load(f, photo, map);
-    if (f->begun) {
+    atomic_store(&f->run.state, RF_RUN_RUNNING);
+    rf_load_frame(&f->frame[0], f->width, f->height, photo, map, &f->run);
+    if (f->frames++ > 0) {
+        f->frames = f->frames < RF_LOOKS ? f->frames : RF_LOOKS;
         filter_all(f);
     } else {
-        memcpy(f->filtered, f->now.disparity, samples * sizeof *f->filtered);
+        memcpy(f->filtered, f->frame[0].disparity, samples * sizeof *f->filtered);
         memset(f->counted, 1, samples);
+        memset(f->calmed, RF_LOOKS, samples);
     }
-    f->begun = true;
+    if (atomic_exchange(&f->run.state, RF_RUN_IDLE) == RF_RUN_CANCELLED) {
+        refocus_temporal_reset(f);
+        return REFOCUS_ERR_CANCELLED;
+    }
     for (int y = 0; y < f->height; y++)
         memcpy((char *)out + y * stride, f->filtered + (size_t)y * (size_t)f->width,
                (size_t)f->width * sizeof *out);
-    swap16(&f->before, &f->now.disparity);
-    swap16(&f->last.disparity, &f->filtered);
-    swap8(&f->last.guide, &f->now.guide);
+    oldest = f->frame[RF_LOOKS - 1];
+    memmove(f->frame + 1, f->frame, (RF_LOOKS - 1) * sizeof *f->frame);
+    f->frame[0] = oldest;
+    swap16(&f->last, &f->filtered);
     swap8(&f->count, &f->counted);
+    swap8(&f->calm, &f->calmed);
     return REFOCUS_OK;
 }

@@ -5,26 +5,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "depth/dequantise.h"
-
 enum {
     PAD = RF_UPSAMPLE_PAD,
     SPAN = 4, /* rows of samples of a work item */
     BLOCK = RF_UPSAMPLE_BLOCK,
-    QUARTER = 2, /* shift of colours: sums of three differences then fit */
+    STRIP = 16, /* bands of a strip */
 };
+
+/* Rows of pixels of a strip and of the two bands before it, and rows of samples of a strip. A row
+ * of samples is between as many rows of pixels as the photo has for it, or one more. */
+static int kept_rows(const struct rf_upsampler *up)
+{
+    const int64_t most = (STRIP + 2) * SPAN * (int64_t)(up->photo->height / up->rows + 1);
+
+    return up->in_strips && most < up->photo->height ? (int)most : up->photo->height;
+}
+
+static int wide_rows(const struct rf_upsampler *up)
+{
+    const int most = STRIP * SPAN + RF_TAPS;
+
+    return up->in_strips && most < up->rows ? most : up->rows;
+}
 
 void rf_upsampler_lay_out(struct rf_upsampler *up, struct rf_arena *arena)
 {
     const uint64_t width = (uint64_t)up->photo->width, height = (uint64_t)up->photo->height;
     const uint64_t columns = (uint64_t)up->columns, rows = (uint64_t)up->rows;
+    const uint64_t kept = (uint64_t)kept_rows(up);
 
     up->coarse.stride = up->columns + 4;
     up->coarse.at = rf_arena_take(arena, (columns + 4) * (rows + 4), 2);
     up->wide.stride = up->photo->width;
-    up->wide.at = rf_arena_take(arena, width * rows, 2);
+    up->wide.at = rf_arena_take(arena, width * (uint64_t)wide_rows(up), 2);
     up->settled.stride = up->photo->width;
-    up->settled.at = rf_arena_take(arena, width * height, 2);
+    up->settled.at = rf_arena_take(arena, width * kept, 2);
     up->across = rf_arena_take(arena, width, sizeof *up->across);
     up->down = rf_arena_take(arena, height, sizeof *up->down);
     up->span = rf_arena_take(arena, columns + 2, sizeof *up->span);
@@ -34,9 +49,13 @@ void rf_upsampler_lay_out(struct rf_upsampler *up, struct rf_arena *arena)
     if (up->confidence)
         up->trust.at = rf_arena_take(arena, (columns + 4) * (rows + 4), 1);
     up->sure.stride = up->photo->width;
-    up->sure.at = rf_arena_take(arena, width * height, 1);
+    up->sure.at = rf_arena_take(arena, width * kept, 1);
     up->unsure.stride = rf_upsample_blocks(up->photo->width) + 1;
-    up->unsure.at = rf_arena_take(arena, (uint64_t)up->unsure.stride * height, 2);
+    up->unsure.at = rf_arena_take(arena, (uint64_t)up->unsure.stride * kept, 2);
+    if (up->in_strips) {
+        up->spare.stride = up->columns;
+        up->spare.at = rf_arena_take(arena, columns * rows, 2);
+    }
     if (arena->base) {
         up->coarse.at += 2 * up->coarse.stride + 2;
         for (int c = 0; c < 3; c++)
@@ -98,143 +117,13 @@ static int clamp(int v, int most)
     return v < 0 ? 0 : v > most ? most : v;
 }
 
-/* The column or row, of `size`, that the i-th of `samples` lies on. */
-static int place(int i, int samples, int size)
-{
-    return (int)((2 * (int64_t)clamp(i, samples - 1) + 1) * size / (2 * (int64_t)samples));
-}
-
-/* place() of 0, 1, 2 ... without divisions: `at` and `rest` / per. */
-struct walk {
-    int64_t at, step, rest, over, per;
-};
-
-static struct walk walk_from_0(int samples, int size)
-{
-    return (struct walk){.at = size / (2 * (int64_t)samples),
-                         .step = size / samples,
-                         .rest = size % (2 * (int64_t)samples),
-                         .over = 2 * (int64_t)(size % samples),
-                         .per = 2 * (int64_t)samples};
-}
-
-static inline void walk_on(struct walk *walk)
-{
-    walk->rest += walk->over;
-    walk->at += walk->step + (walk->rest >= walk->per);
-    walk->rest -= walk->rest >= walk->per ? walk->per : 0;
-}
-
-static void load_colours(const struct rf_upsampler *up, int y)
-{
-    const struct refocus_image *photo = up->photo;
-    const int bytes = refocus_format_bytes(photo->format), n = up->columns;
-    const uint8_t *row = photo->plane[0] + place(y, up->rows, photo->height) * photo->stride[0];
-    const struct rf_span *restrict span = up->span;
-    uint8_t *const out[3] = {up->colour.channel[0] + y * up->colour.stride,
-                             up->colour.channel[1] + y * up->colour.stride,
-                             up->colour.channel[2] + y * up->colour.stride};
-    uint8_t *restrict first = out[0], *restrict second = out[1], *restrict third = out[2];
-
-    for (int x = 0; x < n; x++) {
-        const uint8_t *restrict pixel = row + (ptrdiff_t)span[x].shown * bytes;
-
-        first[x] = (uint8_t)(pixel[0] >> QUARTER);
-        second[x] = (uint8_t)(pixel[1] >> QUARTER);
-        third[x] = (uint8_t)(pixel[2] >> QUARTER);
-    }
-    for (int c = 0; c < 3; c++) {
-        memset(out[c] - PAD, out[c][0], PAD);
-        memset(out[c] + n, out[c][n - 1], PAD);
-    }
-}
-
-static void load_trust(const struct rf_upsampler *up, int y)
-{
-    const uint8_t *row =
-        up->confidence + place(y, up->rows, up->map->height) * up->confidence_stride;
-    struct walk walk = walk_from_0(up->columns, up->map->width);
-    uint8_t *out = up->trust.at + y * up->trust.stride;
-
-    for (int x = 0; x < up->columns; x++, walk_on(&walk))
-        out[x] = row[walk.at];
-    memset(out - PAD, out[0], PAD);
-    memset(out + up->columns, out[up->columns - 1], PAD);
-}
-
-/* Loads as many samples as the map has columns, or fewer. */
-static void load_samples(const struct rf_upsampler *up, uint16_t *out, const void *in)
-{
-    struct walk walk = walk_from_0(up->columns, up->map->width);
-
-    if (up->map->bits == 16 && up->columns == up->map->width)
-        memcpy(out, in, (size_t)up->columns * sizeof *out);
-    else if (up->map->bits == 16)
-        for (int x = 0; x < up->columns; x++, walk_on(&walk))
-            out[x] = ((const uint16_t *)in)[walk.at];
-    else
-        for (int x = 0; x < up->columns; x++, walk_on(&walk))
-            out[x] = (uint16_t)(((const uint8_t *)in)[walk.at] * 257);
-}
-
-static void repeat_ends(uint16_t *row, int n)
-{
-    for (int i = 1; i <= PAD; i++) {
-        row[-i] = row[0];
-        row[n - 1 + i] = row[n - 1];
-    }
-}
-
-/* Loads a row of samples, the photo's colours there, and the confidence in them. */
-static void load_row(void *context, int item, int worker)
+static void widen_row(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
-    const struct refocus_disparity *map = up->map;
-    const int y = item - PAD, n = up->columns;
-    const uint8_t *in =
-        (const uint8_t *)map->samples + place(y, up->rows, map->height) * map->stride;
-    uint16_t *out = up->coarse.at + y * up->coarse.stride;
+    const int y = up->first_wide + item;
 
     (void)worker;
-    load_samples(up, out, in);
-    repeat_ends(out, n);
-    load_colours(up, y);
-    if (up->confidence)
-        load_trust(up, y);
-}
-
-/* Makes slopes of the steps of a map with few codes. The planes of later steps are still free. */
-static void dequantise_samples(const struct rf_upsampler *up, struct rf_pool *pool)
-{
-    const struct rf_dequantiser d = {
-        .kernels = up->kernels,
-        .code = up->coarse,
-        .spare = {up->wide, up->settled},
-        .width = up->columns,
-        .height = up->rows,
-        .step = rf_code_step(up->map),
-    };
-
-    if (!d.step)
-        return;
-    rf_dequantise(&d, pool);
-    for (int y = 0; y < up->rows; y++)
-        repeat_ends(up->coarse.at + y * up->coarse.stride, up->columns);
-    for (int i = 1; i <= PAD; i++) {
-        const size_t bytes = (size_t)(up->columns + 2 * PAD) * sizeof *up->coarse.at;
-        uint16_t *const last = up->coarse.at + (up->rows - 1) * up->coarse.stride;
-
-        memcpy(up->coarse.at - i * up->coarse.stride - PAD, up->coarse.at - PAD, bytes);
-        memcpy(last + i * up->coarse.stride - PAD, last - PAD, bytes);
-    }
-}
-
-static void widen_row(void *context, int y, int worker)
-{
-    const struct rf_upsampler *up = context;
-
-    (void)worker;
-    up->kernels->widen4(up->wide.at + y * up->wide.stride, up->coarse.at + y * up->coarse.stride,
+    up->kernels->widen4(up->wide.at + item * up->wide.stride, up->coarse.at + y * up->coarse.stride,
                         up->across, up->photo->width);
 }
 
@@ -271,15 +160,16 @@ static void settle_block(const struct rf_upsampler *up, const struct three *thre
 
 static void settle_row(const struct rf_upsampler *up, int y)
 {
-    const uint16_t *unsure = up->unsure.at + y * up->unsure.stride;
+    const int kept = y - up->first_row;
+    const uint16_t *unsure = up->unsure.at + kept * up->unsure.stride;
     const int width = up->photo->width, blocks = unsure[0];
-    struct three three = {.out = up->settled.at + y * up->settled.stride};
+    struct three three = {.out = up->settled.at + kept * up->settled.stride};
 
     for (int j = 0; j < 3; j++) {
         const ptrdiff_t v = clamp(y - 1 + j, up->photo->height - 1);
 
         three.row[j] = up->out.at + v * up->out.stride;
-        three.sure[j] = up->sure.at + v * up->sure.stride;
+        three.sure[j] = up->sure.at + (v - up->first_row) * up->sure.stride;
     }
     for (int i = 1; i <= blocks; i++) {
         const int x = unsure[i] * BLOCK;
@@ -294,13 +184,14 @@ static void settle_row(const struct rf_upsampler *up, int y)
 
 static void take_over_row(const struct rf_upsampler *up, int y)
 {
-    const uint16_t *unsure = up->unsure.at + y * up->unsure.stride;
+    const int kept = y - up->first_row;
+    const uint16_t *unsure = up->unsure.at + kept * up->unsure.stride;
     const int width = up->photo->width;
 
     for (int i = 1; i <= unsure[0]; i++) {
         const int x = unsure[i] * BLOCK, n = width - x < BLOCK ? width - x : BLOCK;
         uint16_t *out = up->out.at + y * up->out.stride + x;
-        const uint16_t *settled = up->settled.at + y * up->settled.stride + x;
+        const uint16_t *settled = up->settled.at + kept * up->settled.stride + x;
 
         if (n == BLOCK)
             memcpy(out, settled, BLOCK * sizeof *out);
@@ -325,13 +216,19 @@ static int row_of(const struct rf_upsampler *up, int first)
     return low;
 }
 
+/* The first row of pixels of a band. */
+static int row_of_band(const struct rf_upsampler *up, int band)
+{
+    return row_of(up, band * SPAN - PAD);
+}
+
 /* The rows of pixels of a band, SPAN rows of samples. Pixels that are not sure are settled in a
  * plane of their own, as their neighbours need the values from before, and then copied to the
  * result: here as far as that needs no other band, while they are in the cache. */
 static void fill_band(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
-    const int first = item * SPAN - PAD, y0 = row_of(up, first);
+    const int first = (up->first_band + item) * SPAN - PAD, y0 = row_of(up, first);
     int y1 = y0;
 
     for (int i = 0; i < SPAN; i++) {
@@ -350,7 +247,8 @@ static void fill_band(void *context, int item, int worker)
 static void settle_border(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
-    const int y0 = row_of(up, item * SPAN - PAD), y1 = row_of(up, (item + 1) * SPAN - PAD);
+    const int band = up->first_band + item;
+    const int y0 = row_of_band(up, band), y1 = row_of_band(up, band + 1);
 
     (void)worker;
     if (y0 < y1)
@@ -362,7 +260,8 @@ static void settle_border(void *context, int item, int worker)
 static void take_over_border(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
-    const int y0 = row_of(up, item * SPAN - PAD), y1 = row_of(up, (item + 1) * SPAN - PAD);
+    const int band = up->first_band + item;
+    const int y0 = row_of_band(up, band), y1 = row_of_band(up, band + 1);
 
     (void)worker;
     for (int y = y0; y < y1; y++)
@@ -370,25 +269,60 @@ static void take_over_border(void *context, int item, int worker)
             take_over_row(up, y);
 }
 
+static void run_bands(struct rf_upsampler *up, struct rf_pool *pool, rf_work_fn *work, int begin,
+                      int end)
+{
+    up->first_band = begin;
+    if (begin < end)
+        rf_pool_run(pool, work, up, end - begin);
+}
+
+/* Makes room for the rows of a strip behind those of the two bands before it. */
+static void move_rows(struct rf_upsampler *up, int first_row, int end)
+{
+    const ptrdiff_t at = first_row - up->first_row;
+    const size_t rows = (size_t)(end - first_row);
+
+    if (at > 0) {
+        memmove(up->settled.at, up->settled.at + at * up->settled.stride,
+                rows * (size_t)up->settled.stride * sizeof *up->settled.at);
+        memmove(up->sure.at, up->sure.at + at * up->sure.stride, rows * (size_t)up->sure.stride);
+        memmove(up->unsure.at, up->unsure.at + at * up->unsure.stride,
+                rows * (size_t)up->unsure.stride * sizeof *up->unsure.at);
+    }
+    up->first_row = first_row;
+}
+
+/* A band is settled when the one behind it is filled, as its last row needs the first of that, and
+ * taken over when the one behind it is settled. */
+static void fill_strip(struct rf_upsampler *up, struct rf_pool *pool, int begin, int end)
+{
+    const int bands = (up->rows + SPAN) / SPAN; /* rows + 1 in all */
+    const int settled = end < bands ? end - 1 : bands, taken = end < bands ? end - 2 : bands;
+    const int last = clamp(end * SPAN - PAD + RF_TAPS - 1, up->rows - 1);
+
+    up->first_wide = clamp(begin * SPAN - PAD, up->rows - 1);
+    rf_pool_run(pool, widen_row, up, last - up->first_wide + 1);
+    run_bands(up, pool, fill_band, begin, end);
+    run_bands(up, pool, settle_border, begin ? begin - 1 : 0, settled);
+    run_bands(up, pool, take_over_border, begin ? begin - 2 : 0, taken);
+}
+
 void rf_upsample(struct rf_upsampler *up, struct rf_pool *pool)
 {
     const int width = up->photo->width, height = up->photo->height;
-    const int bands = (up->rows + SPAN) / SPAN; /* rows + 1 in all */
-
-    struct walk walk = walk_from_0(up->columns, width);
+    const int bands = (up->rows + SPAN) / SPAN;
+    const int strip = up->in_strips ? STRIP : bands;
 
     up->run = pool->run;
-    for (int i = 0; i < up->columns; i++, walk_on(&walk))
-        up->span[i].shown = (int32_t)walk.at;
     for (int x = 0; x < width; x++)
         up->across[x] = taps_at(x, width, up->columns);
     rf_find_spans(up);
     for (int y = 0; y < height; y++)
         up->down[y] = taps_at(y, height, up->rows);
-    rf_pool_run(pool, load_row, up, up->rows + 2 * PAD);
-    dequantise_samples(up, pool);
-    rf_pool_run(pool, widen_row, up, up->rows);
-    rf_pool_run(pool, fill_band, up, bands);
-    rf_pool_run(pool, settle_border, up, bands);
-    rf_pool_run(pool, take_over_border, up, bands);
+    rf_upsample_load(up, pool);
+    for (int i = 0; i < bands && !rf_run_cancelled(up->run); i += strip) {
+        move_rows(up, i ? row_of_band(up, i - 2) : 0, row_of_band(up, i));
+        fill_strip(up, pool, i, i + strip < bands ? i + strip : bands);
+    }
 }

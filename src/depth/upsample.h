@@ -2,6 +2,8 @@
 #ifndef RF_UPSAMPLE_H
 #define RF_UPSAMPLE_H
 
+#include <stdbool.h>
+
 #include <refocus/image.h>
 
 #include "image/planes.h"
@@ -59,6 +61,7 @@ struct rf_upsampler {
     const uint8_t *confidence; /* one for each sample of the map, or NULL */
     ptrdiff_t confidence_stride;
     int columns, rows; /* samples that are used: rf_upsample_samples() */
+    bool in_strips;    /* in less memory: no plane but out has the photo's size */
 
     struct rf_disparity_q16 coarse; /* samples */
     struct rf_colours_u8 colour;    /* the photo at the samples, quartered */
@@ -68,6 +71,10 @@ struct rf_upsampler {
         settled;                   /* height x width: the final value of pixels that are not sure */
     struct rf_bytes sure;          /* height x width: 255 or 0 */
     struct rf_block_lists unsure;  /* blocks of a row with pixels that are not sure */
+    int first_wide, first_row;     /* the first rows of wide, and of settled, sure and unsure: 0 but
+                                      in strips */
+    int first_band;                /* the band that is item 0 */
+    struct rf_disparity_q16 spare; /* in strips: rows x columns, for dequantising */
     struct rf_taps *across, *down; /* width and height of them */
     struct rf_span *span;          /* columns + 2 of them */
     struct rf_run *run;
@@ -89,6 +96,9 @@ static inline int rf_upsample_samples(int samples, int size)
 /* Sets the pointers to memory for the size of up->photo and for `columns` and `rows`, or with
  * arena->base == NULL only counts. The memory of trust is only for a map with confidence. */
 void rf_upsampler_lay_out(struct rf_upsampler *up, struct rf_arena *arena);
+
+/* Loads samples, what the photo shows there and the confidence in them. Spans are known then. */
+void rf_upsample_load(struct rf_upsampler *up, struct rf_pool *pool);
 
 /* Writes the map at the photo's size to up->out. */
 void rf_upsample(struct rf_upsampler *up, struct rf_pool *pool);

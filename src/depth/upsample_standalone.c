@@ -78,6 +78,7 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
         .confidence_stride = params->confidence_stride,
         .columns = rf_upsample_samples(map->width, photo->width),
         .rows = rf_upsample_samples(map->height, photo->height),
+        .in_strips = true,
         .out = {out, stride / 2},
     };
     lay_out(&up, threads, &arena);

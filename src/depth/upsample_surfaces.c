@@ -80,7 +80,8 @@ static const struct rf_lie *lie_of(struct patch *patch, int cell, int x, int n)
 {
     const struct rf_upsampler *up = patch->up;
     const struct rf_span *span = &up->span[cell];
-    const int kind = span->alike % KINDS, off = x - span->begin;
+    /* Runs of one span have places of their own: 3 apart, those of up to three kinds of spans. */
+    const int off = x - span->begin, kind = (span->alike + off / RUN * 3) % KINDS;
     struct rf_lie *lie = &patch->lies.lie[kind];
 
     if (patch->lies.alike[kind] == span->alike && patch->lies.x[kind] == off)
@@ -122,7 +123,7 @@ static inline void put_rows(const struct patch *patch, const uint16_t *result,
     const struct rf_upsampler *up = patch->up;
     const ptrdiff_t out_stride = up->out.stride, sure_stride = up->sure.stride;
     uint16_t *out = up->out.at + patch->y0 * out_stride + x;
-    uint8_t *sure = up->sure.at + patch->y0 * sure_stride + x;
+    uint8_t *sure = up->sure.at + (patch->y0 - up->first_row) * sure_stride + x;
 
     for (int y = patch->y0; y < patch->y1; y++) {
         put(out, result, n, sizeof *out);
@@ -310,8 +311,8 @@ static void fill_cells(struct patch *patch, int first, int n)
 static void list_unsure(const struct rf_upsampler *up, int y)
 {
     const int width = up->photo->width, blocks = rf_upsample_blocks(width);
-    const uint8_t *sure = up->sure.at + y * up->sure.stride;
-    uint16_t *unsure = up->unsure.at + y * up->unsure.stride;
+    const uint8_t *sure = up->sure.at + (y - up->first_row) * up->sure.stride;
+    uint16_t *unsure = up->unsure.at + (y - up->first_row) * up->unsure.stride;
     int n = 0;
 
     for (int i = 0; i < blocks; i++, sure += BLOCK) {
@@ -344,10 +345,10 @@ void rf_upsample_rows(const struct rf_upsampler *up, int first, int y0, int y1, 
     patch->row = first;
     patch->bytes = refocus_format_bytes(up->photo->format);
     for (int i = 0; i < RF_TAPS; i++)
-        wide[i] = up->wide.at + clamp(first + i, up->rows - 1) * up->wide.stride;
+        wide[i] = up->wide.at + (clamp(first + i, up->rows - 1) - up->first_wide) * up->wide.stride;
     for (int y = y0; y < y1 && !rf_run_cancelled(up->run); y++) {
         up->kernels->blend4(up->out.at + y * up->out.stride, wide, up->down[y].share, width);
-        memset(up->sure.at + y * up->sure.stride, 255, (size_t)width);
+        memset(up->sure.at + (y - up->first_row) * up->sure.stride, 255, (size_t)width);
     }
     for (patch->y0 = y0; patch->y0 < y1; patch->y0 = patch->y1) {
         patch->y1 = patch->y0 + RUN < y1 ? patch->y0 + RUN : y1;

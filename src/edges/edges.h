@@ -84,6 +84,8 @@ struct rf_last_edges {
  *                label | the greatest values along rows
  *     label      where ways have come to, too | labels
  *     kept       the map before a change | contrast beside ramps | what is near thin surfaces
+ *     steepest   where the map rises and falls most | is_wide
+ *     length     pixels to the ends of ramps | the list of edges, and blocks of align.c
  */
 struct rf_edges {
     const struct rf_kernels *kernels;

@@ -54,8 +54,9 @@ static void lay_out(struct rf_edge_job *job, struct rf_arena *arena)
     struct rf_edges *e = &job->edges;
     const uint64_t across = (uint64_t)rf_edge_blocks_across(e);
     const uint64_t blocks = across * (uint64_t)((e->height + RF_EDGE_BLOCK - 1) / RF_EDGE_BLOCK);
-    uint16_t **const planes[] = {&e->map,     &e->near,   &e->far,   &e->label,
-                                 &e->largest, &e->length, &e->spare, &e->kept};
+    uint16_t **const planes[] = {&e->map,     &e->near,  &e->far, &e->label,
+                                 &e->largest, &e->spare, &e->kept};
+    struct rf_arena shared;
     int16_t **const slopes[] = {&e->gradient.x, &e->gradient.y};
 
     for (size_t i = 0; i < sizeof planes / sizeof *planes; i++) {
@@ -67,17 +68,22 @@ static void lay_out(struct rf_edge_job *job, struct rf_arena *arena)
         *slopes[i] = take_plane(arena, e, sizeof **slopes[i]);
     for (int c = 0; c < 3; c++)
         e->colour[c] = take_plane(arena, e, 1);
-    e->steepest = take_plane(arena, e, 1);
-    e->is_wide = take_plane(arena, e, 1);
+    e->steepest = e->is_wide = take_plane(arena, e, 1);
     e->range = rf_arena_take(arena, blocks, sizeof *e->range);
     e->rough = rf_arena_take(arena, blocks, 1);
     e->rough_cell = rf_arena_take(arena, blocks, 1);
     for (int i = 0; i < 2; i++)
         e->moved[i] = rf_arena_take(arena, blocks, 1);
     e->most_edges = (int)((int64_t)e->width * e->height / 8);
-    e->edge = rf_arena_take(arena, (uint64_t)e->most_edges, sizeof *e->edge);
     job->column = rf_arena_take(arena, (uint64_t)e->width, sizeof *job->column);
+    shared = *arena;
+    e->length = take_plane(&shared, e, sizeof *e->length);
+    if (arena->base)
+        e->length += e->stride + 1;
+    e->edge = rf_arena_take(arena, (uint64_t)e->most_edges, sizeof *e->edge);
     rf_align_lay_out(e, arena);
+    if (arena->used < shared.used)
+        arena->used = shared.used;
 }
 
 /* A map that is brought to the photo's size, in memory that begins with it if it is the result of
@@ -189,7 +195,7 @@ static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_repor
     report->shift_y = (float)(found.shift_y * pixel);
     report->bent = found.bent;
     report->parted = soft;
-    report->noise = (float)job->noise / 65535;
+    report->noise = fminf((float)job->noise / 65535, 1);
     return soft || job->noise || found.bent || found.grown || found.shift_x || found.shift_y;
 }
 

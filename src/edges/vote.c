@@ -13,6 +13,8 @@
 
 #include <string.h>
 
+#include "depth/median.h"
+
 struct vote {
     struct rf_edges *e;
     uint16_t *voter;
@@ -114,38 +116,6 @@ static void decide_band(void *context, int band, int worker)
     }
 }
 
-static inline void sort_two(uint16_t *a, uint16_t *b)
-{
-    const uint16_t least = *a < *b ? *a : *b;
-
-    *b = *a < *b ? *b : *a;
-    *a = least;
-}
-
-/* The middle one of nine: the greatest of the least, the middle of the middle and the least of the
- * greatest of three columns in order. */
-static uint16_t median_of_nine(const uint16_t *middle, ptrdiff_t stride)
-{
-    uint16_t v[3][3];
-
-    for (int x = 0; x < 3; x++) {
-        for (int y = 0; y < 3; y++)
-            v[y][x] = middle[(y - 1) * stride + x - 1];
-        sort_two(&v[0][x], &v[1][x]);
-        sort_two(&v[1][x], &v[2][x]);
-        sort_two(&v[0][x], &v[1][x]);
-    }
-    for (int y = 0; y < 3; y++) {
-        sort_two(&v[y][0], &v[y][1]);
-        sort_two(&v[y][1], &v[y][2]);
-        sort_two(&v[y][0], &v[y][1]);
-    }
-    sort_two(&v[0][2], &v[1][1]);
-    sort_two(&v[1][1], &v[2][0]);
-    sort_two(&v[0][2], &v[1][1]);
-    return v[1][1];
-}
-
 /* Single pixels that were given to the other side than all around them are put right. */
 static void clean_band(void *context, int band, int worker)
 {
@@ -165,7 +135,7 @@ static void clean_band(void *context, int band, int worker)
             n = rf_edge_run(e, x, y, &rough);
             for (int u = rf_larger(x, 1); u < rf_smaller(x + n, e->width - 1) && rough; u++)
                 if (!vote->voter[at + u])
-                    e->label[at + u] = median_of_nine(e->spare + at + u, e->stride);
+                    e->label[at + u] = rf_median_of_nine(e->spare + at + u, e->stride);
         }
     }
 }

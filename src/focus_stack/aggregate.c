@@ -119,6 +119,8 @@ void rf_stack_aggregate(struct refocus_stack *s)
             pass(s, way, 8);
         else if (s->labels == 16)
             pass(s, way, 16);
+        else if (s->labels == 24)
+            pass(s, way, 24);
         else
             pass(s, way, REFOCUS_STACK_MOST_FRAMES);
     }
@@ -140,10 +142,10 @@ void rf_stack_choose(struct refocus_stack *s)
         const int16_t *sum = s->sum + i * (size_t)s->labels;
         int best = 0;
 
-        for (int k = 1; k < s->count; k++)
+        for (int k = 1; k < s->depths; k++)
             best = sum[k] < sum[best] ? k : best;
         s->depth[i] = (uint16_t)(256 * best);
-        if (best > 0 && best + 1 < s->count)
+        if (best > 0 && best + 1 < s->depths)
             s->depth[i] =
                 (uint16_t)(s->depth[i] + between(sum[best - 1], sum[best], sum[best + 1]));
     }

@@ -9,6 +9,9 @@
  * that the sharper one does not weigh more. Residuals are clamped to three times their mean
  * (Huber's function), so that what moves has little say. Sums are integers; the few steps in double
  * precision are single operations that IEEE rounds alike everywhere.
+ *
+ * Where frames are not alike after that, a camera has moved by more than the coarsest picture lets
+ * a step see: then all shifts of that picture are looked at first.
  */
 #include "focus_stack/focus_stack.h"
 
@@ -21,7 +24,14 @@ enum {
     STEPS = 10,   /* at each level */
     BORDER = 2,
     LEAST_SIDE = 16, /* least side of a level that is used */
+    SEARCHED = 32,   /* least side of a level whose shifts are looked at */
 };
+
+/* Frames are alike from this correlation on: neighbours of nine frames have .98 and more, the first
+ * and the last of them .85, pictures of two places .1 and less. */
+#define ALIKE 0.7
+/* A shift is taken that makes them alike at least so much: below, it fits by chance. */
+#define LEAST_ALIKE 0.5
 
 /* A level of two pictures; c is about its middle. */
 struct level {
@@ -227,19 +237,21 @@ static void rescale(struct rf_similarity *s, double by)
     s->t[1] *= by;
 }
 
-/* The similarity from one frame to its neighbour, of places in the finest small picture. Where it
- * makes nothing better, frames stay as they are. */
-static struct rf_similarity between(const struct refocus_stack *s,
-                                    const struct rf_stack_frame *reference,
-                                    const struct rf_stack_frame *frame)
+/* Correlation of a frame with its neighbour at a similarity of places in the finest picture. */
+static double likeness(const struct level *finest, const struct rf_similarity *s)
 {
-    const struct rf_similarity none = {{1, 0}, {0, 0}};
-    struct rf_similarity found = none;
-    struct sums sums;
+    warp(finest, s);
+    return rf_stack_correlation(finest->reference, finest->warped, finest->width, finest->width,
+                                finest->height);
+}
 
-    for (int i = RF_STACK_LEVELS - 1; i >= 0; i--) {
+/* From a level on to the finest; `found` is of places in the finest small picture. */
+static void refine_from(const struct refocus_stack *s, const struct rf_stack_frame *reference,
+                        const struct rf_stack_frame *frame, int first, struct rf_similarity *found)
+{
+    for (int i = first; i >= 0; i--) {
         const struct level l = level_of(s, reference, frame, i);
-        struct rf_similarity at_level = found;
+        struct rf_similarity at_level = *found;
 
         if (l.width < LEAST_SIDE || l.height < LEAST_SIDE)
             continue;
@@ -247,14 +259,47 @@ static struct rf_similarity between(const struct refocus_stack *s,
         if (!refine(&l, &at_level))
             continue;
         rescale(&at_level, 1 << i);
-        found = at_level;
+        *found = at_level;
     }
+}
 
+/* The similarity from one frame to its neighbour, of places in the finest small picture. Where it
+ * makes nothing better, frames stay as they are. */
+static struct rf_similarity between(const struct refocus_stack *s,
+                                    const struct rf_stack_frame *reference,
+                                    const struct rf_stack_frame *frame)
+{
     const struct level finest = level_of(s, reference, frame, 0);
+    const struct rf_similarity none = {{1, 0}, {0, 0}};
+    struct rf_similarity found = none, shifted;
+    struct sums sums;
+    double alike;
+    int coarsest = RF_STACK_LEVELS - 1;
+
+    refine_from(s, reference, frame, coarsest, &found);
+
     const double before = residual_of(&finest, &none, &sums, INT16_MAX);
     const double after = residual_of(&finest, &found, &sums, INT16_MAX);
 
-    return after < 0 || after >= before ? none : found;
+    if (after < 0 || after >= before)
+        found = none;
+    alike = likeness(&finest, &found);
+    if (alike >= ALIKE)
+        return found;
+    while (coarsest > 0 &&
+           (finest.width >> coarsest < SEARCHED || finest.height >> coarsest < SEARCHED))
+        coarsest--;
+
+    const struct level coarse = level_of(s, reference, frame, coarsest);
+
+    shifted = none;
+    rf_stack_best_shift(coarse.reference, coarse.frame, coarse.width, coarse.height, shifted.t);
+    rescale(&shifted, 1 << coarsest);
+    refine_from(s, reference, frame, coarsest, &shifted);
+
+    const double now = likeness(&finest, &shifted);
+
+    return now > alike && now >= LEAST_ALIKE ? shifted : found;
 }
 
 /* Less than this at the corners is left alone: interpolation would cost more. */
@@ -272,10 +317,45 @@ void rf_stack_warp(const struct refocus_stack *s, const struct rf_stack_frame *f
     warp(&l, &similarity);
 }
 
+void rf_stack_align_each(struct refocus_stack *s, int reference)
+{
+    for (int i = 0; i < s->count; i++) {
+        struct rf_similarity found = {{1, 0}, {0, 0}};
+
+        if (i != reference && s->align == REFOCUS_STACK_ALIGN_SIMILARITY)
+            found = between(s, &s->frame[reference], &s->frame[i]);
+        rescale(&found, s->small_by);
+        s->frame[i].from_reference = found;
+    }
+}
+
+/* The greatest correlation of three levels: fine texture is lost in blur, but not in coarse ones.
+ */
+static double likeness_of(const struct refocus_stack *s, const struct rf_stack_frame *reference,
+                          const struct rf_stack_frame *frame, const struct rf_similarity *found)
+{
+    double most = 0;
+
+    for (int i = 0; i < RF_STACK_LEVELS - 1; i++) {
+        const struct level l = level_of(s, reference, frame, i);
+        struct rf_similarity at_level = *found;
+
+        rescale(&at_level, 1.0 / (1 << i));
+        if (i && (l.width < LEAST_SIDE || l.height < LEAST_SIDE))
+            break;
+
+        const double here = likeness(&l, &at_level);
+
+        most = here > most ? here : most;
+    }
+    return most;
+}
+
 void rf_stack_align(struct refocus_stack *s, int reference)
 {
     const struct rf_similarity none = {{1, 0}, {0, 0}};
 
+    s->alike = 1;
     s->frame[reference].from_reference = none;
     for (int way = -1; way <= 1; way += 2)
         for (int i = reference + way; i >= 0 && i < s->count; i += way) {
@@ -285,6 +365,10 @@ void rf_stack_align(struct refocus_stack *s, int reference)
 
             if (s->align == REFOCUS_STACK_ALIGN_SIMILARITY)
                 found = between(s, last, frame);
+
+            const double alike = likeness_of(s, last, frame, &found);
+
+            s->alike = alike < s->alike ? alike : s->alike;
             rescale(&found, s->small_by);
             frame->from_reference = compose(&found, &last->from_reference);
         }

@@ -83,6 +83,13 @@ static int share_of(int t)
     return (3 * 256 * t * t - 2 * t * t * t + 32768) >> 16;
 }
 
+uint16_t rf_stack_focus(const struct refocus_stack *s, uint16_t depth)
+{
+    const int k = rf_stack_clamp(depth >> 8, s->count - 2);
+
+    return (uint16_t)(256 * k + share_of(depth - 256 * k));
+}
+
 /* Where a row of the photo lies in a frame, and what moves there. */
 struct line {
     struct rf_stack_line at;
@@ -119,6 +126,17 @@ static void pixel_of(const struct refocus_stack *s, const struct line *line, int
     pixel_at(s, &s->frame[k], out, at->x + x * at->dx, at->y + x * at->dy);
 }
 
+bool rf_stack_pixel(const struct refocus_stack *s, int k, int x, int y, uint8_t out[3])
+{
+    const struct rf_stack_line at = rf_stack_line(s, &s->frame[k], x, y, 1);
+
+    if (!reaches(s, &at, 0) ||
+        rf_stack_moves(rf_stack_moving_row(s, k, y), rf_stack_moving_column(s, x)))
+        return false;
+    pixel_at(s, &s->frame[k], out, at.x, at.y);
+    return true;
+}
+
 void rf_stack_compose_row(const struct refocus_stack *s, uint8_t *out, const uint16_t *depth, int y)
 {
     struct line line[REFOCUS_STACK_MOST_FRAMES];
@@ -151,7 +169,7 @@ void rf_stack_depth_row(const struct refocus_stack *s, uint16_t *depth, uint8_t 
     for (int x = 0; x < s->width; x++) {
         const int column = rf_stack_clamp(x / s->reduced, s->columns - 1);
 
-        depth[x] = in[column];
+        depth[x] = (uint16_t)(in[column] / s->sub);
         sure[x] = s->sure[(size_t)row * (size_t)s->columns + (size_t)column];
     }
 }

@@ -127,7 +127,7 @@ static void cost_row(struct refocus_stack *s, int y)
 
     memset(cost, 255, (size_t)w * (size_t)n);
     for (int x = 0; x < w; x++)
-        memset(cost + (size_t)x * (size_t)n, 0, (size_t)s->count);
+        memset(cost + (size_t)x * (size_t)n, 0, (size_t)s->depths);
     for (int i = 0; i < SQUARES; i++) {
         const int r = reach[i];
         const uint64_t area = (uint64_t)(2 * r + 1) * (uint64_t)(2 * r + 1);
@@ -145,32 +145,47 @@ static void cost_row(struct refocus_stack *s, int y)
                 sum[k] -= column[rf_stack_clamp(x - r - 1, w - 1)];
                 mean[k] = (uint32_t)(sum[k] / area);
             }
-            add_costs(s, cost + (size_t)x * (size_t)n, mean);
+            if (s->sub > 1)
+                rf_stack_model_costs(s, cost + (size_t)x * (size_t)n, mean);
+            else
+                add_costs(s, cost + (size_t)x * (size_t)n, mean);
             if (i == 1)
                 s->sure[(size_t)y * (size_t)w + (size_t)x] = sure_of(s, mean);
         }
     }
 }
 
-/* The colour of the frame that costs least, where depth may change. */
-static void guide_row(struct refocus_stack *s, int y)
+void rf_stack_sample_lines(const struct refocus_stack *s, struct rf_stack_line *line, int y)
 {
     const double half = 0.5 * (s->reduced - 1);
-    struct rf_stack_line line[REFOCUS_STACK_MOST_FRAMES];
 
     for (int k = 0; k < s->count; k++)
         line[k] = rf_stack_line(s, &s->frame[k], half, y * s->reduced + half, s->reduced);
+}
+
+void rf_stack_guide(struct refocus_stack *s, const struct rf_stack_line *line, int k, int x, int y)
+{
+    const int u = rf_stack_clamp((int)((line[k].x + x * line[k].dx) >> 32), s->width - 1);
+    const int v = rf_stack_clamp((int)((line[k].y + x * line[k].dy) >> 32), s->height - 1);
+
+    memcpy(s->guide + 3 * ((size_t)y * (size_t)s->columns + (size_t)x),
+           s->frame[k].rgb + 3 * ((size_t)v * (size_t)s->width + (size_t)u), 3);
+}
+
+/* The colour of the frame that costs least, where depth may change. */
+static void guide_row(struct refocus_stack *s, int y)
+{
+    struct rf_stack_line line[REFOCUS_STACK_MOST_FRAMES];
+
+    rf_stack_sample_lines(s, line, y);
     for (int x = 0; x < s->columns; x++) {
         const size_t i = (size_t)y * (size_t)s->columns + (size_t)x;
         const uint8_t *cost = s->cost + i * (size_t)s->labels;
-        int best = 0, u, v;
+        int best = 0;
 
-        for (int k = 1; k < s->count; k++)
+        for (int k = 1; k < s->depths; k++)
             best = cost[k] < cost[best] ? k : best;
-        u = rf_stack_clamp((int)((line[best].x + x * line[best].dx) >> 32), s->width - 1);
-        v = rf_stack_clamp((int)((line[best].y + x * line[best].dy) >> 32), s->height - 1);
-        memcpy(s->guide + 3 * i,
-               s->frame[best].rgb + 3 * ((size_t)v * (size_t)s->width + (size_t)u), 3);
+        rf_stack_guide(s, line, (best + s->sub / 2) / s->sub, x, y);
     }
 }
 
@@ -178,6 +193,8 @@ void rf_stack_costs(struct refocus_stack *s)
 {
     for (int k = 0; k < s->count; k++)
         move(s, &s->frame[k]);
+    if (s->sub > 1)
+        rf_stack_model(s);
     for (int y = 0; y < s->rows; y++) {
         add_row(s, y);
         cost_row(s, y);

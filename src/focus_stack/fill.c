@@ -128,7 +128,7 @@ static inline void next_row(struct refocus_stack *s, int y, int way, bool first,
         if (way < 0) {
             for (int k = 0; k < n; k++)
                 all[k] = sum[k] + ((uint32_t)stored[k] << s->moved[i]);
-            s->depth[i] = elected(all, s->count, s->depth[i]);
+            s->depth[i] = elected(all, s->depths, s->depth[i]);
         }
         for (int k = 0; k < n; k++)
             sum[k] += vote[k];
@@ -153,6 +153,8 @@ void rf_stack_fill(struct refocus_stack *s)
         along_columns(s, 8);
     else if (s->labels == 16)
         along_columns(s, 16);
+    else if (s->labels == 24)
+        along_columns(s, 24);
     else
         along_columns(s, REFOCUS_STACK_MOST_FRAMES);
 }

@@ -11,8 +11,19 @@
 
 enum {
     RF_STACK_MOST_SAMPLES = 3 << 20, /* at the most, in the maps that the work is done on */
+    RF_STACK_FEW = 9,                /* frames, up to which depths lie between: model.c */
+    RF_STACK_FEW_DEPTHS = 24,
+    RF_STACK_MODELS = 6,
     RF_STACK_GREY = 4096, /* stands for 0 in `colour`, more than any difference below it */
     RF_STACK_LEVELS = 4,  /* pictures that frames are aligned by, each half the last */
+};
+
+struct rf_transfer;
+
+/* The photo in focus everywhere, R, G and B, 8 bits. */
+struct rf_stack_photo {
+    uint8_t *rgb;
+    ptrdiff_t stride;
 };
 
 /* z -> c z + t in the complex plane, about the middle of the picture: scale and rotation, shift in
@@ -40,9 +51,12 @@ struct refocus_stack {
     int most, count, reference;
     int still; /* the reference in the order of positions, once the stack is finished */
     bool finished, without_positions;
-    uint32_t align;
+    uint32_t align, order;
+    double alike;   /* the least correlation of neighbours once they are aligned */
     int64_t moving; /* samples where something moves */
-    int labels;     /* most, rounded up so that costs of a sample fill vectors */
+    int sub;        /* depths from a frame to the next: 1 where steps are fine */
+    int depths;     /* told apart in all: (count - 1) sub + 1 */
+    int labels;     /* depths of `most` frames, rounded up so that costs of a sample fill vectors */
     struct rf_stack_frame frame[REFOCUS_STACK_MOST_FRAMES]; /* in the order of their positions */
 
     uint8_t *luma;    /* one frame's, of the photo's size */
@@ -57,14 +71,30 @@ struct refocus_stack {
     uint8_t *sure;
     uint16_t *depth_row; /* one row of the photo */
     uint8_t *sure_row;
+    struct rf_transfer *transfer;
+    int models;
+    int16_t share[RF_STACK_MODELS][RF_STACK_FEW]
+                 [RF_STACK_FEW_DEPTHS]; /* shares of the sharpness, Q12 */
     void *block;
 };
 
 /* Luminance, sharpness and the small pictures of a frame that has its pixels. */
 void rf_stack_measure(struct refocus_stack *stack, struct rf_stack_frame *frame);
 
+/* Puts frames without positions in the order of their focus; returns order_margin of stack.h. */
+float rf_stack_find_order(struct refocus_stack *stack);
+
 /* Finds from_reference of all frames; the reference is frame `reference` in order of position. */
 void rf_stack_align(struct refocus_stack *stack, int reference);
+/* Likewise, but each with the reference itself: the order of frames need not be known. */
+void rf_stack_align_each(struct refocus_stack *stack, int reference);
+/* Correlation of the luminance of two pictures of w x h pixels, `pitch` from row to row. What lies
+ * outside of the frame is below 0. */
+double rf_stack_correlation(const uint16_t *reference, const int16_t *frame, ptrdiff_t pitch, int w,
+                            int h);
+/* The shift of whole pixels, up to a third of a side, at which a frame is most alike. */
+void rf_stack_best_shift(const uint16_t *reference, const uint16_t *frame, int width, int height,
+                         double t[2]);
 /* A picture of a level of `small` as the reference sees it, -1 outside of the frame. */
 void rf_stack_warp(const struct refocus_stack *stack, const struct rf_stack_frame *frame, int level,
                    const uint16_t *in, int16_t *out);
@@ -80,12 +110,20 @@ const uint8_t *rf_stack_moving_row(const struct refocus_stack *stack, int k, int
 int rf_stack_moving_column(const struct refocus_stack *stack, int x);
 /* Frames get the highest cost in a row of samples where something moves. */
 void rf_stack_leave_out(struct refocus_stack *stack, int y);
+/* Depths from a frame to the next for so many frames. */
+int rf_stack_sub(int frames);
+/* The model of defocus, for sub > 1: once frames lie on each other. */
+void rf_stack_model(struct refocus_stack *stack);
+/* Adds to the costs of a sample by mean squares of sharpness, each in Q2 codes. */
+void rf_stack_model_costs(const struct refocus_stack *stack, uint8_t *cost, const uint32_t *mean);
 /* Costs, guide and confidence, from the sharpness. */
 void rf_stack_costs(struct refocus_stack *stack);
 /* Adds up the costs along eight directions. */
 void rf_stack_aggregate(struct refocus_stack *stack);
 /* The least sum of each sample, between frames by a parabola. */
 void rf_stack_choose(struct refocus_stack *stack);
+/* Depth beside a nearer surface, which windows of sharpness take for it, is filled once more. */
+void rf_stack_silhouettes(struct refocus_stack *stack);
 /* Depth that was not measured becomes that of the sure samples around it. */
 void rf_stack_fill(struct refocus_stack *stack);
 
@@ -93,6 +131,14 @@ void rf_stack_fill(struct refocus_stack *stack);
  * towards the reference, which shows all. */
 void rf_stack_compose_row(const struct refocus_stack *stack, uint8_t *out, const uint16_t *depth,
                           int y);
+/* The focus that a depth is composed of, both Q8 frames. */
+uint16_t rf_stack_focus(const struct refocus_stack *stack, uint16_t depth);
+/* The pixel of the reference at a place as frame k shows it; false: it does not, or moves there. */
+bool rf_stack_pixel(const struct refocus_stack *stack, int k, int x, int y, uint8_t out[3]);
+/* Disparity of a depth in Q8 frames: on the line between the positions of two frames. */
+uint16_t rf_stack_disparity(const struct refocus_stack *stack, int depth);
+/* Takes the light of blurred foreground out of the background beside it. */
+void rf_stack_decontaminate(struct refocus_stack *stack, const struct rf_stack_photo *photo);
 /* Places in a frame of the places of a row of the reference: x + i dx, Q32 pixels. */
 struct rf_stack_line {
     int64_t x, y, dx, dy;
@@ -102,6 +148,11 @@ struct rf_stack_line {
 struct rf_stack_line rf_stack_line(const struct refocus_stack *stack,
                                    const struct rf_stack_frame *frame, double x, double y,
                                    double step);
+/* The lines of a row of samples in all frames. */
+void rf_stack_sample_lines(const struct refocus_stack *stack, struct rf_stack_line *line, int y);
+/* The guide of a sample becomes what frame k shows there. */
+void rf_stack_guide(struct refocus_stack *stack, const struct rf_stack_line *line, int k, int x,
+                    int y);
 /* Depth of a row of pixels, Q8 frames, and whether it was measured, 0 to 255. */
 void rf_stack_depth_row(const struct refocus_stack *stack, uint16_t *depth, uint8_t *sure, int y);
 

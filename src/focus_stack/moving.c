@@ -280,7 +280,9 @@ void rf_stack_leave_out(struct refocus_stack *s, int y)
 
         for (int k = 0; k < s->count; k++)
             if (rf_stack_moves(moving[k], column)) {
-                s->cost[i * (size_t)s->labels + (size_t)k] = UINT8_MAX;
+                for (int d = -s->sub / 2; d <= s->sub / 2; d++)
+                    if (k * s->sub + d >= 0 && k * s->sub + d < s->depths)
+                        s->cost[i * (size_t)s->labels + (size_t)(k * s->sub + d)] = UINT8_MAX;
                 any = true;
             }
         if (any)

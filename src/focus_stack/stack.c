@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "colour/transfer.h"
 #include "focus_stack/focus_stack.h"
 #include "image/format.h"
 #include "image/read.h"
@@ -49,6 +50,7 @@ static void lay_out(struct refocus_stack *s, struct rf_arena *arena)
     s->sure = rf_arena_take(arena, samples, 1);
     s->depth_row = rf_arena_take(arena, (uint64_t)s->width, 2);
     s->sure_row = rf_arena_take(arena, (uint64_t)s->width, 1);
+    s->transfer = rf_arena_take(arena, 1, sizeof *s->transfer);
 }
 
 static bool good(const struct refocus_stack_params *p)
@@ -56,7 +58,8 @@ static bool good(const struct refocus_stack_params *p)
     return p->width >= LEAST_SIDE && p->width <= REFOCUS_MAX_SIDE && p->height >= LEAST_SIDE &&
            p->height <= REFOCUS_MAX_SIDE && p->frames >= REFOCUS_STACK_LEAST_FRAMES &&
            p->frames <= REFOCUS_STACK_MOST_FRAMES && p->reference >= 0 &&
-           p->reference <= p->frames && p->align < REFOCUS_STACK_ALIGN_COUNT;
+           p->reference <= p->frames && p->align < REFOCUS_STACK_ALIGN_COUNT &&
+           p->order < REFOCUS_STACK_ORDER_COUNT;
 }
 
 /* The least whole number by which both sides are divided to leave at most so many samples. */
@@ -76,7 +79,10 @@ static void size(struct refocus_stack *s, const struct refocus_stack_params *p)
     s->most = p->frames;
     s->reference = p->reference;
     s->align = p->align;
-    s->labels = p->frames <= 8 ? 8 : p->frames <= 16 ? 16 : REFOCUS_STACK_MOST_FRAMES;
+    s->order = p->order;
+    s->sub = rf_stack_sub(p->frames);
+    const int depths = (p->frames - 1) * s->sub + 1;
+    s->labels = depths <= 24 ? (depths + 7) / 8 * 8 : REFOCUS_STACK_MOST_FRAMES;
     s->reduced = reduction(p->width, p->height, RF_STACK_MOST_SAMPLES);
     s->columns = (p->width + s->reduced - 1) / s->reduced;
     s->rows = (p->height + s->reduced - 1) / s->reduced;
@@ -190,8 +196,7 @@ static int reference_of(const struct refocus_stack *s)
     return s->reference ? -1 : s->count / 2;
 }
 
-/* Disparity of a depth in Q8 frames: on the line between the positions of two frames. */
-static uint16_t disparity_of(const struct refocus_stack *s, uint16_t depth)
+uint16_t rf_stack_disparity(const struct refocus_stack *s, int depth)
 {
     const int k = rf_stack_clamp(depth >> 8, s->count - 2);
     const double first = s->frame[0].position, range = s->frame[s->count - 1].position - first;
@@ -218,9 +223,11 @@ static void write_rows(struct refocus_stack *s, struct refocus_stack_result *r)
             uint16_t *out = (uint16_t *)(void *)((char *)r->disparity + y * r->disparity_stride);
 
             for (int x = 0; x < s->width; x++)
-                out[x] = disparity_of(s, s->depth_row[x]);
+                out[x] = rf_stack_disparity(s, s->depth_row[x]);
         }
     }
+    if (r->photo)
+        rf_stack_decontaminate(s, &(struct rf_stack_photo){r->photo, r->photo_stride});
     r->measured = (float)((double)measured / ((double)s->width * s->height));
 }
 
@@ -269,14 +276,14 @@ static bool good_result(const struct refocus_stack *s, const struct refocus_stac
            (!r->confidence || rf_good_stride(r->confidence_stride, w, s->height)) &&
            (!r->disparity || (!((uintptr_t)r->disparity & 1) && !(r->disparity_stride & 1) &&
                               rf_good_stride(r->disparity_stride, 2 * w, s->height))) &&
-           !r->reserved;
+           !r->reserved && !r->reserved_too;
 }
 
 int refocus_stack_finish(struct refocus_stack *s, struct refocus_stack_result *result)
 {
     const size_t first = REFOCUS_SIZE_TO(struct refocus_stack_result, moved);
     struct refocus_stack_result own;
-    int status, reference;
+    int status;
 
     if (!s)
         return REFOCUS_ERR_ARGUMENT;
@@ -285,18 +292,31 @@ int refocus_stack_finish(struct refocus_stack *s, struct refocus_stack_result *r
         return status;
     if (!good_result(s, &own))
         return REFOCUS_ERR_ARGUMENT;
-    reference = s->finished ? -1 : reference_of(s);
-    if (s->count < REFOCUS_STACK_LEAST_FRAMES || reference < 0)
+    if (s->count < REFOCUS_STACK_LEAST_FRAMES || s->finished || reference_of(s) < 0)
         return REFOCUS_ERR_STATE;
     s->finished = true;
-    s->still = reference;
-    rf_stack_align(s, reference);
+    own.order_margin = 1;
+    if (s->order == REFOCUS_STACK_ORDER_FOUND && s->without_positions)
+        own.order_margin = rf_stack_find_order(s);
+    s->still = reference_of(s);
+    own.reference = s->frame[s->still].added;
+    memset(own.order, 0, sizeof own.order);
+    for (int k = 0; k < s->count; k++)
+        own.order[k] = (uint8_t)s->frame[k].added;
+    rf_stack_align(s, s->still);
+    own.alike = (float)s->alike;
     rf_stack_find_moving(s);
+    s->sub = rf_stack_sub(s->count);
+    if ((s->count - 1) * s->sub >= s->labels) /* more frames were announced than came */
+        s->sub = 1;
+    s->depths = (s->count - 1) * s->sub + 1;
     rf_stack_costs(s);
     own.disorder = disorder_of(s);
     rf_stack_aggregate(s);
     rf_stack_choose(s);
     rf_stack_fill(s);
+    if (s->count > 2)
+        rf_stack_silhouettes(s);
     write_rows(s, &own);
     own.moving = (float)((double)s->moving / ((double)s->columns * s->rows));
     own.moved = 0;

@@ -1,4 +1,5 @@
 /* encode.c: writes the means of a tile to the output picture as 8-bit codes of R, G and B. */
+#include "gather/fine_means.h"
 #include "gather/frame.h"
 #include "image/format.h"
 
@@ -6,12 +7,6 @@ static uint8_t *pixel(const struct rf_frame *f, int bytes, int x, int y)
 {
     return f->out->plane[0] + (y - f->region.y0) * f->out->stride[0] +
            (ptrdiff_t)(x - f->region.x0) * bytes;
-}
-
-/* The code of a Q14 mean. A mean above white, which highlights cause, is written as white. */
-static uint8_t code_of(const uint8_t *to_code, uint64_t mean)
-{
-    return to_code[mean < RF_MEAN_MAX ? mean : RF_MEAN_MAX];
 }
 
 void rf_expect_tile(const struct rf_frame *f, struct rf_rect rect)
@@ -23,28 +18,6 @@ void rf_expect_tile(const struct rf_frame *f, struct rf_rect rect)
 
         __builtin_prefetch(out, 1);
         __builtin_prefetch(out + (rect.x1 - rect.x0) * bytes - 1, 1);
-    }
-}
-
-void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums)
-{
-    const struct rf_order o = rf_order_of(f->out->format);
-    const uint8_t *to_code = f->transfer->to_code;
-
-    for (int y = rect.y0; y < rect.y1; y++) {
-        const uint8_t *alpha = f->alpha.at + y * f->alpha.stride;
-        uint8_t *out = pixel(f, o.bytes, rect.x0, y);
-
-        for (int x = rect.x0; x < rect.x1; x++, out += o.bytes) {
-            const int at = y % RF_TILE * RF_TILE + x % RF_TILE;
-            const uint64_t w = sums->weight[at], half = w / 2;
-
-            out[o.r] = code_of(to_code, (4 * sums->light[0][at] + half) / w);
-            out[o.g] = code_of(to_code, (4 * sums->light[1][at] + half) / w);
-            out[o.b] = code_of(to_code, (4 * sums->light[2][at] + half) / w);
-            if (o.a >= 0)
-                out[o.a] = alpha[x];
-        }
     }
 }
 
@@ -86,31 +59,65 @@ static void encode(const struct rf_frame *f, struct rf_rect rect, const uint16_t
             out[y * f->out->stride[0] + x * o.bytes + o.a] = alpha[y * f->alpha.stride + x];
 }
 
+/* Writes means to a picture of any kind: those of 8 bits at most RF_MEAN_MAX. */
+static void encode_any(const struct rf_frame *f, struct rf_rect rect, const uint16_t *const mean[3],
+                       int pitch)
+{
+    if (f->deep_out->on)
+        rf_encode_deep(f, rect, mean, NULL, pitch, 1);
+    else if (f->dither)
+        rf_encode_dithered(f, rect, mean, pitch, 1);
+    else
+        encode(f, rect, mean, pitch);
+}
+
+static void encode_tile(const struct rf_frame *f, struct rf_rect rect,
+                        uint16_t mean[3][RF_TILE * RF_TILE])
+{
+    const int at = rect.y0 % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
+
+    encode_any(f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at},
+               RF_TILE);
+}
+
 void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3])
 {
-    encode(f, (struct rf_rect){x0, y, x0 + n, y + 1}, mean, 0);
+    encode_any(f, (struct rf_rect){x0, y, x0 + n, y + 1}, mean, 0);
 }
 
 void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
                      uint16_t mean[3][RF_TILE * RF_TILE])
 {
+    if (f->bright && !f->deep_out->on && !f->dither) /* highlights make means above white */
+        f->exec->kernels->clamp_row(mean[0], RF_MEAN_MAX, 3 * RF_TILE * RF_TILE);
+    encode_tile(f, rect, mean);
+}
+
+void rf_encode_fine(const struct rf_frame *f, struct rf_rect rect,
+                    uint16_t mean[3][RF_TILE * RF_TILE], struct rf_fine_means *fine)
+{
     const int at = rect.y0 % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
 
-    if (f->deep_out->on) {
-        rf_encode_deep(f, rect,
-                       (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at},
-                       RF_TILE, 1);
-        return;
-    }
-    if (f->dither) {
-        rf_encode_dithered(f, rect,
-                           (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at},
-                           RF_TILE, 1);
-        return;
-    }
-    if (f->bright) /* highlights make means above white */
-        f->exec->kernels->clamp_row(mean[0], RF_MEAN_MAX, 3 * RF_TILE * RF_TILE);
-    encode(f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at}, RF_TILE);
+    rf_fine_means_forget(fine, mean);
+    rf_encode_deep(
+        f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at},
+        (const int16_t *const[3]){fine->more[0] + at, fine->more[1] + at, fine->more[2] + at},
+        RF_TILE, 1);
+}
+
+void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct rf_sums *sums)
+{
+    uint16_t mean[3][RF_TILE * RF_TILE];
+
+    for (int c = 0; c < 3; c++)
+        for (int y = rect.y0; y < rect.y1; y++)
+            for (int x = rect.x0; x < rect.x1; x++) {
+                const int at = y % RF_TILE * RF_TILE + x % RF_TILE;
+                const uint64_t w = sums->weight[at], v = (4 * sums->light[c][at] + w / 2) / w;
+
+                mean[c][at] = (uint16_t)(v < RF_MEAN_MAX ? v : RF_MEAN_MAX);
+            }
+    encode_tile(f, rect, mean);
 }
 
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)
@@ -124,7 +131,7 @@ void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)
                        (const uint16_t *const[3]){f->light.channel[0] + first,
                                                   f->light.channel[1] + first,
                                                   f->light.channel[2] + first},
-                       f->light.stride, 4);
+                       NULL, f->light.stride, 4);
         return;
     }
     if (f->dither) {

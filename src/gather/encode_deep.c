@@ -7,6 +7,7 @@
 struct means {
     struct rf_rect rect;
     const uint16_t *const *mean;
+    const int16_t *const *more;
     ptrdiff_t pitch;
     int scale;
 };
@@ -26,7 +27,8 @@ static bool light_of(const struct rf_frame *f, const struct means *m, int x, int
         rf_deep_light(in, f->view->x0 + x, f->view->y0 + y, light);
     else
         for (int c = 0; c < 3; c++)
-            light[c] = (float)(m->scale * m->mean[c][at]) / RF_MEAN_MAX;
+            light[c] = (float)(256 * m->scale * m->mean[c][at] + (m->more ? m->more[c][at] : 0)) /
+                       (256.0f * RF_MEAN_MAX);
     return same;
 }
 
@@ -103,9 +105,9 @@ static void put_block(const struct rf_frame *f, const struct means *m, bool alik
 }
 
 void rf_encode_deep(const struct rf_frame *f, struct rf_rect rect, const uint16_t *const mean[3],
-                    ptrdiff_t pitch, int scale)
+                    const int16_t *const *more, ptrdiff_t pitch, int scale)
 {
-    const struct means means = {rect, mean, pitch, scale};
+    const struct means means = {rect, mean, more, pitch, scale};
     const bool alike = rf_deep_is_alike(f->deep_out, f->deep);
 
     if (!f->deep_out->yuv) {
@@ -130,7 +132,7 @@ static uint8_t dithered(const struct rf_deep *curve, float light, int threshold)
 void rf_encode_dithered(const struct rf_frame *f, struct rf_rect rect,
                         const uint16_t *const mean[3], ptrdiff_t pitch, int scale)
 {
-    const struct means means = {rect, mean, pitch, scale};
+    const struct means means = {rect, mean, NULL, pitch, scale};
     const struct rf_order o = rf_order_of(f->out->format);
 
     for (int y = rect.y0; y < rect.y1; y++)

@@ -183,6 +183,11 @@ void rf_encode_tile(const struct rf_frame *f, struct rf_rect rect, const struct 
 void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,
                      uint16_t mean[3][RF_TILE * RF_TILE]);
 
+/* Writes those of a deep picture with what they leave over; forgets that of pixels that changed. */
+struct rf_fine_means;
+void rf_encode_fine(const struct rf_frame *f, struct rf_rect rect,
+                    uint16_t mean[3][RF_TILE * RF_TILE], struct rf_fine_means *fine);
+
 /* Writes n Q14 means, at most RF_MEAN_MAX, to row y from column x0 on. */
 void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3]);
 
@@ -191,9 +196,9 @@ void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);
 
 /* Does all of this for a deep output picture: values, `pitch` from row to row a Q14 mean when they
  * are `scale` times as large, from the first of `rect` on. Means that are a pixel's own light are
- * its own in full. */
+ * its own in full. `more` is NULL, or what each is more than its mean, in 1/256 of Q14. */
 void rf_encode_deep(const struct rf_frame *f, struct rf_rect rect, const uint16_t *const mean[3],
-                    ptrdiff_t pitch, int scale);
+                    const int16_t *const *more, ptrdiff_t pitch, int scale);
 
 /* Does so for a picture of 8 bits, dithered. */
 void rf_encode_dithered(const struct rf_frame *f, struct rf_rect rect,

@@ -237,7 +237,8 @@ static void splat(const struct rf_frame *f, int tx, int ty, struct share *share,
     rf_plan_tile(f->view, f->bins, &f->reach, tx, ty, &plan);
     rf_splat_highlights(&f->splat, &plan, tx, ty, share,
                         (uint16_t *const[3]){mean[0], mean[1], mean[2]});
-    f->exec->kernels->clamp_row(mean[0], RF_MEAN_MAX, 3 * LANES);
+    if (!f->deep_out->on)
+        f->exec->kernels->clamp_row(mean[0], RF_MEAN_MAX, 3 * LANES);
 }
 
 void rf_search_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)

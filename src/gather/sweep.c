@@ -19,6 +19,7 @@
  * This is plain C that states the arithmetic; sums are whole numbers, so their order does
  * not matter.
  */
+#include "gather/fine_means.h"
 #include "gather/frame.h"
 #include "gather/sums.h"
 #include "gather/tile_rays.h"
@@ -112,9 +113,15 @@ struct share {
     alignas(64) struct rf_sorted_rays sorted;
 };
 
+/* Where fine means lie in the share: splats, which come between, use what is before them. */
+static uint64_t fine_at(void)
+{
+    return sizeof(struct share) > rf_splat_share() ? sizeof(struct share) : rf_splat_share();
+}
+
 uint64_t rf_sweep_share(void)
 {
-    return sizeof(struct share);
+    return fine_at() + sizeof(struct rf_fine_means);
 }
 
 static bool has_wide_sums(const struct rf_frame *f)
@@ -147,7 +154,7 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
         .front = f->smooth.channel[0] + at,
         .background = f->background.light.channel[0] + at,
         .weight = f->weighted ? f->weight.at + weight_at : NULL,
-        .background_weight = f->background_weight.at + at,
+        .background_weight = f->weighted ? f->background_weight.at + at : NULL,
         .rays = lookups->rays,
         .slabs = plan->slabs,
         .skip_deepest = rf_skips_deepest_test(f),
@@ -165,7 +172,7 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
         .steps = rf_steps_of(plan),
         .bright = f->bright,
         .lanes = strip.rows * RF_TILE,
-        .weight = f->weight.at + weight_at,
+        .weight = sort.weight,
         .weight_stride = strip.step * f->weight.stride,
     };
 
@@ -269,7 +276,7 @@ static void clamp_run(union tally *run, int lanes, bool wide, uint32_t rays)
 /* Computes the means of channels `from` to `to` - 1 of a tile from rays of equal weight. */
 static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *plan,
                         const struct rf_tile_rays *tile_rays, int tx, int ty, struct share *share,
-                        uint16_t mean[3][LANES], int from, int to)
+                        uint16_t mean[3][LANES], struct rf_fine_means *fine, int from, int to)
 {
     const uint32_t count = (uint32_t)tile_rays->set->count;
     const int background_blur = background_blur_of(f, tx, ty);
@@ -297,6 +304,9 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
             f->exec->kernels->soften(out, rows.count, 1, rows.step == 1, softness);
         if (rows.step > 1)
             f->exec->kernels->between_rows(mean[c], computed, rows.step);
+        if (fine)
+            rf_fine_means(fine, c, f->exec->kernels, &(struct rf_mean_steps){rows, softness, count},
+                          run->sum[c], mean[c]);
     }
 }
 
@@ -331,6 +341,7 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
     struct rf_tile_plan plan;
     struct rf_tile_rays rays;
     uint16_t mean[3][LANES];
+    struct rf_fine_means *fine = NULL;
     void *const share = rf_share(&f->exec->shares, worker);
 
     rf_plan_tile(f->view, f->bins, &f->reach, tx, ty, &plan);
@@ -347,13 +358,15 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
     rf_expect_tile(f, rect);
     rf_tile_rays_make(&rays, f, rf_choose_ray_set(f->ray_sets, plan.reach, plan.undersampled), tx,
                       ty);
+    if (f->deep_out->on && rays.set->equal && !f->weighted)
+        fine = (void *)((uint8_t *)share + fine_at());
     for (int pass = 0; pass < (f->params->fringe != 0 ? 2 : 1); pass++) {
         const int from = pass, to = pass ? 2 : 3; /* all channels, and green again */
 
         if (pass)
             rf_use_green_rays(&rays, f->params->fringe);
         if (rays.set->equal)
-            sweep_means(f, &plan, &rays, tx, ty, share, mean, from, to);
+            sweep_means(f, &plan, &rays, tx, ty, share, mean, fine, from, to);
         else
             sweep_sums(f, &plan, &rays, tx, ty, share, mean, from, to);
     }
@@ -366,6 +379,10 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
         rf_coverage_over(&f->thin, tx, ty, mean);
     if (f->splats && plan.highlight && !f->deep_out->on)
         f->exec->kernels->clamp_row(mean[0], RF_MEAN_MAX, 3 * LANES);
-    if (!rf_cancelled(f->exec))
+    if (rf_cancelled(f->exec))
+        return;
+    if (fine)
+        rf_encode_fine(f, rect, mean, fine);
+    else
         rf_encode_means(f, rect, mean);
 }

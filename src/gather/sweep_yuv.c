@@ -287,7 +287,7 @@ static void set_planes(struct tile *tile, int tx, int ty)
 
     tile->range = tile->f->range.at + RF_TILE / RF_CELL * (ty * tile->f->range.stride + tx);
     tile->weight = tile->f->weighted ? tile->f->weight.at + origin : NULL;
-    tile->background_weight = tile->f->background_weight.at + origin;
+    tile->background_weight = tile->f->weighted ? tile->f->background_weight.at + origin : NULL;
     tile->luma = (struct plane){
         .blur = tile->f->blur.at + origin,
         .light = tile->f->smooth.channel[0] + origin,

@@ -115,16 +115,22 @@ static double unclipped(const struct rf_light_grid *grid, enum rf_grid_measure m
     return mean_at(grid, measure, place) / (1 - mean_at(grid, RF_GRID_CLIPPED, place) + 0.001);
 }
 
+static double saturation(const struct rf_light_grid *grid, const struct rf_grid_place *place)
+{
+    const double r = mean_at(grid, RF_GRID_RED, place), g = mean_at(grid, RF_GRID_GREEN, place);
+    const double b = mean_at(grid, RF_GRID_BLUE, place);
+    const double most = fmax(r, fmax(g, b));
+
+    return (most - fmin(r, fmin(g, b))) / (most + 0.01);
+}
+
 static void set_looks(const struct rf_light_grid *grid, const struct rf_grid_place *place,
                       double *feature)
 {
     const double clipped = mean_at(grid, RF_GRID_CLIPPED, place) + 0.02;
-    const double r = mean_at(grid, RF_GRID_RED, place), g = mean_at(grid, RF_GRID_GREEN, place);
-    const double b = mean_at(grid, RF_GRID_BLUE, place);
-    const double most = fmax(r, fmax(g, b)), least = fmin(r, fmin(g, b));
 
     feature[0] = mean_at(grid, RF_GRID_GREY, place) / clipped;
-    feature[1] = (most - least) / (most + 0.01);
+    feature[1] = grid->channels == 1 ? 0 : saturation(grid, place);
     feature[2] = mean_at(grid, RF_GRID_PLATEAU, place) / clipped;
     feature[3] = mean_at(grid, RF_GRID_WHITE, place) / clipped;
 }
@@ -214,9 +220,10 @@ static void estimate_row(void *context, int item, int worker)
     }
 }
 
-void rf_estimate_make(const struct rf_estimate *estimate, float scale)
+void rf_estimate_make(const struct rf_estimate *estimate)
 {
-    struct job job = {estimate, scale > 0 ? (double)scale : 1, !(scale > 0)};
+    const bool fixed = !(estimate->scale > 0);
+    struct job job = {estimate, fixed ? 1 : (double)estimate->scale, fixed};
 
     rf_pool_run(estimate->grid->exec->pool, estimate_row, &job, estimate->grid->height);
 }

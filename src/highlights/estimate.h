@@ -10,6 +10,7 @@
 struct rf_estimate {
     const struct rf_light_grid *grid;
     float *lost;
+    float scale; /* the estimate is multiplied by it; 0: for a fixed gain */
 };
 
 /* Bytes that rf_estimate_highlights() works in, for photos of at most this size. */
@@ -24,8 +25,8 @@ void rf_estimate_highlights(struct rf_light_grid *grid, struct rf_arena *arena,
                             const struct rf_transfer *linear, float scale,
                             struct rf_highlights *highlights);
 
-/* Estimates it from the grid's measures, times `scale`, or for a fixed gain if that is 0. */
-void rf_estimate_make(const struct rf_estimate *estimate, float scale);
+/* Estimates the light that was lost from the grid's measures, by the scale. */
+void rf_estimate_make(const struct rf_estimate *estimate);
 
 /* The estimate for a pixel, between the middles of cells in proportion; 0 where nothing around is
  * clipped. */

@@ -1,5 +1,5 @@
-/* gather.c: prepares highlights that are not splatted for the rays: widens narrow ones, and gives
- * back the light that clipping took. */
+/* gather.c: prepares highlights that are not splatted for the rays: tells where few rays hit one,
+ * and gives back the light that clipping took. */
 #include "highlights/highlights.h"
 
 #include <assert.h>
@@ -9,15 +9,12 @@
 #include "highlights/clipped.h"
 #include "highlights/in_window.h"
 #include "highlights/known.h"
-#include "highlights/patch.h"
 #include "tiles/ranges.h"
 #include "tiles/tiles.h"
 
 enum {
-    WIDEST = 3,    /* pixels that a highlight is widened by */
-    BLURRED = 512, /* Q7.8: what it may be widened over, */
-    ALIKE = 256, /* if it is farther away than that: else the pre-filter takes it for the same; and
-                    how much blurs may differ that a highlight's light is spread over */
+    WIDEST = 3,       /* pixels that the light of a highlight is spread over, each way */
+    ALIKE = 256,      /* Q7.8: how much blurs may differ that it is spread over */
     WELL_SAMPLED = 2, /* gaps of the rays that a highlight has to be wide for its disc to be even */
     PLACES = (2 * WIDEST + 1) * (2 * WIDEST + 1), /* pixels that light spreads over */
 };
@@ -27,7 +24,6 @@ struct gather {
     const struct rf_executor *exec;
     const struct rf_highlight_window *window;
     double gap;                                   /* gap of the rays, times the blur */
-    const struct rf_blur_patch *patch;            /* widen */
     const struct rf_foreground_cells *foreground; /* raise */
     struct rf_light_q12 light;                    /* boost: light that rays hit */
     int share; /* boost: part of what clipping cost that is given back, Q8 */
@@ -55,31 +51,6 @@ static int reach_of(int blur, double gap)
     return half < WIDEST ? half : WIDEST;
 }
 
-/*
- * Where gaps between rays are wider than a highlight, few rays hit it, and its disc is a pattern of
- * single points. So the pixels within half a gap of it that are farther away, and blurred
- * themselves, take its blur: then the pre-filter spreads its light over them.
- */
-static void widen_pixel(const struct gather *g, int cx, int cy)
-{
-    const struct rf_viewport *view = g->window->view;
-    const int own = rf_window_blur(g->window, cx, cy);
-    const int reach = reach_of(own, g->gap);
-
-    for (int y = cy - reach; y <= cy + reach; y++) {
-        for (int x = cx - reach; x <= cx + reach; x++) {
-            const int dx = x - cx, dy = y - cy;
-
-            if (x < 0 || y < 0 || x >= view->width || y >= view->height ||
-                dx * dx + dy * dy > reach * reach + 1)
-                continue;
-            if (rf_window_blur(g->window, x, y) > own + ALIKE &&
-                abs(rf_window_blur(g->window, x, y)) > BLURRED)
-                rf_set_blur(g->patch, x, y, rf_in_units(own, g->window->blur.unit));
-        }
-    }
-}
-
 /* Notes in the bins of tiles the highlights that rays sample too sparsely at their blur. */
 static void note_undersampled(const struct gather *g, const struct rf_highlight *run)
 {
@@ -90,7 +61,7 @@ static void note_undersampled(const struct gather *g, const struct rf_highlight 
         struct rf_bins *bins;
         int blur;
 
-        if (!rf_place_in(w->view, run, i, &x, &y) || rf_is_edge(run, i))
+        if (!rf_place_in(w->view, run, i, &x, &y))
             continue;
         bins = &w->bins[(size_t)(y / RF_TILE) * w->view->tiles_x + x / RF_TILE];
         blur = abs(rf_window_blur(g->window, x, y));
@@ -99,30 +70,14 @@ static void note_undersampled(const struct gather *g, const struct rf_highlight 
     }
 }
 
-static void widen_run(const struct gather *g, const struct rf_highlight *run)
+void rf_note_undersampled(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                          double gap)
 {
-    const struct rf_highlight_window *w = g->window;
-    const struct rf_blur_extent near =
-        rf_blur_extent(&w->blur, rf_around_run(w->view, run, WIDEST));
-
-    if (near.most - near.least <= ALIKE)
-        return;
-    for (int i = 0, x, y; i < run->count; i++)
-        if (rf_place_in(w->view, run, i, &x, &y) && !rf_is_edge(run, i) &&
-            near.most > rf_window_blur(g->window, x, y) + ALIKE)
-            widen_pixel(g, x, y);
-}
-
-void rf_widen_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
-                         const struct rf_blur_patch *patch, double gap)
-{
-    const struct gather g = {.exec = exec, .window = window, .gap = gap, .patch = patch};
+    const struct gather g = {.exec = exec, .window = window, .gap = gap};
     const struct rf_highlight_parts parts = rf_parts_in(window->view);
 
-    for (int i = 0; i < parts.count; i++) {
+    for (int i = 0; i < parts.count; i++)
         for_each(&g, parts.first + i, note_undersampled);
-        for_each(&g, parts.first + i, widen_run);
-    }
 }
 
 static void raise_run(const struct gather *g, const struct rf_highlight *run)
@@ -130,7 +85,7 @@ static void raise_run(const struct gather *g, const struct rf_highlight *run)
     for (int i = 0, x, y; i < run->count; i++) {
         int reach;
 
-        if (!rf_place_in(g->window->view, run, i, &x, &y) || rf_is_edge(run, i))
+        if (!rf_place_in(g->window->view, run, i, &x, &y))
             continue;
         reach = 1 + reach_of(rf_window_blur(g->window, x, y), g->gap);
         rf_force_foreground(g->window->view, g->foreground,
@@ -148,12 +103,12 @@ void rf_raise_highlights(const struct rf_executor *exec, const struct rf_highlig
         for_each(&g, parts.first + i, raise_run);
 }
 
-/* The light that pixel i of a run, so blurred, gets: a share of what clipping cost, Q8 of `boost`.
+/* The light that a pixel of a run, so blurred, gets: a share of what clipping cost, Q8 of `boost`.
  */
-static void gain_of(const struct rf_highlight *run, int i, int blur, int share, int gained[3])
+static void gain_of(const struct rf_highlight *run, int blur, int share, int gained[3])
 {
     /* from half a pixel of blur on, all of it from one pixel and a half on */
-    const int blurred = rf_is_edge(run, i) ? 0 : rf_ramp(abs(blur), 128, 384);
+    const int blurred = rf_ramp(abs(blur), 128, 384);
 
     static_assert((int64_t)3 * RF_LIGHT_MAX * ((RF_MOST_GAIN - 1) * 85 + 1) <= INT32_MAX &&
                       (int64_t)UINT16_MAX * ((RF_KNOWN_GAIN - 1) * 85 + 1) <= INT32_MAX,
@@ -218,7 +173,7 @@ static void boost_pixel(const struct gather *g, const struct rf_highlight *run, 
         return;
     reach = spread_of(run, rf_window_blur(g->window, x, y), g->gap);
     places = places_of(g, x, y, reach, place);
-    gain_of(run, i, rf_window_blur(g->window, x, y), g->share, gained);
+    gain_of(run, rf_window_blur(g->window, x, y), g->share, gained);
     for (int k = 0; k < places; k++) {
         for (int c = 0; c < g->window->channels; c++) {
             uint16_t *const at = g->light.channel[c] + place[k];

@@ -7,8 +7,7 @@
  *
  *     estimate    lists the clipped pixels by rows, with the light that each has lost (estimate.h)
  *     silhouettes gives pixels at the edge of something bright the depth that they belong to
- *     mark        tells, for a lens setting, which pixels of a highlight are only the silhouette of
- *                 a sharper one, and how far the others are out of focus
+ *     mark        tells, for a lens setting, how far the pixels of a highlight are out of focus
  *
  * then, where the aperture and the method allow it (rf_can_splat()),
  *
@@ -18,7 +17,7 @@
  *
  * and elsewhere, where the rays have to gather the light,
  *
- *     widen       makes highlights large enough for rays not to miss them
+ *     note        tells where rays would miss a highlight
  *     raise       counts them as foreground
  *     boost       adds the light that clipping took to the light that rays hit
  *
@@ -53,13 +52,10 @@ struct rf_highlight {
     uint8_t size; /* pixels that the highlight is wide in its narrow direction, or so; 255: more */
 
     /* For this lens: */
-    uint16_t edges;         /* a bit for each pixel that is the silhouette of something bright and
-                               sharper; gathering leaves those alone that are mostly that, splats
-                               of them fade */
-    int16_t blur;           /* mean of the others, as is stored, or of most; RF_NO_BLUR where they
+    int16_t blur;           /* mean of the pixels, as is stored, or of most; RF_NO_BLUR where they
                                differ */
-    uint16_t weight;        /* how many of the pixels are no edges, 256 for each */
-    uint16_t subtracted[3]; /* Q12 light that was subtracted from what rays hit, mean by weight */
+    uint8_t pixels;         /* pixels of the run that are in the window */
+    uint16_t subtracted[3]; /* Q12 light that was subtracted from what rays hit, mean of these */
     uint8_t rows;  /* rows from this one on that are splatted as one; 0: splatted with one above */
     uint8_t below; /* how much further on in the list the next of these rows is */
 };
@@ -171,7 +167,7 @@ void rf_find_silhouettes(const struct rf_executor *exec, const struct rf_silhoue
 void rf_patch_silhouettes(const struct rf_executor *exec, const struct rf_silhouettes *silhouettes,
                           const struct rf_focus_plan *plan, const struct rf_blur_patch *patch);
 
-/* Marks the highlights of the window for its blur. Reads light and blur; writes the marks and, in
+/* Marks the highlights of the window for its blur. Reads that; writes the marks and, in
  * bins, how far a highlight reaches: by its blur or, if it is splatted, by its disc. */
 void rf_mark_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
                         bool splat);
@@ -233,13 +229,13 @@ void rf_splat_highlights(const struct rf_splat *splat, const struct rf_tile_plan
                          int ty, void *share, uint16_t *const mean[3]);
 uint64_t rf_splat_share(void);
 
-/* Widens marked highlights that rays `gap` times their blur apart would miss: pixels around them
- * take their blur. Reads and writes blur; notes in bins where few rays hit a highlight. */
-void rf_widen_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
-                         const struct rf_blur_patch *patch, double gap);
+/* Notes in bins where rays `gap` times their blur apart are too few for a marked highlight. Reads
+ * blur. */
+void rf_note_undersampled(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                          double gap);
 
-/* Counts highlights and the pixels that they were widened by as foreground (tiles/ranges.h), as the
- * background layer that rays see past them is not as bright. Reads blur. */
+/* Counts highlights and the pixels that their light is spread over as foreground (tiles/ranges.h),
+ * as the background layer that rays see past them is not as bright. Reads blur. */
 void rf_raise_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,
                          const struct rf_foreground_cells *foreground, double gap);
 

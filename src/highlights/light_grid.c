@@ -133,6 +133,13 @@ static void set_tables(struct rf_light_grid *grid, const struct rf_transfer *lin
     }
 }
 
+/* The red, green and blue of a plane of luminance would be UNCLIPPED three times: they are left
+ * out. */
+static int measures_of(const struct rf_light_grid *grid)
+{
+    return grid->channels == 1 ? RF_GRID_RED : RF_GRID_MEASURES;
+}
+
 static float *cell_of(const struct rf_light_grid *grid, enum rf_grid_measure measure, int x, int y)
 {
     const struct rf_grid_plane *plane = &grid->plane[measure];
@@ -146,6 +153,31 @@ static void add(const struct rf_light_grid *grid, enum rf_grid_measure measure, 
                 int sum)
 {
     *cell_of(grid, measure, x, y) += (float)sum;
+}
+
+/* Adds up luminance that is not clipped, of a plane of it, in one row of cells of scale 1. */
+static void add_luminance(const struct rf_light_grid *grid, int y, int row)
+{
+    const struct rf_grid_tables *t = grid->tables;
+    const int across = rf_grid_size(grid->width, 1), step = grid->step, clipped = t->clipped;
+    const uint16_t *const plane = grid->photo->light.channel[0] + y * grid->photo->light.stride;
+    float *const unclipped = grid->plane[RF_GRID_UNCLIPPED].scale[1] + (ptrdiff_t)row * across;
+    float *const logs = grid->plane[RF_GRID_LOG].scale[1] + (ptrdiff_t)row * across;
+    int x = 0;
+
+    for (int cx = 0; cx < across; cx++) {
+        const int end = t->first[rf_smaller(2 * cx + 2, grid->width)];
+        int luminance = 0, log = 0;
+
+        for (; x < end; x += step) {
+            const int light = plane[x], own = t->linear[light];
+
+            luminance += light > clipped ? ((256 - t->soft[light]) * own) >> 8 : own;
+            log += t->log[own];
+        }
+        unclipped[cx] += (float)luminance;
+        logs[cx] += (float)log;
+    }
 }
 
 /* Adds up light that is not clipped, in one row of cells y of scale 1. */
@@ -241,7 +273,7 @@ static void measure_rows(void *context, int item, int worker)
     const int width = grid->photo->width, height = grid->photo->height;
 
     (void)worker;
-    for (int i = 0; i < RF_GRID_MEASURES; i++) {
+    for (int i = 0; i < measures_of(grid); i++) {
         const int k = grid->plane[i].first, rows = k ? 1 : 2;
         const int across = rf_grid_size(grid->width, k);
 
@@ -257,7 +289,7 @@ static void measure_rows(void *context, int item, int worker)
             if (rf_cancelled(grid->exec))
                 return;
             if (y % grid->step == 0)
-                add_unclipped(grid, y, item);
+                (grid->channels == 1 ? add_luminance : add_unclipped)(grid, y, item);
             if (!rf_grid_may_be_clipped(grid, 0, y, width))
                 continue;
             for (int x = 0; x < width; x += RUN)
@@ -271,52 +303,8 @@ static void measure_rows(void *context, int item, int worker)
     divide(grid, RF_GRID_GREY, item, 4096, false);
     divide(grid, RF_GRID_PLATEAU, item, 256, false);
     divide(grid, RF_GRID_WHITE, item, 256, false);
-    for (int c = 0; c < 3; c++)
-        divide(grid, RF_GRID_RED + (unsigned)c, item, 4095, true);
-}
-
-/* Means of 2 x 2 of a level make the next one. */
-static void halve(const float *fine, int width, int height, float *out)
-{
-    const int across = (width + 1) / 2, down = (height + 1) / 2;
-
-    for (int y = 0; y < down; y++) {
-        const float *a = fine + (ptrdiff_t)(2 * y) * width;
-        const float *b = fine + (ptrdiff_t)rf_smaller(2 * y + 1, height - 1) * width;
-
-        for (int x = 0; x < across; x++) {
-            const int x1 = rf_smaller(2 * x + 1, width - 1);
-
-            out[(ptrdiff_t)y * across + x] = (a[2 * x] + a[x1] + b[2 * x] + b[x1]) * 0.25f;
-        }
-    }
-}
-
-/* Smooths a level by 1 2 1 in rows and columns; its sides repeat. */
-static void smooth(float *at, int width, int height)
-{
-    float above[RF_GRID_SIDE], own[RF_GRID_SIDE];
-
-    for (int y = 0; y < height; y++) {
-        float *row = at + (ptrdiff_t)y * width, before = row[0];
-
-        for (int x = 0; x < width; x++) {
-            const float v = row[x], after = row[rf_smaller(x + 1, width - 1)];
-
-            row[x] = (before + 2 * v + after) * 0.25f;
-            before = v;
-        }
-    }
-    memcpy(above, at, (size_t)width * sizeof *at);
-    for (int y = 0; y < height; y++) {
-        float *row = at + (ptrdiff_t)y * width;
-        const float *below = at + (ptrdiff_t)rf_smaller(y + 1, height - 1) * width;
-
-        memcpy(own, row, (size_t)width * sizeof *at);
-        for (int x = 0; x < width; x++)
-            row[x] = (above[x] + 2 * own[x] + below[x]) * 0.25f;
-        memcpy(above, own, (size_t)width * sizeof *at);
-    }
+    for (int i = RF_GRID_RED; i < measures_of(grid); i++)
+        divide(grid, (unsigned)i, item, 4095, true);
 }
 
 static void blur_plane(void *context, int item, int worker)
@@ -326,10 +314,11 @@ static void blur_plane(void *context, int item, int worker)
 
     (void)worker;
     for (int k = plane->first; k < plane->last; k++)
-        halve(plane->scale[k], rf_grid_size(grid->width, k), rf_grid_size(grid->height, k),
-              plane->scale[k + 1]);
+        rf_pyramid_halve(plane->scale[k], rf_grid_size(grid->width, k),
+                         rf_grid_size(grid->height, k), plane->scale[k + 1]);
     for (int k = plane->first; k <= plane->last && !rf_cancelled(grid->exec); k++)
-        smooth(plane->scale[k], rf_grid_size(grid->width, k), rf_grid_size(grid->height, k));
+        rf_pyramid_smooth(plane->scale[k], rf_grid_size(grid->width, k),
+                          rf_grid_size(grid->height, k));
 }
 
 static bool any_clipped(const struct rf_light_grid *grid)
@@ -361,7 +350,7 @@ bool rf_light_grid_measure(struct rf_light_grid *grid, const struct rf_transfer 
         return false;
     grid->mean_log =
         mean_of(grid->plane[RF_GRID_LOG].scale[1], rf_grid_size(grid->width, 1) * down) - 9;
-    rf_pool_run(grid->exec->pool, blur_plane, grid, RF_GRID_MEASURES);
+    rf_pool_run(grid->exec->pool, blur_plane, grid, measures_of(grid));
     return !rf_cancelled(grid->exec);
 }
 

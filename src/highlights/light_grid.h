@@ -15,11 +15,12 @@
 
 #include <stdint.h>
 
+#include "highlights/light_pyramid.h"
 #include "image/photo_source.h"
 #include "support/arena.h"
 #include "support/executor.h"
 
-enum { RF_GRID_SIDE = 512, RF_GRID_SCALES = 7, RF_CODES_OF_LIGHT = RF_LIGHT_MAX + 1 };
+enum { RF_GRID_SIDE = RF_PYRAMID_SIDE, RF_GRID_SCALES = 7, RF_CODES_OF_LIGHT = RF_LIGHT_MAX + 1 };
 
 /* The means. Linear light is 0 to 1. */
 enum rf_grid_measure {
@@ -29,7 +30,7 @@ enum rf_grid_measure {
     RF_GRID_GREY,      /* s min(R, G, B) / max(R, G, B) */
     RF_GRID_PLATEAU,   /* place of the greatest code between 250 and 255: 0 to 1 */
     RF_GRID_WHITE,     /* place of the least code between 246 and 255: 0 to 1 */
-    RF_GRID_RED,       /* (1 - s) R, G, B */
+    RF_GRID_RED,       /* (1 - s) R, G, B; not of a plane of luminance */
     RF_GRID_GREEN,
     RF_GRID_BLUE,
     RF_GRID_MEASURES

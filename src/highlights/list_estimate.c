@@ -19,20 +19,27 @@ struct open {
     float light[3]; /* Q12, of all its pixels */
 };
 
-/* How bright the second brightest channel is: 0 up to half of white, 1 near white. Where one
- * channel alone is clipped, a petal or a painted wall is as likely as a lamp. */
-static float whiteness(const int colour[3])
+/* How near to white a channel is: 0 up to half of it, 1 from 0.95 on. */
+static float nearness_to_white(int light)
 {
-    const int most = rf_larger(colour[0], rf_larger(colour[1], colour[2]));
-    const int least = rf_smaller(colour[0], rf_smaller(colour[1], colour[2]));
-    const int middle = colour[0] + colour[1] + colour[2] - most - least;
-    const float t = ((float)middle / RF_LIGHT_MAX - 0.5f) * (1 / 0.45f);
+    const float t = ((float)light / RF_LIGHT_MAX - 0.5f) * (1 / 0.45f);
 
     return t <= 0 ? 0 : t >= 1 ? 1 : t * t * (3 - 2 * t);
 }
 
+/* How near to white the second brightest channel is. Where one channel alone is clipped, a petal or
+ * a painted wall is as likely as a lamp. */
+static float whiteness(const int colour[3])
+{
+    const int most = rf_larger(colour[0], rf_larger(colour[1], colour[2]));
+    const int least = rf_smaller(colour[0], rf_smaller(colour[1], colour[2]));
+
+    return nearness_to_white(colour[0] + colour[1] + colour[2] - most - least);
+}
+
 /* The light that a pixel has lost, Q12. Half of it has its own hue, half that of what is around
- * the clipped pixels. Returns false if it is hardly any. */
+ * the clipped pixels; a channel far below white has lost none, whatever a fixed gain adds to it.
+ * Returns false if it is hardly any. */
 static bool lost_at(const struct rf_estimate *estimate, const struct rf_grid_row *row, int x, int y,
                     float light[3])
 {
@@ -58,6 +65,8 @@ static bool lost_at(const struct rf_estimate *estimate, const struct rf_grid_row
     else
         for (int c = 0; c < 3; c++)
             light[c] = gain * 0.5f * ((float)colour[c] + luminance * hue[c]);
+    for (int c = 0; c < 3 && estimate->scale > 0; c++)
+        light[c] *= nearness_to_white(colour[c]);
     return true;
 }
 
@@ -131,7 +140,7 @@ void rf_estimate_highlights(struct rf_light_grid *grid, struct rf_arena *arena,
                             const struct rf_transfer *linear, float scale,
                             struct rf_highlights *highlights)
 {
-    struct rf_estimate estimate = {.grid = grid};
+    struct rf_estimate estimate = {.grid = grid, .scale = scale};
     struct listing listing = {&estimate, highlights};
     const int parts = (grid->photo->height + RF_HIGHLIGHT_ROWS - 1) / RF_HIGHLIGHT_ROWS;
 
@@ -140,6 +149,6 @@ void rf_estimate_highlights(struct rf_light_grid *grid, struct rf_arena *arena,
     rf_estimate_lay_out(&estimate, arena);
     if (!rf_light_grid_measure(grid, linear))
         return;
-    rf_estimate_make(&estimate, scale);
+    rf_estimate_make(&estimate);
     rf_pool_run(grid->exec->pool, list_part, &listing, parts);
 }

@@ -1,56 +1,21 @@
-/* mark.c: marks, for a lens setting, which pixels of highlights are silhouettes of others, how far
- * they are out of focus, and which rows are splatted as one. */
+/* mark.c: marks, for a lens setting, how far highlights are out of focus and which rows of them are
+ * splatted as one. */
 #include "highlights/highlights.h"
 
 #include <limits.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "highlights/clipped.h"
 #include "highlights/in_window.h"
-#include "kernels/kernels.h"
 #include "support/compare.h"
 
 enum {
-    EDGE_FROM = 128,  /* Q7.8: something bright is the edge of a highlight if it is sharper by this,
-                         at least */
-    EDGE_PART = 16,   /* it is also sharper by this part of the highlight's blur at least, wholly so
-                         by 3 times that part; where highlights are gathered, by twice that */
     DISC_EDGE = 256,  /* Q7.8: what a disc goes beyond the blur of a highlight's pixel, half a pixel
                          at its edge and half of what blurs of a run may differ by, and some */
     STACKED = 4096,   /* Q7.8: from this blur on two rows of a highlight are splatted as one, from
                          twice that on four */
     STACK_EDGE = 512, /* Q7.8: stacked rows reach farther by this at most, as their ends differ */
 };
-
-/* How much sharper than it the sharpest bright pixel beside (x, y) is, Q7.8. If by a pixel of blur,
- * this one is the edge of that, and only its depth says otherwise. */
-static int edge_of(const struct rf_highlight_window *w, int x, int y)
-{
-    const int own = abs(rf_window_blur(w, x, y));
-    int sharpest = own;
-
-    for (int j = -2; j <= 2; j++) {
-        for (int i = -2; i <= 2; i++) {
-            const int v = rf_within(y + j, w->view->height - 1);
-            const int u = rf_within(x + i, w->view->width - 1);
-            const int blur = abs(rf_window_blur(w, u, v));
-
-            if (blur < sharpest &&
-                rf_brightest_at(&w->light, v * w->light.stride + u) >= RF_CLIPPED)
-                sharpest = blur;
-        }
-    }
-    return own - sharpest;
-}
-
-int rf_edge_weight(const struct rf_highlight_window *w, int x, int y)
-{
-    const int size = abs(rf_window_blur(w, x, y));
-    const int from = rf_larger(EDGE_FROM, size / EDGE_PART);
-
-    return 256 - rf_ramp(edge_of(w, x, y), from, 3 * from);
-}
 
 /* How far the disc of a pixel so blurred may reach where it is splatted with others. */
 static int disc_reach(int size)
@@ -66,68 +31,57 @@ static void note_reach(const struct rf_highlight_window *w, int x, int y, int re
                                          bins->highlight);
 }
 
-enum { NONE = INT_MIN /* in place of a blur, of pixels whose blurs differ */ };
-
-/* The mean blur of those pixels of a run that are blurred as its middle is, if that is two thirds
- * of its weight: the rest, its silhouette with the depth of what is beside it, belongs to it as
- * well. */
+/* The mean blur of those pixels of a run that are blurred as its middle is, if these are two thirds
+ * of it: the rest, its silhouette with the depth of what is beside it, belongs to it as well. Else
+ * RF_NO_BLUR. */
 static int blur_of_most(const struct rf_highlight_window *w, const struct rf_highlight *run)
 {
-    int x, y, middle, sum = 0, weight = 0, reach;
+    int x, y, middle, sum = 0, count = 0, reach;
 
     if (!rf_place_in(w->view, run, run->count / 2, &x, &y))
-        return NONE;
+        return RF_NO_BLUR;
     middle = rf_window_blur(w, x, y);
     for (int i = 0; i < run->count; i++) {
-        const int own = !rf_place_in(w->view, run, i, &x, &y) ? 0
-                        : rf_is_edge(run, i)                  ? rf_edge_weight(w, x, y)
-                                                              : 256;
-        const int blur = own ? rf_window_blur(w, x, y) : 0;
-
-        if (own && 2 * abs(blur - middle) <= rf_alike_within(middle)) {
-            sum += own * blur;
-            weight += own;
-        }
-    }
-    if (3 * weight < 2 * run->weight || !weight)
-        return NONE;
-    reach = disc_reach(abs(sum / weight));
-    for (int i = 0; i < run->count; i++)
-        if (rf_place_in(w->view, run, i, &x, &y))
-            note_reach(w, x, y, reach);
-    return sum / weight;
-}
-
-static void mark(const struct rf_highlight_window *w, struct rf_highlight *run, bool splat)
-{
-    const struct rf_blur_extent near = rf_blur_extent(&w->blur, rf_around_run(w->view, run, 2));
-    int sum = 0, weight = 0, least = INT_MAX, most = INT_MIN, blur_of_all;
-
-    run->edges = 0;
-    for (int i = 0, x, y; i < run->count; i++) {
-        int blur, size, own = 256;
+        int blur;
 
         if (!rf_place_in(w->view, run, i, &x, &y))
             continue;
         blur = rf_window_blur(w, x, y);
-        size = abs(blur);
-        if (near.sharpest < size - EDGE_FROM)
-            own = rf_edge_weight(w, x, y);
-        if (own < (splat ? 256 : 128))
-            run->edges |= (uint16_t)(1 << i);
-        if (own == 0)
-            continue;
-        note_reach(w, x, y, splat ? disc_reach(size) : size);
-        least = blur < least ? blur : least;
-        most = blur > most ? blur : most;
-        sum += own * blur;
-        weight += own;
+        if (2 * abs(blur - middle) <= rf_alike_within(middle)) {
+            sum += blur;
+            count++;
+        }
     }
-    run->weight = (uint16_t)weight;
-    blur_of_all = weight ? sum / weight : 0;
-    if (weight && most - least > rf_alike_within(least))
-        blur_of_all = splat ? blur_of_most(w, run) : NONE;
-    run->blur = (int16_t)(blur_of_all == NONE ? RF_NO_BLUR : blur_of_all / (1 << w->blur.unit));
+    if (3 * count < 2 * run->pixels || !count)
+        return RF_NO_BLUR;
+    reach = disc_reach(abs(sum / count));
+    for (int i = 0; i < run->count; i++)
+        if (rf_place_in(w->view, run, i, &x, &y))
+            note_reach(w, x, y, reach);
+    return sum / count / (1 << w->blur.unit);
+}
+
+static void mark(const struct rf_highlight_window *w, struct rf_highlight *run, bool splat)
+{
+    int sum = 0, least = INT_MAX, most = INT_MIN;
+
+    run->pixels = 0;
+    for (int i = 0, x, y; i < run->count; i++) {
+        int blur;
+
+        if (!rf_place_in(w->view, run, i, &x, &y))
+            continue;
+        blur = rf_window_blur(w, x, y);
+        note_reach(w, x, y, splat ? disc_reach(abs(blur)) : abs(blur));
+        least = rf_smaller(least, blur);
+        most = rf_larger(most, blur);
+        sum += blur;
+        run->pixels++;
+    }
+    if (run->pixels && most - least > rf_alike_within(least))
+        run->blur = (int16_t)(splat ? blur_of_most(w, run) : RF_NO_BLUR);
+    else
+        run->blur = (int16_t)((run->pixels ? sum / run->pixels : 0) / (1 << w->blur.unit));
     run->rows = 1;
     run->below = 0;
     run->subtracted[0] = run->subtracted[1] = run->subtracted[2] = 0;
@@ -135,7 +89,7 @@ static void mark(const struct rf_highlight_window *w, struct rf_highlight *run, 
 
 static bool is_even(const struct rf_highlight *run)
 {
-    return run->rows == 1 && run->weight && run->blur != RF_NO_BLUR;
+    return run->rows == 1 && run->pixels && run->blur != RF_NO_BLUR;
 }
 
 /* The run of the same highlight in the next row; NULL: none there is as wide and as blurred. */

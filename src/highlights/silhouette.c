@@ -7,9 +7,10 @@
 
 #include "focus/focus.h"
 #include "highlights/clipped.h"
-#include "highlights/patch.h"
 #include "kernels/kernels.h"
 #include "support/places.h"
+#include "tiles/ranges.h"
+#include "tiles/tiles.h"
 
 enum {
     JUMP = 65535 / 32,             /* disparities this far apart are two surfaces */
@@ -254,6 +255,14 @@ void rf_find_silhouettes(const struct rf_executor *exec, const struct rf_silhoue
     }
 }
 
+/* Sets a pixel's blur, in its plane and in the bins and the cell that it is in. */
+static void set_blur(const struct rf_blur_patch *patch, int x, int y, int16_t blur)
+{
+    patch->blur.at[y * patch->blur.stride + x] = blur;
+    rf_add_bin(patch->view, patch->bins, patch->scale, x, y, blur);
+    rf_add_to_cell(patch->cells, x, y, blur);
+}
+
 void rf_patch_silhouettes(const struct rf_executor *exec, const struct rf_silhouettes *silhouettes,
                           const struct rf_focus_plan *plan, const struct rf_blur_patch *patch)
 {
@@ -269,7 +278,7 @@ void rf_patch_silhouettes(const struct rf_executor *exec, const struct rf_silhou
         if (x < 0 || y < 0 || x >= view->width || y >= view->height)
             continue;
         rf_focus_row(plan, &blur, &pixel->disparity, pixel->x, pixel->y, 1);
-        rf_set_blur(patch, x, y, blur);
+        set_blur(patch, x, y, blur);
     }
 }
 

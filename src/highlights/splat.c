@@ -24,7 +24,7 @@ bool rf_can_splat(const struct rf_settings *params, const struct refocus_apertur
                                           (aperture->summed && params->cat_eye == 0));
 }
 
-/* Light of a pixel that is no edge, Q12: what clipping cost, and what was subtracted. */
+/* Light of a pixel, Q12: what clipping cost, and what was subtracted. */
 static double light_of(const struct rf_splat *splat, const struct rf_highlight *run, int c)
 {
     return run->boost[c] * (splat->gain - 1.0) / 3 + run->subtracted[c];
@@ -176,22 +176,19 @@ static int part_of(struct rf_splat_run *part, const struct rf_visibility *tile,
     const int16_t *const blur = w->blur.at + y * w->blur.stride + x;
     const int first = i, end = rf_smaller(run->count, w->view->width - x);
     const int unit = w->blur.unit;
-    int least = rf_in_pixels(blur[i], unit), most = least, sum = 0, weight = 0;
+    int least = rf_in_pixels(blur[i], unit), most = least, sum = 0;
 
     for (; i < end; i++) {
-        const int own = rf_is_edge(run, i) ? rf_edge_weight(w, x + i, y) : 256;
-
         least = rf_smaller(least, rf_in_pixels(blur[i], unit));
         most = rf_larger(most, rf_in_pixels(blur[i], unit));
         if (most - least > rf_alike_within(least))
             break;
-        sum += own * rf_in_pixels(blur[i], unit);
-        weight += own;
+        sum += rf_in_pixels(blur[i], unit);
     }
     place(part, tile, x + first, y, i - first);
-    set_blur(part, weight ? sum / weight : 0);
+    set_blur(part, sum / (i - first));
     for (int c = 0; c < 3; c++)
-        part->light[c] = light_of(tile->splat, run, c) * weight;
+        part->light[c] = light_of(tile->splat, run, c) * 256 * (i - first);
     return i - first;
 }
 
@@ -243,7 +240,7 @@ static struct rf_splat_run stack_of(const struct rf_visibility *tile,
         count += row->count;
         blur += row->blur;
         for (int c = 0; c < 3; c++)
-            run.light[c] += light_of(tile->splat, row, c) * row->weight;
+            run.light[c] += light_of(tile->splat, row, c) * 256 * row->pixels;
     }
     place(&run, tile, -view->x0, top->y - view->y0, 0);
     run.from += RF_SPLAT_UNIT * x / rows;

@@ -136,16 +136,11 @@ static void subtract_run(const struct subtract *s, struct rf_highlight *run,
     const int first = rf_larger(-x, 0), end = rf_smaller(run->count, w->view->width - x);
     int share[RF_HIGHLIGHT_RUN];
 
-    static_assert(RF_LIGHT_MAX * 256 * 256 <= INT32_MAX, "light times two shares in Q8");
-    static_assert(RF_HIGHLIGHT_RUN * RF_LIGHT_MAX * 256 <= INT32_MAX, "the sum of a run in Q8");
-    static_assert(RF_HIGHLIGHT_RUN * 256 <= UINT16_MAX, "the weight of a run");
-    if (!run->weight)
+    static_assert(RF_LIGHT_MAX * 256 <= INT32_MAX, "light times a share in Q8");
+    if (!run->pixels)
         return;
-    for (int i = first; i < end; i++) {
-        const int weight = rf_is_edge(run, i) ? rf_edge_weight(w, x + i, chain->y) : 256;
-
-        share[i] = weight * share_of(chain, abs(rf_window_blur(w, x + i, chain->y)), s->gap);
-    }
+    for (int i = first; i < end; i++)
+        share[i] = share_of(chain, abs(rf_window_blur(w, x + i, chain->y)), s->gap);
     for (int c = 0; c < w->channels; c++) {
         const uint16_t *const light = w->light.channel[c] + row;
         const int around =
@@ -154,12 +149,12 @@ static void subtract_run(const struct subtract *s, struct rf_highlight *run,
 
         for (int i = first; i < end; i++) {
             const int more = rf_larger(light[x + i] - around, 0);
-            const int part = (more * share[i]) >> 16;
+            const int part = (more * share[i]) >> 8;
 
             s->out.channel[c][row + x + i] = (uint16_t)(light[x + i] - part);
             sum += part;
         }
-        run->subtracted[c] = (uint16_t)(256 * sum / run->weight);
+        run->subtracted[c] = (uint16_t)(sum / run->pixels);
     }
 }
 

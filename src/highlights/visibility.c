@@ -25,7 +25,7 @@
 #include "tiles/ranges.h"
 
 enum {
-    NEARER = 256, /* Q7.8: a surface has to be nearer by so much to occlude a highlight */
+    NEARER = 256, /* Q7.8: a surface has to be nearer by so much to occlude a highlight, or more */
     LARGE = 32,   /* pixels: larger regions are not searched for an occluder */
     MOST_ROWS = 4,
     LEAST_RADIUS = 2048, /* Q7.8: rows that look at one place are an eighth of a pixel apart, those
@@ -41,10 +41,11 @@ struct occluder {
 };
 
 /* Leaves out of a slab the run itself and surfaces that are about as near. */
-static struct occluder occluder_of(const struct rf_slab *slab, const struct rf_splat_run *run,
-                                   int unit)
+static struct occluder occluder_of(const struct rf_visibility *tile, const struct rf_slab *slab,
+                                   const struct rf_splat_run *run)
 {
-    const int most = ((run->blur - NEARER) >> unit) - slab->low;
+    const int unit = tile->splat->window.blur.unit;
+    const int most = ((run->blur - tile->nearer) >> unit) - slab->low;
     struct occluder occluder = {*slab, 0};
 
     if (most < slab->width) {
@@ -231,6 +232,9 @@ void rf_visibility_begin(struct rf_visibility *tile, const struct rf_splat *spla
     tile->ty = ty;
     tile->count = 0;
     tile->slabs = 0;
+    /* Where a surface is Gaussian noise, one pixel in 250 is nearer than another by 3.75 standard
+     * deviations. */
+    tile->nearer = rf_larger(NEARER, plan->noise + plan->noise / 2);
     for (int k = 0; k < plan->slabs; k++)
         if (!merges(tile, &plan->slab[k], splat->window.blur.unit))
             tile->slab[tile->slabs++] = plan->slab[k];
@@ -273,7 +277,7 @@ static void set_occlusion(struct rf_occlusion *occlusion, const struct rf_visibi
     const struct rf_blur_q8 *plane = &tile->splat->window.blur;
     const struct rf_splat_run *run = &occlusion->look.run;
     const struct rf_slab *slab = &tile->slab[occlusion->look.slab];
-    const struct occluder occluder = occluder_of(slab, run, plane->unit);
+    const struct occluder occluder = occluder_of(tile, slab, run);
     const int16_t *const blur = plane->at + tile->ty * RF_TILE * plane->stride + tile->tx * RF_TILE;
     struct rf_disc_way way;
 
@@ -326,20 +330,20 @@ static void subtract_occluded(struct rf_visibility *tile, struct rf_disc_job *jo
     job->visible = tile->visible;
 }
 
-static bool is_nearer(const struct rf_slab *slab, const struct rf_splat_run *run, int unit)
+static bool is_nearer(const struct rf_visibility *tile, int k, const struct rf_splat_run *run)
 {
-    return rf_in_pixels(slab->low, unit) <= run->blur - NEARER;
+    return rf_in_pixels(tile->slab[k].low, tile->splat->window.blur.unit) <=
+           run->blur - tile->nearer;
 }
 
 enum rf_hidden rf_run_hidden(const struct rf_visibility *tile, const struct rf_disc_job *job,
                              const struct rf_splat_run *run, uint64_t *clear)
 {
-    const int unit = tile->splat->window.blur.unit;
     enum rf_hidden hidden = RF_HIDDEN_NOWHERE;
 
     *clear = 0;
-    for (int k = 0; k < tile->slabs && is_nearer(&tile->slab[k], run, unit); k++) {
-        const struct occluder occluder = occluder_of(&tile->slab[k], run, unit);
+    for (int k = 0; k < tile->slabs && is_nearer(tile, k, run); k++) {
+        const struct occluder occluder = occluder_of(tile, &tile->slab[k], run);
         const enum rf_hidden by = hidden_by(&occluder, tile, run, job);
 
         if (by == RF_HIDDEN_WHOLLY)
@@ -355,10 +359,8 @@ enum rf_hidden rf_run_hidden(const struct rf_visibility *tile, const struct rf_d
 bool rf_run_visible(struct rf_visibility *tile, struct rf_disc_job *job,
                     const struct rf_splat_run *run, uint64_t clear)
 {
-    const int unit = tile->splat->window.blur.unit;
-
     job->visible = NULL;
-    for (int k = 0; k < tile->slabs && is_nearer(&tile->slab[k], run, unit); k++) {
+    for (int k = 0; k < tile->slabs && is_nearer(tile, k, run); k++) {
         const struct rf_occlusion *occlusion;
 
         if (k < 64 && clear >> k & 1)

@@ -48,6 +48,7 @@ struct rf_occlusion {
 struct rf_visibility {
     const struct rf_splat *splat;
     int tx, ty, slabs;
+    int nearer; /* 1/256 pixel: a surface has to be nearer by so much to occlude a highlight */
     struct rf_slab slab[RF_MAX_SLABS]; /* slabs of the tile; ones that lie close are merged */
     int count;                         /* occlusions that were found so far */
     struct rf_occlusion occlusion[RF_KEPT_OCCLUSIONS], other;

@@ -51,13 +51,29 @@ typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur, const uint16_
                         const uint16_t *const lower[3], const int16_t *blur0, const int16_t *blur1,
                         int n);
 
-/* pull: unknown ones of 2 x pairs children take 3 and 1 quarters of the nearest parents, down
- * and then across, each half up; `mixed` is scratch of pairs + 2. pull_blur: they take their
- * parent's blur. */
+/*
+ * pull: unknown ones of 2 x pairs children take 3 and 1 quarters of the nearest parents, down and
+ * then across, each half up. Of two parents whose blurs are more than `apart` apart, the deeper
+ * one counts alone; with INT16_MAX none is. pull_blur: they take the nearest parent's blur, or such
+ * a deeper one. Each row of `mixed` is scratch of pairs + 2.
+ *
+ * An example with `apart` 1280: parents of light 100 and 900 and of blurs -5120 and 0 make a child
+ * of light 900 and blur 0, of blurs -1024 and 0 one of 300 and -1024.
+ */
 static_assert((3 + 1) * 4 * RF_LIGHT_MAX + 2 <= UINT16_MAX, "a sum of pull fits 16 bits");
-typedef void rf_pull_fn(uint16_t *out, const int16_t *out_blur, const uint16_t *near_row,
-                        const uint16_t *far_row, uint16_t *mixed, int pairs);
-typedef void rf_pull_blur_fn(int16_t *out, const int16_t *near_row, int pairs);
+struct rf_parents {
+    const uint16_t *near_light, *far_light;
+    const int16_t *near_blur, *far_blur;
+    int16_t apart;
+};
+struct rf_mixed_parents {
+    uint16_t *light;
+    int16_t *blur;
+};
+typedef void rf_pull_fn(uint16_t *out, const int16_t *out_blur, const struct rf_parents *parents,
+                        struct rf_mixed_parents mixed, int pairs);
+typedef void rf_pull_blur_fn(int16_t *out, const struct rf_parents *parents, int16_t *mixed,
+                             int pairs);
 
 /* push1: push, of one plane. */
 typedef void rf_push1_fn(uint16_t *out, int16_t *out_blur, const uint16_t *upper,

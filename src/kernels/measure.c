@@ -71,8 +71,11 @@ static void push(const struct rf_kernels *k, struct rows *r)
 
 static void pull(const struct rf_kernels *k, struct rows *r)
 {
-    k->pull(r->shorts[6] + MARGIN, r->blur[2] + MARGIN, r->shorts[0] + MARGIN,
-            r->shorts[1] + MARGIN, r->shorts[7], N / 2);
+    const struct rf_parents parents = {r->shorts[0] + MARGIN, r->shorts[1] + MARGIN,
+                                       r->blur[0] + MARGIN, r->blur[1] + MARGIN, 1280};
+
+    k->pull(r->shorts[6] + MARGIN, r->blur[2] + MARGIN, &parents,
+            (struct rf_mixed_parents){r->shorts[7], (int16_t *)r->shorts[8]}, N / 2);
 }
 
 static void means(const struct rf_kernels *k, struct rows *r)

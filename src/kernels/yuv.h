@@ -17,6 +17,13 @@ typedef void rf_encode_fn(uint16_t *const out[2], uint16_t *chroma, const uint8_
                           const uint8_t *uv, const struct rf_yuv_curve *curve, int n);
 
 /*
+ * guide: R, G and B of n pixels, a byte each, tones in quarters, half up. Codes of U and V are
+ * pairs for two pixels: R' = Y' + rf_more() and so on, as colour/yuv.h says.
+ */
+typedef void rf_guide_fn(uint8_t *rgb, const uint8_t *luma, const uint8_t *uv,
+                         const struct rf_yuv_curve *curve, int n);
+
+/*
  * decode: means of a tile of luma and chroma to codes, rf_chroma_code() of each sample and
  *
  *     Y = to_code[L - E] of its pixels

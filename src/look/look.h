@@ -35,11 +35,14 @@ struct rf_stars {
     int count;
 };
 
-/* Grain of the photo, measured where it is sharp. */
+/* Grain of the photo, measured where it is smooth. */
 struct rf_grain {
-    /* number of blocks by luma and by variance, 1/16 code^2 */
-    uint32_t blocks[RF_NOISE_LEVELS][RF_NOISE_BINS];
+    /* number of blocks by luma and by variance, 1/16 code^2, between every other pixel; and the
+     * sum of their variances between neighbours */
+    uint32_t blocks[RF_NOISE_LEVELS][RF_NOISE_BINS], near[RF_NOISE_LEVELS][RF_NOISE_BINS];
+    bool any;                        /* there is some */
     uint16_t sigma[RF_NOISE_LEVELS]; /* standard deviation of luma, 1/256 code */
+    int side;                        /* weight of neighbours in smoothed noise, Q7 */
     uint8_t lost[1024]; /* the share of the grain a blur takes, Q8, by |s| in 1/8 pixel;
                            the last one is of all larger ones */
 };
@@ -72,7 +75,7 @@ void rf_look_begin(const struct rf_look *look);
 void rf_look_over(const struct rf_look *look, const struct rf_canvas *canvas, struct rf_rect rect);
 
 /* The parts of both. Stars: reads highlights and their blur, writes the list; adds their light.
- * Grain: reads the photo and its blur, writes the measure; adds as much noise as blur took. */
+ * Grain: reads the photo, writes the measure; adds as much noise as blur took. */
 void rf_find_stars(const struct rf_look *look);
 void rf_measure_grain(const struct rf_look *look);
 void rf_add_stars(const struct rf_look *look, const struct rf_canvas *canvas, struct rf_rect rect);

@@ -3,8 +3,8 @@
 
 #include "image/border.h"
 
-/* One row, of n samples. Values of a sample are read before the same place of `blue`, which may be
- * where they lie, is written. */
+/* Expands a row of n samples. Values of a sample are read before the same place of `blue`, which
+ * may be where they lie, is written. */
 static void expand(uint16_t *blue, uint16_t *restrict red, const uint16_t *sample, int n)
 {
     for (int x = 0; x < n; x++) {
@@ -15,7 +15,7 @@ static void expand(uint16_t *blue, uint16_t *restrict red, const uint16_t *sampl
     }
 }
 
-/* From the last row up, as a row of samples lies no lower than its pixels. */
+/* Works from the last row up, as a row of samples lies no lower than its pixels. */
 void rf_expand_chroma_rows(const struct rf_viewport *view, const struct rf_chroma_size *size,
                            struct rf_chroma_q12 samples, struct rf_light_q12 out, int y0, int y1)
 {

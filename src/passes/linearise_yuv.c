@@ -3,13 +3,13 @@
 
 #include <string.h>
 
-#include "colour/guide.h"
 #include "image/border.h"
 #include "image/format.h"
 #include "kernels/kernels.h"
 
-/* Row cy of chroma and the rows that share it, from the codes that are kept. The pixel beside an
- * odd edge, which planes have room for, is made of scratch: rows of codes have none. */
+/* Converts row cy of chroma, and the rows of luma that share it, from the codes that are kept. The
+ * pixel beside an odd edge, which planes have room for, is made of scratch: rows of codes have
+ * none. */
 static void convert_codes(const struct rf_executor *exec, const struct rf_viewport *view,
                           const struct rf_linearise_yuv *pass, uint8_t *scratch, int cy)
 {
@@ -31,15 +31,6 @@ static void convert_codes(const struct rf_executor *exec, const struct rf_viewpo
     }
     exec->kernels->encode(out, pass->chroma.at + cy * pass->chroma.stride, luma,
                           codes.uv + cy * codes.uv_stride, pass->curve, pass->size.width);
-}
-
-/* The colours of a row, as far as they tell one thing from another. */
-static void guide_row(const struct rf_linearise_yuv *pass, uint8_t *out, int y, int width)
-{
-    const uint8_t *uv = pass->codes.uv + (y >> pass->size.down) * pass->codes.uv_stride;
-    const struct rf_yuv_row row = {pass->codes.y + y * pass->codes.y_stride, uv, uv + 1, 1, 2};
-
-    rf_guide_row(pass->curve, out, &row, width);
 }
 
 static void swap_pairs(uint8_t *restrict to, const uint8_t *restrict from, int n)
@@ -147,7 +138,9 @@ static void convert_band(void *context, int band, int worker)
     }
     rf_reblend_yuv_rows(job->exec, job->view, pass, y0, y1, worker);
     for (int y = y0; guide && y < y1; y++)
-        guide_row(pass, guide->plane[0] + y * guide->stride[0], y, w);
+        job->exec->kernels->guide(
+            guide->plane[0] + y * guide->stride[0], pass->codes.y + y * pass->codes.y_stride,
+            pass->codes.uv + (y >> down) * pass->codes.uv_stride, pass->curve, w);
 }
 
 void rf_linearise_yuv(const struct rf_executor *exec, const struct rf_viewport *view,

@@ -6,6 +6,7 @@
 enum {
     ANY_FOCUS = REFOCUS_METHOD_ANY_FOCUS,
     ANY_RADIUS = REFOCUS_METHOD_ANY_RADIUS,
+    DEEP = REFOCUS_METHOD_TAKES_DEEP,
     DISC_ONLY = REFOCUS_METHOD_DISC_ONLY,
     HIGHLIGHTS = REFOCUS_METHOD_HIGHLIGHTS,
     RAYS = REFOCUS_METHOD_TAKES_RAYS,
@@ -18,9 +19,9 @@ static const struct {
     uint32_t traits;
 } info[REFOCUS_METHOD_COUNT] = {
     [REFOCUS_METHOD_SWEEP] = {"sweep", "two layers, front-most hit, swept over disparities",
-                              ANY_FOCUS | ANY_RADIUS | HIGHLIGHTS | RAYS | YUV},
+                              ANY_FOCUS | ANY_RADIUS | DEEP | HIGHLIGHTS | RAYS | YUV},
     [REFOCUS_METHOD_SEARCH] = {"search", "randomized intersection search, Yang et al. 2016",
-                               ANY_FOCUS | HIGHLIGHTS | RAYS | YUV},
+                               ANY_FOCUS | DEEP | HIGHLIGHTS | RAYS | YUV},
     [REFOCUS_METHOD_RAYTRACE] = {"raytrace", "full image-space ray tracing, Yang et al. 2016; slow",
                                  RAYS},
     [REFOCUS_METHOD_JITTERED] = {"jittered",
@@ -29,13 +30,13 @@ static const struct {
                                    "views from all over the aperture, warped and added up",
                                    WHOLE | RAYS},
     [REFOCUS_METHOD_BLUR] = {"blur", "each pixel blurred by its own circle of confusion",
-                             ANY_FOCUS | RAYS},
+                             ANY_FOCUS | DEEP | RAYS},
     [REFOCUS_METHOD_SCATTER] = {"scatter", "each pixel spread over its circle, Potmesil 1981",
                                 DISC_ONLY | WHOLE},
     [REFOCUS_METHOD_FOVEATED] = {"foveated", "exact at the centre of attention, Mulder 2000",
                                  DISC_ONLY | WHOLE},
     [REFOCUS_METHOD_INTERPOLATED] = {"interpolated", "between three pictures, NVIDIA 2004; quick",
-                                     DISC_ONLY | WHOLE},
+                                     DEEP | DISC_ONLY | WHOLE},
     [REFOCUS_METHOD_DIFFUSION] = {"diffusion", "heat through a field of blur, Kosloff 2007",
                                   ANY_FOCUS | DISC_ONLY | WHOLE},
 };

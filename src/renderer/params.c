@@ -95,13 +95,15 @@ int rf_check_deep(const struct rf_log *log, const struct rf_frame *f, struct rf_
 
     if (!r->deep.on && !rf_is_deep(f->out->format))
         return REFOCUS_OK;
-    if (!r->deep.curve || r->yuv->on || p->method != REFOCUS_METHOD_SWEEP ||
+    if (!r->deep.curve || r->yuv->on ||
+        !(refocus_method_traits(p->method) & REFOCUS_METHOD_TAKES_DEEP) ||
         p->blend != REFOCUS_BLEND_LINEAR || p->sigma < 1e6f || p->grain > 0 ||
         (p->star_spikes > 0 && p->star_strength > 0))
         return rf_refuse(
             log, REFOCUS_ERR_UNSUPPORTED,
             "a deep photo or out may be rendered with deep = 1 of the renderer's "
-            "parameters, by the sweep, R, G, B or P010, P016, in linear light, without "
+            "parameters, by sweep, search, blur and interpolated, R, G, B or P010, P016, in "
+            "linear light, without "
             "sigma, grain, stars and in_place");
     if (refocus_format_is_yuv(f->out->format) &&
         !keeps_pairs(region, r->photo.width, r->photo.height, 1))

@@ -90,15 +90,10 @@ void rf_pass_highlights(struct rf_frame *f)
     photo->highlights_blend = rf_cancelled(&r->exec) ? RF_NO_BLEND : r->blend;
 }
 
-static struct rf_blur_patch patch_of(const struct rf_frame *f)
-{
-    return (struct rf_blur_patch){f->view, f->blur, rf_renderer_of(f)->bins, f->scale,
-                                  &rf_renderer_of(f)->cells};
-}
-
 void rf_pass_silhouettes(struct rf_frame *f)
 {
-    const struct rf_blur_patch patch = patch_of(f);
+    const struct rf_blur_patch patch = {f->view, f->blur, rf_renderer_of(f)->bins, f->scale,
+                                        &rf_renderer_of(f)->cells};
 
     rf_patch_silhouettes(f->exec, &rf_renderer_of(f)->photo.silhouettes, &f->plan, &patch);
 }
@@ -192,7 +187,6 @@ float rf_gathered_gain(const struct rf_frame *f)
 static void mark_highlights(struct rf_frame *f)
 {
     const struct rf_highlight_window *window = &f->splat.window;
-    const struct rf_blur_patch patch = patch_of(f);
 
     f->bright = rf_leaves_known(window) ? RF_BRIGHTEST : RF_WHITE;
     if (f->params->highlight_gain <= 1 || !rf_has_highlights(window->highlights, window->view))
@@ -200,7 +194,7 @@ static void mark_highlights(struct rf_frame *f)
     rf_mark_highlights(f->exec, window, f->splats);
     if (f->splats)
         return;
-    rf_widen_highlights(f->exec, window, &patch, rf_ray_gap(f->params->rays));
+    rf_note_undersampled(f->exec, window, rf_ray_gap(f->params->rays));
     f->bright = (enum rf_bright)rf_larger(f->bright, rf_bright_of(rf_gathered_gain(f)));
 }
 

@@ -111,6 +111,11 @@ static int same_surface(const struct rf_frame *f)
     return rf_larger((int)(f->params->max_blur_radius * (256.0f / 24)), 256) >> unit;
 }
 
+static int16_t apart_of(const struct rf_frame *f)
+{
+    return rf_layers_apart(f->params->max_blur_radius, f->focus.unit);
+}
+
 static void take_filled_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
@@ -128,7 +133,8 @@ static void pull_textured(struct rf_frame *f)
                                 &(struct rf_texture){.scratch = r->texture,
                                                      .transfer = &r->transfer[r->blend],
                                                      .same = same_surface(f),
-                                                     .unit = f->focus.unit});
+                                                     .unit = f->focus.unit,
+                                                     .apart = apart_of(f)});
     if (f->thin.disc_scale)
         rf_pool_run(&r->pool, take_filled_band, f, rf_bands(&r->view));
 }
@@ -143,11 +149,11 @@ void rf_pass_inpaint(struct rf_frame *f, int levels)
         rf_background_inpaint_yuv(&r->exec, &r->view, &r->pyramid,
                                   &(struct rf_inpaint_chroma){r->chroma.size, r->blur,
                                                               r->chroma.smooth,
-                                                              r->chroma.background});
+                                                              r->chroma.background, apart_of(f)});
     else if (f->textured)
         pull_textured(f);
     else
-        rf_background_pull(&r->exec, &r->view, &r->pyramid, 0, levels);
+        rf_background_pull(&r->exec, &r->view, &r->pyramid, 0, levels, apart_of(f));
     rf_plane_begin(&r->lifetimes, RF_PLANE_FOREGROUND);
     rf_pool_run(&r->pool, note_band, r, rf_bands(&r->view));
     if (f->bright != RF_WHITE && !f->splats)

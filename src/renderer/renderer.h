@@ -63,7 +63,7 @@ struct rf_photo {
 struct rf_pass_cache {
     bool blur;             /* circles of confusion, and bins */
     bool silhouettes;      /* silhouettes of clipped things are patched in them */
-    bool gathered;         /* highlights are marked and widened in them for the rays */
+    bool gathered;         /* highlights are marked in them for the rays */
     bool splatted;         /* highlights are marked to be splatted */
     bool ranges;           /* ranges of the tiles; until then their cells live */
     bool smooth;           /* the pre-filtered light */
@@ -76,7 +76,7 @@ struct rf_pass_cache {
     float sigma;
     float own_sigma; /* weights of the photo's own light are of it and of own_blend; -1: none are */
     uint32_t own_blend;
-    int rays;              /* number of rays that highlights were widened for */
+    int rays;              /* number of rays that highlights were marked for */
     struct rf_rect window; /* part of the photo that all of it is limited to */
     struct rf_rect exact;  /* part where the background is that of the whole photo */
     struct rf_focus_plan plan;

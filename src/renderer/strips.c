@@ -176,7 +176,8 @@ static void mark(struct rf_frame *f)
             keep_level(r, block);
     }
     rf_background_push(&r->exec, &in_place->kept, RF_KEPT, in_place->kept.levels);
-    rf_background_pull(&r->exec, &r->view, &in_place->kept, RF_KEPT, in_place->kept.levels);
+    rf_background_pull(&r->exec, &r->view, &in_place->kept, RF_KEPT, in_place->kept.levels,
+                       rf_layers_apart(f->params->max_blur_radius, f->focus.unit));
 }
 
 static void known_band(void *context, int band, int worker)

@@ -83,7 +83,7 @@ static bool spread(struct side *side)
         rf_background_push(pass->exec, pyramid, 0, pyramid->levels);
         if (rf_cancelled(pass->exec) || pyramid->level[pyramid->levels].blur.at[0] == RF_NO_BLUR)
             return false;
-        rf_background_pull(pass->exec, pass->view, pyramid, 0, pyramid->levels);
+        rf_background_pull(pass->exec, pass->view, pyramid, 0, pyramid->levels, RF_NEVER_APART);
         if (i == 0)
             rf_pool_run(pass->exec->pool, complete_band, side, rf_bands(pass->view));
         side->complete = true;

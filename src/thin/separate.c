@@ -66,6 +66,17 @@ static void choose_splatted(const struct rf_thin_pass *t, int tx, int ty,
             choice->splat[i / 64] |= UINT64_C(1) << i % 64;
 }
 
+/* Gaussian noise of a tile spreads so many times as far as rf_bins has it. */
+enum { NOISE_SPREAD = 4 };
+
+/* Whether a tile holds one surface, of noise: what looks thin there is none. */
+static bool is_noisy(const struct rf_thin_pass *t, int tx, int ty)
+{
+    const struct rf_bins *bins = &t->bins[(size_t)ty * t->view->tiles_x + tx];
+
+    return bins->noise > 0 && NOISE_SPREAD * bins->noise >= bins->most - bins->least;
+}
+
 static void choose_band(void *context, int band, int worker)
 {
     const struct rf_thin_pass *t = context;
@@ -78,7 +89,7 @@ static void choose_band(void *context, int band, int worker)
         *choice = (struct rf_thin_choice){.splats = false};
         if (rf_thin_run_of(t, tx, band)->given)
             rf_choose_sides(t, tx, band, choice);
-        else if (!t->finds)
+        else if (!t->finds || is_noisy(t, tx, band))
             continue;
         else if (t->disc_scale)
             choose_splatted(t, tx, band, choice);

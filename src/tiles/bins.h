@@ -16,6 +16,7 @@ struct rf_bins {
     int16_t undersampled; /* largest |s| of a highlight narrower than the gaps between rays need */
     int16_t background_blur; /* blur of the hidden background in the middle of the tile */
     uint16_t brightest;      /* an upper bound of the light of either layer, as it is summed */
+    int16_t noise;           /* blurs vary so far from pixel to pixel; 0: the map is clean */
     bool subtracted;         /* highlights are subtracted from its light, highlights/subtract.c */
 };
 

@@ -64,11 +64,14 @@ void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float larg
 }
 
 /* Adds the blurs of a tile that reach so far. */
-static inline void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
+static inline void add_kept(struct rf_bins_in_reach *reach, const struct rf_bins *bins,
                             const struct rf_kept *kept)
 {
+    struct rf_bins *const sum = &reach->all;
+    uint64_t *word;
     const int least = bins->least, most = bins->most;
     const bool near = least < kept->low, far = most >= kept->high;
+    const bool noisy = bins->noise > 0;
 
     if (bins->brightest > sum->brightest)
         sum->brightest = bins->brightest;
@@ -78,21 +81,27 @@ static inline void add_kept(struct rf_bins *sum, const struct rf_bins *bins,
         sum->undersampled = bins->undersampled;
     if (!near && !far)
         return;
+    word = noisy ? sum->word : reach->sure;
     for (int k = 0; k < RF_BINS / 64; k++)
-        sum->word[k] |= bins->word[k] & kept->word[k];
+        word[k] |= bins->word[k] & kept->word[k];
+    if (noisy) {
+        reach->noise += bins->noise;
+        reach->noisy++;
+    }
     sum->least = (int16_t)rf_smaller(sum->least, near ? least : rf_larger(least, kept->high));
     sum->most = (int16_t)rf_larger(sum->most, far ? most : rf_smaller(most, kept->low - 1));
 }
 
 /* Collects those that reach it from single tiles. */
-static struct rf_bins collect_near(const struct rf_viewport *view, const struct rf_bins *bins,
-                                   const struct rf_reach *reach, int tx, int ty)
+static struct rf_bins_in_reach collect_near(const struct rf_viewport *view,
+                                            const struct rf_bins *bins,
+                                            const struct rf_reach *reach, int tx, int ty)
 {
     const int x0 = rf_larger(tx - reach->tiles, 0);
     const int x1 = rf_smaller(tx + reach->tiles, view->tiles_x - 1);
     const int y0 = rf_larger(ty - reach->tiles, 0);
     const int y1 = rf_smaller(ty + reach->tiles, view->tiles_y - 1);
-    struct rf_bins sum = {.least = INT16_MAX, .most = INT16_MIN};
+    struct rf_bins_in_reach sum = {.all = {.least = INT16_MAX, .most = INT16_MIN}};
 
     for (int y = y0; y <= y1; y++) {
         const struct rf_bins *row = &bins[(size_t)y * view->tiles_x];
@@ -145,12 +154,18 @@ void rf_join_blocks(const struct rf_viewport *view, const struct rf_bins *bins,
 
     for (int bx = 0; bx < across; bx++) {
         const struct rf_rect tiles = tiles_of(view, bx, row);
-        struct rf_bins sum = {.least = INT16_MAX, .most = INT16_MIN};
+        struct rf_bins_in_reach sum = {.all = {.least = INT16_MAX, .most = INT16_MIN}};
+        uint64_t clean = 0; /* bins of tiles without noise, with which the block has none */
 
         for (int y = tiles.y0; y < tiles.y1; y++)
             for (int x = tiles.x0; x < tiles.x1; x++)
                 add_kept(&sum, &bins[(size_t)y * view->tiles_x + x], &all);
-        blocks[(size_t)row * across + bx] = sum;
+        for (int k = 0; k < RF_BINS / 64; k++) {
+            sum.all.word[k] |= sum.sure[k];
+            clean |= sum.sure[k];
+        }
+        sum.all.noise = clean || !sum.noisy ? 0 : (int16_t)(sum.noise / sum.noisy);
+        blocks[(size_t)row * across + bx] = sum.all;
     }
 }
 
@@ -171,7 +186,7 @@ static const struct rf_kept *kept_from(const struct rf_reach *reach, int dx, int
     return &reach->table.far[n < RF_FAR_TILES ? n : RF_FAR_TILES - 1];
 }
 
-static void collect_block(struct rf_bins *sum, const struct rf_viewport *view,
+static void collect_block(struct rf_bins_in_reach *sum, const struct rf_viewport *view,
                           const struct rf_bins *bins, const struct rf_reach *reach, int tx, int ty,
                           struct rf_rect tiles)
 {
@@ -182,8 +197,9 @@ static void collect_block(struct rf_bins *sum, const struct rf_viewport *view,
 }
 
 /* Collects those that reach it from blocks, and from single tiles in the blocks near it. */
-static struct rf_bins collect_far(const struct rf_viewport *view, const struct rf_bins *bins,
-                                  const struct rf_reach *reach, int tx, int ty)
+static struct rf_bins_in_reach collect_far(const struct rf_viewport *view,
+                                           const struct rf_bins *bins, const struct rf_reach *reach,
+                                           int tx, int ty)
 {
     const int across = blocks_of_row(view), most = reach->tiles;
     const int left = in_block(view->x0), above = in_block(view->y0);
@@ -191,7 +207,7 @@ static struct rf_bins collect_far(const struct rf_viewport *view, const struct r
     const int x1 = (rf_smaller(tx + most, view->tiles_x - 1) + left) / RF_BLOCK;
     const int y0 = (rf_larger(ty - most, 0) + above) / RF_BLOCK;
     const int y1 = (rf_smaller(ty + most, view->tiles_y - 1) + above) / RF_BLOCK;
-    struct rf_bins sum = {.least = INT16_MAX, .most = INT16_MIN};
+    struct rf_bins_in_reach sum = {.all = {.least = INT16_MAX, .most = INT16_MIN}};
 
     for (int by = y0; by <= y1; by++)
         for (int bx = x0; bx <= x1; bx++) {
@@ -206,9 +222,13 @@ static struct rf_bins collect_far(const struct rf_viewport *view, const struct r
     return sum;
 }
 
-struct rf_bins rf_collect(const struct rf_viewport *view, const struct rf_bins *bins,
-                          const struct rf_reach *reach, int tx, int ty)
+struct rf_bins_in_reach rf_collect(const struct rf_viewport *view, const struct rf_bins *bins,
+                                   const struct rf_reach *reach, int tx, int ty)
 {
-    return reach->scale.unit ? collect_far(view, bins, reach, tx, ty)
-                             : collect_near(view, bins, reach, tx, ty);
+    struct rf_bins_in_reach sum = reach->scale.unit ? collect_far(view, bins, reach, tx, ty)
+                                                    : collect_near(view, bins, reach, tx, ty);
+
+    for (int k = 0; k < RF_BINS / 64; k++)
+        sum.all.word[k] |= sum.sure[k];
+    return sum;
 }

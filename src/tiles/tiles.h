@@ -32,6 +32,7 @@ struct rf_tile_plan {
     int highlight;      /* largest |s| of a highlight in reach, 1/256 pixel; 0: none is in reach */
     bool undersampled;  /* a highlight that is narrow beside the gaps of the rays is in reach */
     uint16_t brightest; /* brightest light of the tiles in reach, as in rf_bins */
+    int noise;          /* blurs that reach it vary so far from pixel to pixel, 1/256 pixel */
     struct rf_slab slab[RF_MAX_SLABS];
     bool joined[RF_MAX_SLABS]; /* slab k overlaps slab k - 1, and a test may be of both */
 };
@@ -93,9 +94,17 @@ void rf_add_bin(const struct rf_viewport *view, struct rf_bins *bins, struct rf_
 void rf_note_background_blur(const struct rf_viewport *view, struct rf_blur_q8 background_blur,
                              struct rf_bins *bins, int ty);
 
+/* The bins of all tiles that reach a tile. */
+struct rf_bins_in_reach {
+    struct rf_bins all;
+    uint64_t sure[RF_BINS / 64]; /* bins of the tiles without noise */
+    int64_t noise;               /* sum of that of the tiles with noise */
+    int noisy;                   /* number of these */
+};
+
 /* The bins of all tiles that reach tile (tx, ty). */
-struct rf_bins rf_collect(const struct rf_viewport *view, const struct rf_bins *bins,
-                          const struct rf_reach *reach, int tx, int ty);
+struct rf_bins_in_reach rf_collect(const struct rf_viewport *view, const struct rf_bins *bins,
+                                   const struct rf_reach *reach, int tx, int ty);
 
 /* Finds everything the rays of a tile need, from the bins of those in reach. */
 void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,

@@ -104,6 +104,12 @@ replug() {
         [ "$(field frames_out <replug.json)" -gt 5 ]
 }
 
+# A camera without a lens to focus says so.
+no_lens() {
+    ! live --camera "$1" --depth still-0-depth.pgm --autofocus once --frames 1 2>refused.txt &&
+        cat refused.txt && grep -q 'its lens does not move; leave it out' refused.txt
+}
+
 # Pulled out so that the node is gone, and put in again.
 rebind() {
     local driver=/sys/bus/platform/drivers/vivid
@@ -206,6 +212,7 @@ case $part in
         check vivid-output-read-back output
         check vivid-replugged replug
         check vivid-sink-replugged sink_replugged
+        check vivid-no-lens no_lens v4l2:0
         check vivid-no-permission no_permission
         check vivid-pulled-out rebind
         ;;
@@ -225,5 +232,6 @@ case $part in
         check vimc-formats libcamera_formats
         check vimc-refusals libcamera_refuses
         check vimc-own-loop libcamera_loop
+        check vimc-no-lens no_lens libcamera:0
         ;;
 esac

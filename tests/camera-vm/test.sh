@@ -27,7 +27,7 @@ part() {
     grep -q '^FAILED ' <<<"$log" || echo "FAILED camera-vm-$1: $ok tests of $2 ran"
     failed=1
 }
-part single 8
+part single 9
 CAMERA_VM_VIVID="n_devs=1 multiplanar=2 node_types=0x1" CAMERA_VM_VIMC=none part multi 1
 CAMERA_VM_LOOPBACK="devices=2 video_nr=0,1 max_buffers=4" CAMERA_VM_VIVID=none CAMERA_VM_VIMC=none \
     part loopback 3
@@ -35,6 +35,6 @@ if [ "${2-}" = --long ]; then
     CAMERA_VM_VIMC=none CAMERA_VM_TIMEOUT=3000 part cycles 1
 fi
 if "$build/platform/cli/refocus" --version | grep -q libcamera; then
-    CAMERA_VM_VIVID=none part libcamera 3
+    CAMERA_VM_VIVID=none part libcamera 4
 fi
 exit $failed

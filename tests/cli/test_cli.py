@@ -2,6 +2,7 @@
 """The refocus command: every option at and beyond its limits, every error line, no
 leftovers. Usage: test_cli.py REFOCUS [unittest arguments]"""
 import os
+import random
 import re
 import shutil
 import subprocess
@@ -45,7 +46,7 @@ class Usage(Case):
                       '--low-memory --parallax --region --jobs --format --resize --jpeg-quality --config --preset --settings --save-settings --strip --editable --no-editable --transfer --white -h --help --help-all',
             'depth': '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --full '
                      '--orient-depth --depth-edges --upsample --estimate --network --input-size --input-mean --input-scale '
-                     '--far-is-large --match --strokes --focal-stack --positions --reference --align --photo --stereo-file --side-by-side --view '
+                     '--far-is-large --match --strokes --focal-stack --positions --reference --align --order --photo --stereo-file --side-by-side --view '
                      '--focus-at --blur --json -h --help --help-all',
             'stack': '-o --output --photo --keep --camera --steps --range --average --settle --size '
                      '--dry-run --json -h --help --help-all',
@@ -69,8 +70,8 @@ class Usage(Case):
                     '--upsample --depth-edges --orient-depth --matte --strokes --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality '
                     '--aperture --blend --sigma --highlights --mirror --background --no-thin --fill --threads '
-                    '--cpu --json --config --preset --settings --size --fullscreen --seconds -h --help --help-all',
-            'serve': '--port --listen --max-upload --session-memory --upsample --depth-edges --max-side --max-pixels '
+                    '--cpu --json --config --preset --settings --size --fullscreen --seconds --page --font --dpi -h --help --help-all',
+            'serve': '--port --listen --live --depth --depth-unit --near --far --max-upload --session-memory --upsample --depth-edges --max-side --max-pixels '
                      '--raw-preview --max-memory --threads --cpu -h --help --help-all',
             'info': '--near --far --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --max-side --max-pixels --raw-preview --max-memory --json -h --help --help-all',
@@ -118,6 +119,9 @@ class Usage(Case):
         self.fails(2, '--bulr: unknown option; did you mean --blur?', *self.render('--bulr', '3'))
         self.fails(2, '--iter: unknown option; did you mean --iterations?',
                    *self.render('--iter', '3'))
+        shutil.copy('photo.ppm', '-x.ppm')
+        self.fails(2, '-x.ppm: unknown option; a file of this name is given as ./-x.ppm', 'render',
+                   '-x.ppm')
         self.fails(2, "-x: unknown option; 'refocus render --help-all' lists them",
                    *self.render('-x'))
         self.fails(2, '--focus: has no value; give D', *self.render('--focus'))
@@ -261,6 +265,35 @@ class Limits(Case):
                    '--grain, or leave it out', *self.render('--seed', '3'))
         self.succeeds(*self.render('--seed', '3', '--grain', '1'))
         self.succeeds(*self.render('--seed', '3', '--method', 'jittered'))
+        os.remove('out.ppm')
+
+    def test_grain_by_default(self):
+        noise = random.Random(5)
+        width, height = 160, 120
+
+        def picture(sigma, *options):
+            pixels = [min(max(round(120 + noise.gauss(0, sigma)), 0), 255)
+                      for i in range(width * height)]
+            with open('noisy.ppm', 'wb') as f:
+                f.write(b'P6 %d %d 255\n' % (width, height) +
+                        bytes(v for v in pixels for c in range(3)))
+            with open('noisy.pgm', 'wb') as f:
+                f.write(b'P5 %d %d 255\n' % (width, height) +
+                        bytes(40 if i % width < 80 else 200 for i in range(width * height)))
+            out = []
+            for more in [], ['--grain', '1'], ['--grain', 'off'], ['--grain', '0']:
+                self.succeeds('render', 'noisy.ppm', '--depth', 'noisy.pgm', '--focus', '1',
+                              '--blur', '12', *more, '-o', 'out.ppm')
+                with open('out.ppm', 'rb') as f:
+                    out.append(f.read())
+            self.assertEqual(out[0], out[1])
+            self.assertEqual(out[2], out[3])
+            return out[0] != out[2]
+        self.assertTrue(picture(4))
+        self.assertFalse(picture(0.5))
+        for name in 'noisy.ppm', 'noisy.pgm':
+            os.remove(name)
+        self.succeeds(*self.render())
         # a file of settings may hold what it likes
         self.succeeds(*self.render('--method', 'search', '--iterations', '1', '--save-settings',
                                    's.json'))
@@ -408,9 +441,10 @@ class Limits(Case):
 class Failures(Case):
     def test_inputs(self):
         for command, out in (('render', 'out.ppm'), ('depth', 'out.png'), ('depth', 'out.pgm')):
-            self.fails(1, 'photo.ppm: it carries no depth; give a depth map to --depth or '
-                       "MODEL.onnx to --estimate, or make a map by 'refocus depth PHOTO -o "
-                       "MAP.png' of a stereo pair or --strokes FILE.json", command, 'photo.ppm', '-o', out)
+            self.fails(1, 'photo.ppm: it carries no depth; give a depth map to --depth, MODEL.onnx '
+                       'to --estimate or the other picture of a stereo pair to --stereo, or make a '
+                       "map by 'refocus depth PHOTO -o MAP.png' with --focal-stack or --strokes",
+                       command, 'photo.ppm', '-o', out)
         self.fails(1, re.compile('^refocus: missing.jpg: .*No such file'), 'render',
                    'missing.jpg', '-o', 'out.ppm')
         self.fails(1, re.compile('^refocus: missing.png: .*No such file'), 'render',

@@ -39,22 +39,16 @@ class OfThePhoto(Controls):
         self.succeeds('render', 'photo.ppm', '--depth', depth, '-o', 'out.ppm', '--blur', '6', *arguments)
         return pictures.read_bytes('out.ppm')
 
-    def test_scatter_by_metres(self):
-        """1 / z^2 by near and far, where they are metres: 0.5 and 2 m are a ratio of 4."""
-        scatter = ('--method', 'scatter', '--focus', '0.4')
-        of_metres = self.of('metres.pfm', *scatter, '--depth-unit', 'm')
-        self.same(of_metres, self.of('metres.pfm', *scatter, '--depth-unit', 'm', '--depth-ratio', '4'))
-        self.differs(of_metres,
-                     self.of('metres.pfm', *scatter, '--depth-unit', 'm', '--depth-ratio', '1'))
-        relative = self.of('depth.pgm', *scatter)
-        self.same(relative, self.of('depth.pgm', *scatter, '--depth-ratio', '1'))
-        self.same(self.of('depth.pgm', *scatter, '--near', '0.5', '--far', '5'),
-                  self.of('depth.pgm', *scatter, '--depth-ratio', '10'))
-        self.same(self.of('depth.pgm', *scatter, '--near', '0.5', '--far', 'inf'),
-                  self.of('depth.pgm', *scatter, '--depth-ratio', '1000'))
+    def test_scatter_counts_all_depths_the_same(self):
+        """1 / z^2 where it is asked for alone, be the depth in metres or not."""
+        for depth in (('metres.pfm', '--depth-unit', 'm'), ('depth.pgm', '--near', '0.5', '--far', '5')):
+            scatter = (*depth, '--method', 'scatter', '--focus', '0.4')
+            unweighted = self.of(*scatter)
+            self.same(unweighted, self.of(*scatter, '--depth-ratio', '1'))
+            self.differs(unweighted, self.of(*scatter, '--depth-ratio', '4'))
         scores = self.reports('compare', 'photo.ppm', '--depth', 'metres.pfm', '--depth-unit', 'm',
                               '--reference', 'out.ppm', '--blur', '6', '--focus', '0.4', '--methods',
-                              'scatter,scatter:depth-ratio=4,scatter:depth-ratio=1')['methods']
+                              'scatter,scatter:depth-ratio=1,scatter:depth-ratio=4')['methods']
         self.assertEqual(scores[1]['rmse'], scores[2]['rmse'])
         self.assertNotEqual(scores[1]['rmse'], scores[3]['rmse'])
 
@@ -218,7 +212,8 @@ class Bokeh(Controls):
                    'a number from 0 to 0.9')
         self.check('--fringe', ['-0.5', '0.5'], ['-0.51', '0.51'] + nonsense,
                    'a number from -0.5 to 0.5')
-        self.check('--grain', ['0', '4'], ['-0.1', '4.1'] + nonsense, 'a number from 0 to 4')
+        self.check('--grain', ['0', '4', 'off'], ['-0.1', '4.1'] + nonsense,
+                   "a number from 0 to 4, or 'off'")
         self.check('--highlight-stops', ['0', '4', '2.5'], ['-1', '4.1'] + nonsense,
                    'a number from 0 to 4')
         self.check('--highlights', ['1', '16', 'off', 'auto'], ['0', '0.9', '16.1'] + nonsense,

@@ -131,6 +131,11 @@ class DepthInputs(Case):
             self.succeeds('depth', name, '-o', 'made.pgm')
         for name in '4to3.pgm', 'few.pgm':
             self.succeeds('depth', 'photo.ppm', '--depth', name, '--full', '-o', 'made.pgm')
+        pictures.pgm('5to4.pgm', 40, 32, lambda x, y: x)
+        result = self.run_it('depth', 'photo.ppm', '--depth', '5to4.pgm', '--full', '-o', 'made.pgm')
+        self.assertEqual((result.returncode, result.stderr),
+                         (0, 'refocus: 5to4.pgm: its 40x32 samples are stretched to the shape of the '
+                          'photo, 48x32\n'))
         pictures.ppm('wide.ppm', 64, 32, lambda x, y: (x, y, 0))
         pictures.pgm('square.pgm', 32, 32, lambda x, y: x)
         self.succeeds('depth', 'wide.ppm', '--depth', 'square.pgm', '--full', '-o', 'made.pgm')
@@ -152,6 +157,9 @@ class DepthInputs(Case):
         self.succeeds('depth', 'photo.ppm', '--depth', 'upright.pgm', '-o', 'made.pgm',
                       '--orient-depth', '0')
         self.assertEqual(pictures.read_pnm('made.pgm'), wanted)
+        self.refused('upright.pgm', 'its 48x32 samples lie on their side once --orient-depth has '
+                     'turned them; leave that out, or give 0 or 180', 'photo.ppm', '--depth',
+                     'upright.pgm', '--orient-depth', '90')
         # a photo that lies on its side by EXIF, and a map that lies as its pixels are stored
         pictures.ppm('stored.ppm', H, W, lambda x, y: (9 * x & 255, 5 * y & 255, 99))
         self.succeeds('render', 'stored.ppm', '--depth', '90.pgm', '--blur', '0', '-o', 'side.jpg')

@@ -498,7 +498,8 @@ class Editable(Keep):
                               'leave --region and --view out')):
             self.fails(2, '--editable: ' + why, 'render', 'in.jpg', '--depth', 'depth.pgm',
                        '-o', 'no.jpg', '--editable', *options)
-        self.fails(2, '--editable: it is for JPEG; end the name of the output in .jpg',
+        self.fails(2, '--editable: it is for JPEG and HEIC; end the name of the output in .jpg or '
+                   '.heic',
                    'render', 'in.jpg', '--depth', 'depth.pgm', '-o', 'no.png', '--editable')
         pictures.pfm_colour('photo.pfm', W, H, lambda x, y: (0.5,) * 3)
         self.fails(1, 'photo.pfm: --editable is for photos that are not of floats, by a build with '

@@ -38,10 +38,13 @@ SOURCES = {'y4m 4:2:0': ('y4m:420.y4m', 'YUV420'), 'y4m 4:2:2': ('y4m:422.y4m', 
 
 # As --out's help has them: the names to try, and how they are refused.
 RAW = 'own', 'NV12', 'NV21', 'YUV420', 'YUYV', 'UYVY', 'RGB24', 'BGR24', 'RGBX', 'BGRX'
-SINKS = {'window': ['window'], 'v4l2:/dev/video9': ['v4l2:/dev/none'], 'y4m:FILE': ['y4m:out.y4m'],
+SINKS = {'window': ['window'], 'v4l2:/dev/video9': ['v4l2:/dev/none'],
+         'pipewire:[NAME] (a camera that browsers list)': ['pipewire:none'], 'y4m:FILE': ['y4m:out.y4m'],
          'raw:FILE[,FORMAT]': ['raw:out.raw'] + ['raw:out.raw,' + name for name in RAW],
          'frames-%04d.png': ['out-%d.png', 'out-%d.jpg', 'out-%d.ppm'], 'null': ['null']}
-REFUSED_SINKS = {'v4l2:/dev/none': (1, 'it is not there')}
+REFUSED_SINKS = {'v4l2:/dev/none': (1, 'it is not there'),
+                 'pipewire:none': (1, 'no PipeWire runs for this user')}
+os.environ['PIPEWIRE_REMOTE'] = 'no such socket'
 
 HAS_OPENCV = b'OpenCV' in subprocess.run([REFOCUS, '--version'], capture_output=True).stdout
 BASE = ['--depth', 'raw:depth.raw,Z16,8x6,30', '--json']
@@ -71,7 +74,7 @@ GROUPS = [
     [*FEW, '--bokeh', 'vintage', '--edge', '0.5', '--edge-before', '0.2', '--cat-eye', '0.3',
      '--fringe', '0.1', '--grain', '1', '--seed', '3', '--highlight-stops', '2', '--star', '4',
      '--star-length', '5', '--star-angle', '10', '--star-strength', '0.5', '--focus-distance', '2'],
-    [*FEW, '--loop', '--duration', '0.05'],
+    [*FEW, '--loop', '--duration', '0.05', '--focus-rectangle', '2,2,9,6'],
     [*FEW, '--upsample', 'joint-bilateral' if HAS_OPENCV else 'core', '--near', '1', '--focus',
      '0.7'],
     [*FEW, '--method', 'search', '--iterations', '1', '--mirror', '--background', '--steady',
@@ -90,6 +93,7 @@ METHODS = [m for m in method_names(REFOCUS) if m not in ('sweep', 'search')]
 WITHOUT_RAYS = set(METHODS) - set(methods_with_rays(REFOCUS))
 # Options that nothing here takes: an exit code and words, or what standard output begins with.
 ALONE = {'--dmabuf': (2, 'it is for V4L2 cameras'),
+         '--autofocus=off': (1, 'its lens does not move; leave it out'),
          '--focus-plane=1,1,5,5,9,1': (2, 'changes in live'), '--list': 'FORMAT', '--help': 'usage:',
          '--help-all': 'usage:'}
 IN_BASE = '--camera', '--depth', '--out', '--blur', '--json'
@@ -275,12 +279,14 @@ def check(case):
     return ['%s -> %s %s: %s' % (camera, out, ' '.join(option), why) for option, why in named]
 
 
-def all_cases(has_jpeg, has_window, has_v4l2):
+def all_cases(has_jpeg, has_window, version):
     refused = dict(REFUSED_SINKS)
     if not has_window:
         refused['window'] = (1, 'this build has no window')
-    if not has_v4l2:
+    if b'v4l2' not in version:
         refused['v4l2:/dev/none'] = (1, 'this build has no v4l2')
+    if b'pipewire' not in version:
+        refused['pipewire:none'] = (1, 'this build has no pipewire')
     outs = [out for names in SINKS.values() for out in names if has_jpeg or '.jpg' not in out]
     inputs = [('raw:%s.raw,%s,%dx%d,30' % (form, form, WIDTH, HEIGHT), form)
               for form, size in FORMATS.items() if size]
@@ -327,7 +333,7 @@ def main():
             run(['--camera', 'file:in-0.ppm', '--depth', 'raw:depth.raw,Z16,8x6,30', '--frames',
                  '1', '--out', 'made-%d.jpg'], '.')
             shutil.move('made-0.jpg', 'in.jpg')
-        cases = list(all_cases(has_jpeg, 'RF_WINDOW' in os.environ, b'v4l2' in version))
+        cases = list(all_cases(has_jpeg, 'RF_WINDOW' in os.environ, version))
         if SLOW > 1:  # of a build with sanitizers some of each
             cases = cases[::7]
         failures = list(check_tables()) + list(check_alone())

@@ -96,9 +96,9 @@ class Many(Case):
             self.assertEqual(self.renders(2, 2, '-o', 'out/{n}.ppm', *jobs, photos=photos,
                                           lines=[known, gone]), '')
             self.assertEqual(self.written(), ['2.ppm', '4.ppm'])
-        pictures.ppm('small.ppm', 20, 20, lambda x, y: (x, y, 9))
+        pictures.ppm('small.ppm', 21, 14, lambda x, y: (x, y, 9))
         self.renders(1, 1, '-o', 'out', '--focus-at', '30,30', photos=['a.ppm', 'small.ppm'], lines=[
-            'refocus: small.ppm: --focus-at: 30,30 lies outside of small.ppm; give 0,0 to 19,19'])
+            'refocus: small.ppm: --focus-at: 30,30 lies outside of small.ppm; give 0,0 to 20,13'])
         report = json.loads(self.renders(2, 1, '-o', 'out', '--json', lines=[known],
                                          photos=['a.ppm', 'bad.ppm', 'c.ppm']))
         self.assertEqual((report['rendered'], report['failed']), (2, 1))
@@ -180,7 +180,7 @@ class Many(Case):
     @staticmethod
     def large(name):
         with open(name + '.ppm', 'wb') as file:
-            file.write(b'P6 480 480 255 ' + bytes(range(240)) * 2880)
+            file.write(b'P6 600 400 255 ' + bytes(range(240)) * 3000)
         return name + '.ppm'
 
     @staticmethod

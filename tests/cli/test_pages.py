@@ -105,7 +105,11 @@ class Pages(Case):
     @unittest.skipUnless(shutil.which('fish'), 'there is no fish')
     def test_fish(self):
         with open('refocus.fish', 'w', encoding='utf-8') as file:
-            file.write(self.succeeds('completion', 'fish'))
+            text = self.succeeds('completion', 'fish')
+            file.write(text)
+        # An option says what it does, not only the methods that it is for.
+        self.assertRegex(text, r"-l highlights .* -d 'sweep, search: light given back")
+        self.assertNotRegex(text, r"-d '(sweep|search|diffusion|scatter)'")
         lines = ['refocus ' + name + ' --' for name in self.commands]
         lines += ['refocus ', 'refocus render --method s', 'refocus help p']
         said = subprocess.run(['fish', '--no-config', '-c', 'source refocus.fish; ' + '; '.join(
@@ -114,8 +118,9 @@ class Pages(Case):
         offered = [re.findall(r'(?m)^([\w-]+)', text) for text in said]
         for name, words in zip(self.commands, offered):
             self.assertEqual(set(words), set(self.options(name)), name)
-        self.assertEqual(sorted(offered[9]), sorted(self.commands + self.words))
-        self.assertEqual(offered[10:12], [['scatter', 'search', 'sweep'], ['pull']])
+        first, *others = offered[len(self.commands):-1]
+        self.assertEqual(sorted(first), sorted(self.commands + self.words))
+        self.assertEqual(others, [['scatter', 'search', 'sweep'], ['pull']])
         for name in os.listdir('.'):  # fish makes folders of its own in HOME
             if name.startswith('.'):
                 shutil.rmtree(name)

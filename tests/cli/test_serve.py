@@ -1,183 +1,16 @@
 #!/usr/bin/env python3
-"""The command `refocus serve`, over HTTP: what it answers, what it refuses, and that nobody's
-request is felt by others. Usage: test_serve.py REFOCUS [unittest arguments]"""
-import atexit
-import concurrent.futures
-import http.client
+"""The command `refocus serve`, over HTTP: what it answers and what it refuses. Usage: test_serve.py
+REFOCUS [unittest arguments]"""
 import json
 import os
 import random
-import shutil
-import signal
-import socket
 import subprocess
-import time
 import unittest
-from urllib.parse import quote, urlsplit
+from urllib.parse import quote
 
 import pictures
-from case import Case, REFOCUS
-
-HEADERS = {
-    'Content-Security-Policy':
-        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
-        "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
-    'X-Content-Type-Options': 'nosniff', 'Referrer-Policy': 'no-referrer',
-    'Cache-Control': 'no-store'}
-WIDTH, HEIGHT = 160, 120
-
-
-class Answer:
-    def __init__(self, status, headers, body):
-        self.status, self.headers, self.body = status, headers, body
-
-    @property
-    def json(self):
-        return json.loads(self.body)
-
-
-class Server:
-    """A server and the requests that a page would send."""
-    def __init__(self, *arguments):
-        self.process = subprocess.Popen([REFOCUS, 'serve', *arguments, '--port', '0'], text=True,
-                                        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                        stderr=subprocess.PIPE)
-        atexit.register(self.process.kill)  # where a test has failed
-        self.link = self.process.stdout.readline().strip()
-        parts = urlsplit(self.link)
-        self.port, self.path, self.host = parts.port, parts.path, parts.netloc
-
-    def connect(self):
-        return http.client.HTTPConnection('127.0.0.1', self.port, timeout=300)
-
-    def ask(self, method, name, body=None, path=None, **headers):
-        connection = self.connect()
-        if body is not None and not isinstance(body, bytes):
-            body = json.dumps(body).encode()
-        headers = {key.replace('_', '-'): value for key, value in headers.items()}
-        connection.request(method, (path or self.path) + name, body, headers)
-        answer = connection.getresponse()
-        result = Answer(answer.status, answer.headers, answer.read())
-        connection.close()
-        return result
-
-    def get(self, name, **headers):
-        return self.ask('GET', name, **headers)
-
-    def post(self, name, body=None, **headers):
-        return self.ask('POST', name, body if body is not None else b'', **headers)
-
-    def open(self, photo):
-        return self.post('open?photo=' + quote(photo)).json
-
-    def picture(self, session, request, settings, size=0, more=''):
-        return self.post('picture?session=%s&size=%d&request=%d%s' %
-                         (session['session'], size, request, more), settings)
-
-    def raw(self, data):
-        """Send bytes as they are; the first bytes of the answer, b'' where there is none."""
-        with socket.create_connection(('127.0.0.1', self.port), timeout=120) as line:
-            try:
-                line.sendall(data)
-                return line.recv(65536)
-            except ConnectionError:
-                return b''
-
-    def children(self):
-        """Processes of open photos."""
-        path = '/proc/%d/task/%d/children' % (self.process.pid, self.process.pid)
-        return [int(pid) for pid in pictures.read_bytes(path).split()]
-
-    def files(self):
-        return len(os.listdir('/proc/%d/fd' % self.process.pid))
-
-    def close(self):
-        children = self.children()
-        self.process.send_signal(signal.SIGTERM)
-        status = self.process.wait(120)
-        words = self.process.stderr.read()
-        self.process.stdout.close()
-        self.process.stderr.close()
-        return status, words, [pid for pid in children if os.path.exists('/proc/%d' % pid)]
-
-
-def until(test):
-    """Wait until something holds, for as long as a slow machine may take."""
-    for _ in range(6000):
-        try:
-            if test():
-                return True
-        except (ConnectionError, http.client.HTTPException):
-            pass
-        time.sleep(0.02)
-    return False
-
-
-def state(folder):
-    return {name: (os.lstat(os.path.join(folder, name)).st_mtime_ns,
-                   os.lstat(os.path.join(folder, name)).st_size) for name in os.listdir(folder)}
-
-
-class Serving(Case):
-    """A folder with a photo that has depth, one that has none, and what is not for others."""
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        noise = random.Random(3)
-        codes = [noise.randrange(256) for _ in range(40 * 30)]
-        pictures.ppm('noise.ppm', WIDTH, HEIGHT,
-                     lambda x, y: (codes[y // 4 * 40 + x // 4], (3 * x) & 255, (2 * y) & 255))
-        pictures.pgm('map.pgm', WIDTH // 2, HEIGHT // 2,
-                     lambda x, y: 220 if 20 < x < 50 and y > 14 else 40 + y // 2)
-        os.mkdir('photos')
-        for arguments in (('render', 'noise.ppm', '--depth', 'map.pgm', '--blur', '0', '-o',
-                           'photos/none.jpg', '--no-editable'),
-                          ('depth', 'photos/none.jpg', '--depth', 'map.pgm', '-o', 'photos/deep é.jpg',
-                           '--near', '1', '--far', '8')):
-            subprocess.run([REFOCUS, *arguments], check=True, stdout=subprocess.DEVNULL)
-        shutil.copy('noise.ppm', 'photos/plain.ppm')
-        shutil.copy('noise.ppm', 'secret.ppm')
-        with open('photos/damaged.jpg', 'wb') as file:
-            file.write(pictures.read_bytes('photos/none.jpg')[:300] + bytes(200))
-        os.symlink('../secret.ppm', 'photos/link.ppm')
-        os.symlink('/etc/hostname', 'photos/host.jpg')
-        os.mkfifo('photos/pipe.jpg')
-        os.mkdir('photos/folder.jpg')
-        for name in 'notes.txt', '.hidden.jpg':
-            with open('photos/' + name, 'w') as file:
-                file.write('private')
-        cls.before = state('photos')
-        cls.server = Server('photos')
-
-    @classmethod
-    def tearDownClass(cls):
-        status = cls.server.close()
-        left = state('photos') == cls.before
-        super().tearDownClass()
-        if status != (0, '', []) or not left:
-            raise AssertionError('the server ended with %s, its folder %s' % (status, left))
-
-    def opened(self, photo='deep é.jpg'):
-        """A session; the first settings are "first", in pixels of blur "settings"."""
-        session = self.server.open(photo)
-        self.addCleanup(self.server.post, 'close?session=' + session['session'])
-        session['first'] = dict(session['settings'])
-        if session['settings'].pop('f-number', None):
-            session['settings']['blur'] = 6
-        return session
-
-    def refused(self, status, words, answer):
-        self.assertEqual(answer.status, status, answer.body[:300])
-        self.assertEqual(set(answer.json), {'error'})
-        self.assertRegex(answer.json['error'], words)
-
-    def rendered(self, settings, *options, photo='photos/deep é.jpg', ending='jpg'):
-        """The file that the command makes of a photo with settings."""
-        with open('settings.json', 'w') as file:
-            json.dump(dict(settings, refocus=1), file)
-        subprocess.run([REFOCUS, 'render', photo, '--settings', 'settings.json', '-o',
-                        'rendered.' + ending, *options], check=True, stderr=subprocess.DEVNULL)
-        return pictures.read_bytes('rendered.' + ending)
+from case import REFOCUS
+from serving import HEADERS, HEIGHT, WIDTH, Serving, until
 
 
 class Answers(Serving):
@@ -331,6 +164,44 @@ class Answers(Serving):
             out.write(saved.body)
         report = json.loads(self.succeeds('info', 'saved.jpg', '--json'))
         self.assertEqual(report['depth']['source'], 'gdepth')
+
+    def test_drafts(self):
+        # A stroke under the finger is as good as the stroke that it becomes, and then is gone.
+        session = self.opened('none.jpg')
+        ask = lambda name, body=None: self.server.post('%s?session=%s' % (name, session['session']),
+                                                       body)
+        picture = lambda request: self.server.picture(session, request,
+                                                      {'focus': 0.95, 'blur': 9}).body
+        brush = lambda points: {'kind': 'brush', 'radius': 12, 'points': points, 'disparity': 0.95}
+        short, long = brush([[40, 40]]), brush([[40, 40], [60, 50], [90, 60]])
+        before = picture(1)
+        first, second = ask('draft', short).json, ask('draft', long).json
+        self.assertEqual((first['strokes'], second['strokes']), (1, 1))
+        self.assertGreater(sum(second['selection']['runs'][1::2]),
+                           2 * sum(first['selection']['runs'][1::2]))
+        selection = first['selection']
+        self.assertEqual((selection['width'], selection['height']), (WIDTH, HEIGHT))
+        inside = {(i % WIDTH, i // WIDTH) for start, length in
+                  zip(selection['runs'][::2], selection['runs'][1::2])
+                  for i in range(start, start + length)}
+        self.assertEqual(inside, {(x, y) for x in range(WIDTH) for y in range(HEIGHT)
+                                  if (x - 40) ** 2 + (y - 40) ** 2 <= 144})
+        drafted = picture(2)
+        self.assertNotEqual(drafted, before)
+        self.refused(400, 'stroke: ', ask('draft', {'kind': 'other'}))
+        self.assertTrue(picture(3) == before)
+        ask('draft', short)
+        self.assertEqual(ask('stroke', long).json, {'strokes': 1, 'undone': 0})
+        self.assertTrue(picture(4) == drafted)
+        ask('draft', {'kind': 'all', 'disparity': 0.5})
+        self.assertEqual(ask('draft', {}).json, {'strokes': 1, 'undone': 0, 'selection': None})
+        ask('draft', short)
+        self.assertEqual(ask('undo').json, {'strokes': 0, 'undone': 1})
+        ask('draft', short)
+        self.assertEqual(len(self.server.get('strokes?session=' + session['session'])
+                             .json['strokes']), 0)
+        self.assertEqual(ask('redo').json, {'strokes': 1, 'undone': 0})
+        self.assertTrue(picture(5) == drafted)
 
     def test_pull(self):
         session = self.opened()
@@ -526,267 +397,6 @@ class Refusals(Serving):
         answer = self.server.raw(('POST %sTransfer-Encoding: chunked\r\n\r\n' % head).encode() +
                                  9 * chunk + b'0\r\n\r\n')
         self.assertRegex(answer, rb'^HTTP/1.1 413 ')
-
-
-class Limits(Serving):
-    def test_large_uploads(self):
-        server = Server('--max-upload', '1')
-        path = '%supload?name=x.ppm HTTP/1.1\r\nHost: %s\r\n' % (server.path, server.host)
-        answer = server.raw(('POST %sContent-Length: 1048577\r\n\r\n' % path).encode())
-        self.assertRegex(answer, rb'^HTTP/1.1 413 ')
-        body = b'P6\n590 590\n255\n' + bytes(590 * 590 * 3)
-        self.assertEqual(server.post('upload?name=x.ppm', body).status, 200)
-        chunk = b'10000\r\n' + bytes(1 << 16) + b'\r\n'
-        answer = server.raw(('POST %sTransfer-Encoding: chunked\r\n\r\n' % path).encode() +
-                            17 * chunk + b'0\r\n\r\n')
-        self.assertRegex(answer, rb'^HTTP/1.1 413 ')
-        self.assertEqual(server.get('photos').json, {'folder': False, 'photos': [], 'open': None,
-                                                     'upload_limit': 1 << 20})
-        self.assertEqual(server.close(), (0, '', []))
-
-    def test_one_photo(self):
-        server = Server('photos/deep é.jpg')
-        listed = server.get('photos').json
-        self.assertEqual((listed['folder'], listed['open']), (False, 'deep é.jpg'))
-        self.assertEqual([photo['name'] for photo in listed['photos']], ['deep é.jpg'])
-        self.assertTrue(server.open('deep é.jpg')['depth'])
-        self.assertEqual(server.post('open?photo=none.jpg').status, 404)
-        self.assertEqual(server.close(), (0, '', []))
-
-    def test_slow_clients(self):
-        """They are hung up on, whatever they trickle, and others do not wait for them."""
-        open_ = self.opened()
-        files = self.server.files()
-        head = '%s %s HTTP/1.1\r\nHost: %s\r\n'
-        path = self.server.path
-        begins = (b'', b'G', (head % ('GET', path, self.server.host)).encode(),
-                  (head % ('POST', path + 'focus?session=' + open_['session'], self.server.host) +
-                   'Content-Length: 1000\r\n\r\n').encode(),
-                  (head % ('POST', path + 'focus?session=' + open_['session'], self.server.host) +
-                   'Transfer-Encoding: chunked\r\n\r\n').encode())
-        lines = [socket.create_connection(('127.0.0.1', self.server.port)) for _ in begins]
-        for line, begin in zip(lines, begins):
-            line.sendall(begin)
-            line.setblocking(False)
-        waiting = set(lines[1:])
-        while waiting:  # until the test's own time is over
-            self.assertEqual(self.server.get('photos').status, 200)
-            time.sleep(0.2)
-            for line in list(waiting):
-                try:
-                    line.send(b'1\r\n1\r\n' if line is lines[4] else b'x')
-                    if line.recv(1000) == b'':
-                        waiting.remove(line)
-                except BlockingIOError:
-                    pass
-                except ConnectionError:
-                    waiting.remove(line)
-        lines[0].setblocking(True)
-        self.assertEqual(lines[0].recv(1), b'')
-        for line in lines:
-            line.close()
-        self.assertTrue(until(lambda: self.server.files() <= files))
-
-    def test_many_connections(self):
-        """One address has a share of the connections, and gives it back."""
-        files = self.server.files()
-        lines = [socket.create_connection(('127.0.0.1', self.server.port)) for _ in range(200)]
-        self.assertTrue(until(lambda: self.server.files() > files + 20))
-        self.assertLess(self.server.files(), files + 30)
-        for line in lines:
-            line.close()
-        self.assertTrue(until(lambda: self.server.files() <= files))
-        self.assertEqual(self.server.get('photos').status, 200)
-
-    def test_newest_wins(self):
-        pictures_ = 'P6\n2400 1800\n255\n'.encode() + os.urandom(2400 * 1800 * 3)
-        session = self.server.post('upload?name=large.ppm', pictures_).json
-        self.addCleanup(self.server.post, 'close?session=' + session['session'])
-        self.server.post('stroke?session=' + session['session'],
-                         {'kind': 'all', 'gradient': [[0, 0, 0], [2400, 0, 1]]})
-        settings = {'focus': 0.5, 'blur': 40, 'quality': 'best'}
-        with concurrent.futures.ThreadPoolExecutor(8) as pool:
-            asked = []
-            for request in range(1, 7):
-                asked.append(pool.submit(self.server.picture, session, request, settings))
-                time.sleep(0.05)
-            statuses = [one.result().status for one in asked]
-        self.assertEqual(statuses[-1], 200)
-        self.assertEqual(set(statuses[:-1]) - {200, 409}, set())
-        self.assertIn(409, statuses)
-
-        def is_replaced(request):
-            """Whether the focus came while the picture was under way; it may come before."""
-            large = pool.submit(self.server.picture, session, request,
-                                dict(settings, focus=request % 7 / 7))
-            time.sleep(0.005 * (request % 20))
-            focus = self.server.post('focus?session=' + session['session'], {'x': 0.5, 'y': 0.5})
-            self.assertEqual(focus.status, 200)
-            return large.result().status == 409
-
-        with concurrent.futures.ThreadPoolExecutor(2) as pool:
-            self.assertTrue(any(is_replaced(request) for request in range(10, 70)))
-
-    def test_eight_clients(self):
-        settings = {'focus': 0.8, 'blur': 10}
-        expected = self.rendered(settings, '--strip')
-
-        def client(number):
-            session = self.server.open('deep é.jpg')
-            bodies = [self.server.picture(session, request, dict(settings, blur=2 * number + 1),
-                                          more='&quick=1').body[:2] for request in range(1, 10)]
-            full = self.server.picture(session, 10, settings)
-            self.server.post('close?session=' + session['session'])
-            return set(bodies) == {b'\xff\xd8'} and full.body == expected
-
-        with concurrent.futures.ThreadPoolExecutor(8) as pool:
-            self.assertEqual(list(pool.map(client, range(8))), 8 * [True])
-
-    def test_sessions_are_dropped(self):
-        sessions = [self.server.open('none.jpg') for _ in range(17)]
-        self.refused(410, 'ended', self.server.picture(sessions[0], 1, {}))
-        self.assertEqual(self.server.picture(sessions[16], 1, {}).status, 200)
-        for session in sessions:
-            self.server.post('close?session=' + session['session'])
-
-    @unittest.skipIf('REFOCUS_BRIEF' in os.environ, 'sanitizers take memory of their own')
-    def test_memory(self):
-        server = Server('photos', '--session-memory', '64')
-        body = b'P6\n4000 3000\n255\n' + bytes(4000 * 3000 * 3)
-        self.assertEqual(server.open('none.jpg')['depth'], False)
-        answer = server.post('upload?name=large.ppm', body)
-        if answer.status == 200:
-            answer = server.picture(answer.json, 1, {})
-        # It may have been dropped while nobody asked for anything: then it has ended.
-        if answer.status == 410:
-            self.refused(410, 'ended', answer)
-        else:
-            self.refused(503, 'needs more memory', answer)
-        self.assertEqual(server.open('none.jpg')['depth'], False)
-        self.assertEqual(server.close(), (0, '', []))
-
-    def test_killed_process(self):
-        kept, lost = self.opened(), self.server.open('none.jpg')
-        pid = max(self.server.children())
-        os.kill(pid, signal.SIGKILL)
-        self.assertTrue(until(lambda: pid not in self.server.children()))
-        self.refused(410, 'ended|failed', self.server.picture(lost, 1, {}))
-        self.assertEqual(self.server.picture(kept, 1, {}).status, 200)
-
-    def test_hostile_requests(self):
-        noise = random.Random(7)
-        session = self.opened()
-        token = self.server.path
-        host = self.server.host
-        files = self.server.files()
-        words = [token, '/', 'photos', 'open?photo=', '..%2f', '%00', 'thumbnail?photo=none.jpg',
-                 'picture?session=' + session['session'], '&size=9', '&request=5', '\xff', ' ', '%',
-                 'focus?session=', session['session'], '{"x": 0.5', ':', '\0', 'A' * 3000]
-
-        def request():
-            kind = noise.randrange(5)
-            if kind == 0:
-                return bytes(noise.randrange(256) for _ in range(noise.randrange(1, 400)))
-            name = token + ''.join(noise.choice(words) for _ in range(noise.randrange(4)))
-            lines = ['%s %s HTTP/1.%d' % (noise.choice(('GET', 'POST', 'PUT', 'get', '')), name,
-                                          noise.randrange(3)),
-                     'Host: ' + noise.choice((host, host, host, 'x', '')),
-                     noise.choice(('Content-Length: 5', 'Content-Length: -1', 'Content-Length: 5x',
-                                   'Transfer-Encoding: chunked', 'Origin: http://x', 'Expect: 100-continue',
-                                   'Content-Length: 99999999999999999999', 'X: ' + 'y' * 9000,
-                                   'Cookie: a=b', 'Transfer-Encoding: x'))]
-            text = '\r\n'.join(lines) + noise.choice(('\r\n\r\n', '\n\n', '\r\n', ''))
-            body = noise.choice(('', 'abcde', '5\r\nabcde\r\n0\r\n\r\n', 'ffffffffffffffff\r\n', '-1\r\n',
-                                 '{}'))
-            data = bytearray((text + body).encode('latin-1'))
-            for _ in range(noise.randrange(3)):
-                data[noise.randrange(len(data))] = noise.randrange(256)
-            return bytes(data)
-
-        for _ in range(1000):
-            with socket.create_connection(('127.0.0.1', self.server.port), timeout=120) as line:
-                line.sendall(request())
-                line.settimeout(0.01)  # for an answer, where it is whole
-                try:
-                    line.recv(1000)
-                except OSError:
-                    pass
-        self.assertTrue(until(lambda: self.server.get('photos').status == 200))
-        self.assertEqual(self.server.picture(session, 999999, {}).status, 200)
-        self.assertTrue(until(lambda: self.server.files() <= files + 1))
-
-    def test_ends_while_busy(self):
-        server = Server('photos')
-        session = server.open('deep é.jpg')
-        with concurrent.futures.ThreadPoolExecutor(1) as pool:
-            large = b'P6\n3000 3000\n255\n' + os.urandom(3000 * 3000 * 3)
-            upload = pool.submit(server.post, 'upload?name=large.ppm', large)
-            self.assertEqual(server.picture(session, 1, {}).status, 200)
-            self.assertTrue(until(lambda: len(server.children()) == 2 or upload.done()))
-            self.assertEqual(server.close(), (0, '', []))
-            try:
-                self.assertIn(upload.result().status, (200, 503))
-            except (ConnectionError, http.client.HTTPException):
-                pass
-
-
-class Lines(Case):
-    def test_command_line(self):
-        for words, arguments in (
-                (r"^refocus: nothing: No such file or directory\n$", ('nothing',)),
-                (r"^refocus: serve: example.org is no address in numbers\n$",
-                 ('--listen', 'example.org')),
-                (r'^refocus: /dev/null: it is neither a photo nor a folder\n$', ('/dev/null',)),
-                (r"^refocus: serve: port \d+ of 127.0.0.1 cannot be had: Address already in use\n$",
-                 ('--port', None))):
-            with socket.create_server(('127.0.0.1', 0)) as taken:
-                port = str(taken.getsockname()[1])
-                result = self.run_it('serve', *(port if word is None else word for word in arguments))
-            self.assertEqual(result.returncode, 1)
-            self.assertRegex(result.stderr, words)
-        for arguments in ('--port', '65536'), ('--port', 'x'), ('--max-upload', '0'), ('a', 'b'):
-            self.assertEqual(self.run_it('serve', *arguments).returncode, 2)
-
-    def test_leaves_no_files(self):
-        os.mkdir('temporary')
-        environment = os.environ.get('TMPDIR')
-        os.environ['TMPDIR'] = os.path.abspath('temporary')
-        try:
-            server = Server()
-        finally:
-            if environment is None:
-                del os.environ['TMPDIR']
-            else:
-                os.environ['TMPDIR'] = environment
-        session = server.post('upload?name=photo.ppm', pictures.read_bytes('photo.ppm')).json
-        self.assertEqual(len(os.listdir('temporary')), 1)
-        self.assertEqual(server.picture(session, 1, {}).status, 200)
-        self.assertEqual(server.post('upload?name=photo.ppm', b'damaged').status, 422)
-        self.assertEqual(server.close(), (0, '', []))
-        self.assertEqual(os.listdir('temporary'), [])
-
-    def test_signals(self):
-        for number, status in (signal.SIGINT, 0), (signal.SIGTERM, 0), (signal.SIGHUP, -signal.SIGHUP):
-            server = Server()
-            server.process.send_signal(number)
-            self.assertEqual(server.process.wait(60), status)
-            server.process.stdout.close()
-            self.assertEqual(server.process.stderr.read(), '')
-            server.process.stderr.close()
-
-    def test_link(self):
-        links = set()
-        for address, pattern in (('127.0.0.1', r'127\.0\.0\.1'), ('::1', r'\[::1\]')):
-            try:
-                socket.create_server((address, 0), family=socket.AF_INET6 if ':' in address
-                                     else socket.AF_INET).close()
-            except OSError:
-                continue
-            server = Server('--listen', address)
-            self.assertRegex(server.link, r'^http://%s:\d+/[0-9a-f]{32}/$' % pattern)
-            links.add(server.path)
-            self.assertEqual(server.close(), (0, '', []))
-        self.assertGreater(len(links), 0)
 
 
 if __name__ == '__main__':

@@ -131,10 +131,10 @@ class Standard(Case):
                  ('photo.ppm', '-o', '-', '--repeat', '2')),
                 ('--format: x.ppm says the format by its end; leave it out, or end it in {ext}',
                  b'', 2, ('photo.ppm', '-o', 'x.ppm', '--format', 'png')),
-                ('--jpeg-quality: it changes nothing of x.ppm, which is no JPEG; leave it out', b'',
-                 2, ('photo.ppm', '-o', 'x.ppm', '--jpeg-quality', '50')),
-                ('--jpeg-quality: it changes nothing of standard output, which is no JPEG; leave '
-                 'it out', b'', 2, ('photo.ppm', '-o', '-', '--jpeg-quality', '50'))):
+                ('--jpeg-quality: it changes nothing of x.ppm, which is no JPEG or HEIC; '
+                 'leave it out', b'', 2, ('photo.ppm', '-o', 'x.ppm', '--jpeg-quality', '50')),
+                ('--jpeg-quality: it changes nothing of standard output, which is no JPEG or HEIC; '
+                 'leave it out', b'', 2, ('photo.ppm', '-o', '-', '--jpeg-quality', '50'))):
             error = self.piped(data, *arguments, *BLUR, status=status)
             self.assertTrue(error.startswith('refocus: ' + line), error)
             self.assertEqual(error.count('\n'), 1)

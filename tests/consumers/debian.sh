@@ -18,7 +18,7 @@ root/usr/bin/refocus --version
 PYTHONPATH=$work/root/usr/lib/python3/dist-packages
 export PYTHONPATH
 python3 "$source/tests/python/test_python.py" "$PYTHONPATH" "$work/root/usr/bin/refocus"
-PKG_CONFIG_SYSROOT_DIR=$work/root PKG_CONFIG_LIBDIR=$work/$libraries/pkgconfig
+PKG_CONFIG_SYSROOT_DIR=$work/root PKG_CONFIG_LIBDIR=$work/$libraries/pkgconfig:$(pkg-config --variable pc_path pkg-config)
 export PKG_CONFIG_SYSROOT_DIR PKG_CONFIG_LIBDIR
 PKG_CONFIG_ALLOW_SYSTEM_CFLAGS=1 PKG_CONFIG_ALLOW_SYSTEM_LIBS=1
 export PKG_CONFIG_ALLOW_SYSTEM_CFLAGS PKG_CONFIG_ALLOW_SYSTEM_LIBS

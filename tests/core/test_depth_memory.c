@@ -57,6 +57,29 @@ static int upsample_in_threads(void)
     return upsample(3, 1);
 }
 
+/* No plane but the result has the photo's size. */
+static void stated_upsample(void **state)
+{
+    enum { WIDTH = 300, HEIGHT = 1200, COLUMNS = 75, ROWS = 300, SHARE = 40000 };
+    const size_t most = 8 * COLUMNS * ROWS + 330 * WIDTH * (HEIGHT / ROWS + 1) + SHARE;
+    uint8_t *const pixels = calloc(WIDTH * HEIGHT, 3);
+    uint16_t *const samples = calloc(COLUMNS * ROWS, 2), *const result = calloc(WIDTH * HEIGHT, 2);
+    struct refocus_upsample_params params = refocus_upsample_params_default();
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, WIDTH, HEIGHT, 3 * WIDTH);
+    const struct refocus_disparity map = refocus_disparity16(samples, COLUMNS, ROWS, 2 * COLUMNS);
+
+    (void)state;
+    assert_true(pixels && samples && result);
+    params.threads = 1;
+    failing.held = failing.peak = 0;
+    assert_int_equal(refocus_upsample(&image, &map, &params, result, 2 * WIDTH), REFOCUS_OK);
+    assert_in_range(failing.peak, 1, most);
+    free(pixels);
+    free(samples);
+    free(result);
+}
+
 enum edges { SHARP, SOFT, COARSE };
 
 /* A map this coarse is worked on at a size between it and the photo's. */
@@ -327,13 +350,11 @@ static void failing_stack(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(failing_upsample),
-                                       cmocka_unit_test(failing_edges),
-                                       cmocka_unit_test(largest_edges),
-                                       cmocka_unit_test(failing_repair),
-                                       cmocka_unit_test(repairs_in_memory_given),
-                                       cmocka_unit_test(failing_filter),
-                                       cmocka_unit_test(failing_stack)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(failing_upsample), cmocka_unit_test(stated_upsample),
+        cmocka_unit_test(failing_edges),    cmocka_unit_test(largest_edges),
+        cmocka_unit_test(failing_repair),   cmocka_unit_test(repairs_in_memory_given),
+        cmocka_unit_test(failing_filter),   cmocka_unit_test(failing_stack)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

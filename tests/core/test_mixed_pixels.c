@@ -131,6 +131,38 @@ static void surfaces_that_go_on(void **state)
     assert_true(taken_where(-14999, false) > 2 * taken_where(-15000, false));
 }
 
+/* Pixels whose left and right neighbours are both of the other surface. */
+static int teeth_of(const uint16_t *map)
+{
+    int teeth = 0;
+
+    for (int y = 1; y < HEIGHT - 1; y++)
+        for (int x = 1; x < WIDTH - 1; x++) {
+            const uint16_t *at = map + y * WIDTH + x;
+
+            teeth += at[-1] != at[0] && at[1] != at[0];
+        }
+    return teeth;
+}
+
+/* Every seventh column of the photo has a softer edge, so that more of it is taken. */
+static void teeth(void **state)
+{
+    struct stage *softer = make(), *s = make();
+
+    (void)state;
+    draw(softer, 9, 120);
+    draw(s, 5, 120);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        if (i % WIDTH % 7 == 0)
+            memcpy(s->rgb + 3 * i, softer->rgb + 3 * i, 3);
+    run(s, 2);
+    assert_true(teeth_of(s->nearer) > 10); /* before they are smoothed */
+    assert_int_equal(teeth_of(s->map), 0);
+    free(softer);
+    free(s);
+}
+
 static void threads(void **state)
 {
     struct stage *one = make(), *three = make();
@@ -149,7 +181,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(soft_photo), cmocka_unit_test(others),
                                        cmocka_unit_test(surfaces_that_go_on),
-                                       cmocka_unit_test(threads)};
+                                       cmocka_unit_test(teeth), cmocka_unit_test(threads)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

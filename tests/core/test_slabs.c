@@ -1,5 +1,6 @@
 /* test_slabs.c: slabs of a tile cover all blurs that reach it, and what is far out of focus shares
- * a slab with the same blurs in every tile. */
+ * a slab with the same blurs in every tile. However many blurs there are, there are few slabs, and
+ * fewer where they are noise. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -24,8 +25,8 @@ static uint32_t noise(uint32_t *seed)
     return *seed >> 8;
 }
 
-/* The plan of a picture of one tile that has those blurs. */
-static void plan_of(const struct set *set, float largest, struct rf_tile_plan *plan)
+/* The plan of a picture of one tile that has those bins. */
+static void plan_bins(const struct rf_bins *bins, float largest, struct rf_tile_plan *plan)
 {
     static struct rf_reach reach;
     const struct rf_bin_scale scale = rf_bin_scale_of(largest, 0);
@@ -36,13 +37,27 @@ static void plan_of(const struct set *set, float largest, struct rf_tile_plan *p
                                      .tiles_x = 1,
                                      .tiles_y = 1,
                                      .pad = (int)largest + 2};
-    struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
 
     rf_reach_init(&reach, scale, largest, view.pad, false);
-    for (int i = 0; i < set->count; i++)
-        rf_add_bin(&view, &bins, scale, 0, 0, set->blur[i]);
-    rf_plan_tile(&view, &bins, &reach, 0, 0, plan);
+    rf_plan_tile(&view, bins, &reach, 0, 0, plan);
     assert_in_range(plan->slabs, 1, RF_MAX_SLABS);
+}
+
+static void add_blur(struct rf_bins *bins, float largest, int blur)
+{
+    const struct rf_viewport view = {.tiles_x = 1, .tiles_y = 1};
+
+    rf_add_bin(&view, bins, rf_bin_scale_of(largest, 0), 0, 0, (int16_t)blur);
+}
+
+/* The plan of a picture of one tile that has those blurs. */
+static void plan_of(const struct set *set, float largest, struct rf_tile_plan *plan)
+{
+    struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
+
+    for (int i = 0; i < set->count; i++)
+        add_blur(&bins, largest, set->blur[i]);
+    plan_bins(&bins, largest, plan);
 }
 
 /* The slab that a blur belongs to: one before it may reach over it by an eighth. */
@@ -100,9 +115,67 @@ static void same_slabs(void **state)
     }
 }
 
+/* The plan of a tile with all blurs from `least` to `most` and so much noise. Each blur is in a
+ * slab, whose ends are not beyond 16 bits. */
+static int slabs_of_range(float largest, int least, int most, int16_t noise)
+{
+    struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
+    struct rf_tile_plan plan;
+
+    for (int blur = least; blur <= most; blur++)
+        add_blur(&bins, largest, blur);
+    bins.noise = noise;
+    plan_bins(&bins, largest, &plan);
+    for (int blur = least; blur <= most; blur++) {
+        int k = 0;
+
+        while (k < plan.slabs &&
+               (blur < plan.slab[k].low || blur > plan.slab[k].low + plan.slab[k].width))
+            k++;
+        if (k == plan.slabs)
+            fail_msg("no slab covers a blur of %g", blur / 256.0);
+    }
+    for (int k = 0; k < plan.slabs; k++)
+        assert_true(plan.slab[k].low + plan.slab[k].width <= INT16_MAX);
+    return plan.slabs;
+}
+
+static void few_slabs(void **state)
+{
+    (void)state;
+    for (int K = 10; K <= 127; K += 9) {
+        const float largest = (float)K;
+
+        assert_in_range(slabs_of_range(largest, -128 * K, 128 * K, 0), 1, 32);
+        assert_in_range(slabs_of_range(largest, -256 * K, 0, 0), 1, 32);
+        assert_in_range(slabs_of_range(largest, 0, 256 * K, 0), 1, 32);
+        assert_in_range(slabs_of_range(largest, -128 * K, 128 * K, (int16_t)(256 * K)), 1, 11);
+        assert_in_range(slabs_of_range(largest, -256 * K, 0, (int16_t)(256 * K)), 1, 11);
+        assert_in_range(slabs_of_range(largest, 0, 256 * K, (int16_t)(256 * K)), 1, 11);
+    }
+    slabs_of_range(127, -127 * 256, -112 * 256, 0);
+}
+
+/* Noise of two pixels around 8 is one slab; what is clean has slabs of a pixel. */
+static void noise_is_merged(void **state)
+{
+    struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
+    struct rf_tile_plan plan;
+
+    (void)state;
+    assert_int_equal(slabs_of_range(30, 7 * 256, 9 * 256, 256), 1);
+    assert_int_equal(slabs_of_range(30, 7 * 256, 9 * 256, 0), 3);
+    add_blur(&bins, 30, 7 * 256); /* a gap wider than a pixel ends a slab */
+    add_blur(&bins, 30, 9 * 256);
+    bins.noise = 1024;
+    plan_bins(&bins, 30, &plan);
+    assert_int_equal(plan.slabs, 2);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_slabs)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_slabs), cmocka_unit_test(few_slabs),
+                                       cmocka_unit_test(noise_is_merged)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -114,9 +114,9 @@ static void leaves_no_ghosts(void **state)
     }
 }
 
-/* A sample that jumps for one frame while the photo stands still does not; one that stays at its
- * new place is believed a frame later. */
-static void waits_for_a_second_look(void **state)
+/* A sample that jumps while the photo stands still is not believed before six of seven looks agree;
+ * a surface that does so is, a frame later. */
+static void waits_for_more_looks(void **state)
 {
     struct refocus_temporal *filter = make();
 
@@ -128,13 +128,81 @@ static void waits_for_a_second_look(void **state)
         run(filter, true);
         assert_true(abs(v.out[100] - 12000) <= NOISE);
     }
-    for (int t = 0; t < 2; t++) {
+    for (int t = 0; t < 5; t++) {
+        assert_true(abs(v.out[100] - 12000) <= NOISE);
         draw(30);
         v.map[100] = 60000;
         run(filter, true);
     }
     assert_int_equal(v.out[100], 60000);
+    for (int t = 0; t < 2; t++) {
+        draw(30);
+        for (int i = 0; i < W * H; i++)
+            if (i % W / 8 < 3 && i / W / 8 == 1)
+                v.truth[i] = v.map[i] = (uint16_t)(v.map[i] + 20000);
+        run(filter, true);
+        for (int i = 0; i < W * H; i++)
+            if (i % W / 8 < 3 && i / W / 8 == 1)
+                assert_true(abs(v.out[i] - (t ? 32000 : 12000)) <= NOISE);
+    }
     refocus_temporal_destroy(&filter);
+}
+
+/* Looks with weights vote against a surface at 1000. */
+static void majorities(void **state)
+{
+    static const struct {
+        struct rf_looks looks;
+        int voters, mean; /* 0: the surface stays */
+    } cases[] = {
+        {{7, {1000, 1000, 9000, 9000, 9000, 9000, 9000}, {12, 12, 12, 12, 12, 12, 12}}, 0, 0},
+        {{7, {1000, 9000, 9000, 9004, 9000, 9000, 9000}, {12, 12, 12, 12, 12, 12, 12}}, 6, 9001},
+        {{7, {1000, 1000, 9000, 9000, 9000, 9000, 9000}, {4, 4, 12, 12, 12, 12, 12}}, 5, 9000},
+        {{7, {9000, 5000, 3000, 9040, 7000, 4000, 6000}, {12, 12, 12, 12, 12, 12, 12}}, 2, 9020},
+        {{6, {9000, 5000, 3000, 9040, 7000, 4000, 0}, {12, 12, 12, 12, 12, 12, 0}}, 0, 0},
+        {{3, {9000, 9000, 1000, 0, 0, 0, 0}, {12, 12, 12, 0, 0, 0, 0}}, 0, 0},
+        {{4, {9000, 9000, 9000, 1000, 0, 0, 0}, {12, 12, 12, 12, 0, 0, 0}}, 3, 9000},
+        {{2, {9000, 9000, 0, 0, 0, 0, 0}, {1, 1, 0, 0, 0, 0, 0}}, 2, 9000},
+        {{1, {9000, 0, 0, 0, 0, 0, 0}, {12, 0, 0, 0, 0, 0, 0}}, 1, 9000},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        uint16_t mean = 0;
+
+        assert_int_equal(rf_vote_of_looks(&cases[i].looks, 1000, 100, &mean), cases[i].voters);
+        assert_int_equal(mean, cases[i].mean);
+    }
+}
+
+/* Looks follow a sample back until it was nowhere; what shows other things has no vote. */
+static void looks_go_back(void **state)
+{
+    uint16_t disparity[4][9];
+    uint8_t guide[4][9];
+    struct rf_motion from[4][9];
+    struct rf_frame frame[4];
+    struct rf_looks looks;
+
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        frame[k] = (struct rf_frame){disparity[k], guide[k], from[k]};
+        for (int i = 0; i < 9; i++) {
+            disparity[k][i] = (uint16_t)(100 * k + i);
+            guide[k][i] = (uint8_t)(k == 1 ? 80 : 60 + i);
+            from[k][i] = (struct rf_motion){(int8_t)(k % 2 ? 0 : 1), (int8_t)(k % 2 ? -1 : 0)};
+        }
+    }
+    rf_look_back(&looks, frame, 4, 3, 4); /* by 5 and 2 to 3 */
+    assert_int_equal(looks.count, 3);
+    assert_true(looks.disparity[0] == 4 && looks.disparity[1] == 202 && looks.disparity[2] == 303);
+    assert_true(looks.weight[0] == RF_ALIKE && looks.weight[1] == RF_ALIKE - 2 &&
+                looks.weight[2] == RF_ALIKE - 1);
+    from[1][5].x = RF_NOWHERE;
+    rf_look_back(&looks, frame, 4, 3, 4);
+    assert_int_equal(looks.count, 1);
+    rf_look_back(&looks, frame, 1, 3, 4);
+    assert_int_equal(looks.count, 1);
 }
 
 /* Strength 0 changes nothing; neither does a reset filter in its first frame. */
@@ -198,19 +266,24 @@ static void any_layout(void **state)
     }
 }
 
-/* The guide for a photo of Y, U and V is its brightness: where it is that of the grey photo, the
- * maps are the same, whatever U and V are. */
+/* The guide for a photo is its brightness: where it is that of the grey photo, the maps are the
+ * same, whatever U and V and lower bytes are. */
 static void any_photo(void **state)
 {
-    static const uint32_t formats[] = {REFOCUS_FORMAT_NV12, REFOCUS_FORMAT_NV21,
-                                       REFOCUS_FORMAT_I420, REFOCUS_FORMAT_YUYV};
-    static uint8_t memory[3 * W * SCALE * H * SCALE];
+    enum { UPPER = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ };
+    static const struct {
+        uint32_t format;
+        int first, next, channels, step; /* bytes but for channels */
+    } kinds[] = {{REFOCUS_FORMAT_NV12, 0, 0, 1, 1},      {REFOCUS_FORMAT_NV21, 0, 0, 1, 1},
+                 {REFOCUS_FORMAT_I420, 0, 0, 1, 1},      {REFOCUS_FORMAT_YUYV, 0, 0, 1, 2},
+                 {REFOCUS_FORMAT_P010, UPPER, 0, 1, 2},  {REFOCUS_FORMAT_P016, UPPER, 0, 1, 2},
+                 {REFOCUS_FORMAT_RGB16, UPPER, 2, 3, 6}, {REFOCUS_FORMAT_RGBA16, UPPER, 2, 3, 8}};
+    static uint8_t memory[8 * W * SCALE * H * SCALE];
     const int width = W * SCALE, height = H * SCALE;
 
     (void)state;
-    for (int k = 0; k < 4; k++) {
-        const int step = formats[k] == REFOCUS_FORMAT_YUYV ? 2 : 1;
-        struct refocus_image photo = refocus_image_planar(formats[k], memory, width, height);
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        struct refocus_image photo = refocus_image_planar(kinds[k].format, memory, width, height);
         const struct refocus_disparity map = refocus_disparity16(v.map, W, H, 2 * W);
         struct refocus_temporal *filter = make(), *grey = make();
         static uint16_t out[W * H];
@@ -220,14 +293,20 @@ static void any_photo(void **state)
             for (size_t i = 0; i < sizeof memory; i++)
                 memory[i] = (uint8_t)noise(127);
             for (int i = 0; i < width * height; i++)
-                photo.plane[0][i / width * photo.stride[0] + i % width * step] = v.rgb[3 * i];
+                for (int c = 0; c < kinds[k].channels; c++)
+                    photo.plane[0][i / width * photo.stride[0] + i % width * kinds[k].step +
+                                   c * kinds[k].next + kinds[k].first] = v.rgb[3 * i];
             run(grey, true);
             assert_int_equal(refocus_temporal_run(filter, &photo, &map, out, 2 * W), REFOCUS_OK);
             assert_memory_equal(out, v.out, sizeof out);
         }
         photo.plane[1] = NULL;
         assert_int_equal(refocus_temporal_run(filter, &photo, &map, out, 2 * W),
-                         step == 2 ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
+                         refocus_format_planes(kinds[k].format) == 1 ? REFOCUS_OK
+                                                                     : REFOCUS_ERR_ARGUMENT);
+        photo = refocus_image_planar(REFOCUS_FORMAT_RGBA_HALF, memory, width, height);
+        assert_int_equal(refocus_temporal_run(filter, &photo, &map, out, 2 * W),
+                         REFOCUS_ERR_UNSUPPORTED);
         refocus_temporal_destroy(&filter);
         refocus_temporal_destroy(&grey);
     }
@@ -311,7 +390,7 @@ static void vectors_spread(void **state)
     enum { COLUMNS = W / RF_BLOCK, ROWS = (H + RF_BLOCK - 1) / RF_BLOCK, FIRST = 3 };
     static uint16_t near[2][W * H];
     static uint8_t guide[2][W * H];
-    const struct rf_frame now = {near[0], guide[0]}, last = {near[1], guide[1]};
+    const struct rf_frame now = {near[0], guide[0], NULL}, last = {near[1], guide[1], NULL};
     const struct rf_motion moved = {7, 5};
     struct rf_motion list[(ROWS + 2) * COLUMNS], *const motion = list + COLUMNS;
 
@@ -327,7 +406,7 @@ static void vectors_spread(void **state)
         memset(motion, 0, ROWS * COLUMNS * sizeof *motion);
         if (known)
             motion[FIRST] = moved;
-        rf_find_motion(motion, &now, &last, W, H);
+        rf_find_motion(motion, &now, &last, W, H, NULL);
         for (int i = 0; i < COLUMNS - 1; i++)
             assert_int_equal(motion[i].x == 7 && motion[i].y == 5, known && i >= FIRST);
         for (int y = 1; known && y < ROWS - 1; y++) /* leftwards from row to row */
@@ -336,18 +415,78 @@ static void vectors_spread(void **state)
     }
 }
 
+struct canceller {
+    struct refocus_temporal *filter;
+    int left, looks, after; /* looks before it cancels, all, and those after it */
+};
+
+static void cancel_later(void *user)
+{
+    struct canceller *const c = user;
+
+    c->looks++;
+    c->after += c->left < 0;
+    if (--c->left == 0) {
+        refocus_temporal_cancel(c->filter);
+        c->left = -1;
+    }
+}
+
+/* A cancelled run ends within eight rows, wherever it is: the looks are counted, not time. Nothing
+ * is written, and the past is forgotten: the next map comes out as it is. */
+static void is_cancelled(void **state)
+{
+    static uint16_t untouched[W * H];
+    struct refocus_temporal *filter = make();
+    struct canceller canceller = {filter, 0, 0, 0};
+    struct rf_run *const looked_at = rf_run_of_temporal(filter);
+    const struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, v.rgb, W * SCALE, H * SCALE, 3 * W * SCALE);
+    const struct refocus_disparity map = refocus_disparity16(v.map, W, H, 2 * W);
+    int looks;
+
+    (void)state;
+    memset(untouched, 0x5a, sizeof untouched);
+    draw(30);
+    run(filter, true);
+    refocus_temporal_cancel(filter); /* nothing runs */
+    looked_at->user = &canceller;
+    looked_at->looked_at = cancel_later;
+    draw(30);
+    run(filter, true);
+    assert_memory_not_equal(v.out, v.map, sizeof v.map);
+    looks = canceller.looks;
+    assert_in_range(looks, H + 2 * (H / RF_BLOCK), H + 2 * (H / RF_BLOCK + 2) + 1);
+    for (int k = 1; k <= looks; k++) {
+        draw(30);
+        canceller = (struct canceller){filter, k, 0, 0};
+        memset(v.out, 0x5a, sizeof v.out);
+        assert_int_equal(refocus_temporal_run(filter, &photo, &map, v.out, 2 * W),
+                         REFOCUS_ERR_CANCELLED);
+        assert_in_range(canceller.after, 0, 2); /* Loops that do not begin. */
+        assert_memory_equal(v.out, untouched, sizeof untouched);
+        canceller.left = 0;
+        run(filter, true);
+        assert_memory_equal(v.out, v.map, sizeof v.map);
+    }
+    refocus_temporal_destroy(&filter);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(calms),
         cmocka_unit_test(leaves_no_ghosts),
         cmocka_unit_test(can_be_off),
-        cmocka_unit_test(waits_for_a_second_look),
+        cmocka_unit_test(waits_for_more_looks),
+        cmocka_unit_test(majorities),
+        cmocka_unit_test(looks_go_back),
         cmocka_unit_test(any_layout),
         cmocka_unit_test(any_photo),
         cmocka_unit_test(follows_the_range),
         cmocka_unit_test(bad_arguments),
         cmocka_unit_test(vectors_spread),
+        cmocka_unit_test(is_cancelled),
     };
 
     return cmocka_run_group_tests_name("temporal", tests, NULL, NULL);

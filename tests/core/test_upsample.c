@@ -216,12 +216,38 @@ static void weighs_confidence_at(int u, int v)
     end(&s);
 }
 
+/* A sample that is off by less than a step does not show, either, unless it is trusted. The photo
+ * is white in blue: 255 as a confidence. */
+static void weighs_small_errors_at(int u, int v)
+{
+    struct refocus_upsample_params params = refocus_upsample_params_default();
+    struct scene s = make(96, 96, 12, 12);
+
+    for (int k = 0; k < 3 * 96 * 96; k++)
+        s.rgb[k] = k % 3 == 2 ? 255 : 100;
+    memset(s.confidence, 255, 144);
+    for (int k = 0; k < 144; k++)
+        s.map[k] = 10000;
+    s.map[v * 12 + u] = 10400;
+    params.confidence = s.confidence;
+    params.confidence_stride = 12;
+    assert_int_equal(run(&s, &params, s.out), REFOCUS_OK);
+    assert_true(s.out[(8 * v + 4) * 96 + 8 * u + 4] > 10100);
+    s.confidence[v * 12 + u] = 0;
+    assert_int_equal(run(&s, &params, s.out), REFOCUS_OK);
+    for (int k = 0; k < 96 * 96; k++)
+        assert_int_equal(s.out[k], 10000);
+    end(&s);
+}
+
 static void weighs_confidence(void **state)
 {
     (void)state;
     weighs_confidence_at(6, 6);
     weighs_confidence_at(2, 9);
     weighs_confidence_at(9, 3);
+    weighs_small_errors_at(6, 6);
+    weighs_small_errors_at(3, 9);
 }
 
 /* A map that has the photo's size comes out as it is, of 8 and 16 bits and bottom-up. */

@@ -72,6 +72,16 @@ class Lines(unittest.TestCase):
             self.assertIn(words, text)
         self.assertIn(OWN, self.gegl('--list-all').split())
 
+    def test_two_copies(self):
+        """A build beside the one that is installed: the first on the path is used, and nothing warns."""
+        status, once = self.run_words(['gegl', '--info', OWN])
+        self.assertEqual(status, 0, once)
+        status, twice = self.run_words(['gegl', '--info', OWN],
+                                       GEGL_PATH=f'{PLUGINS}:{PLUGINS}:{GEGL_PLUGINS}')
+        self.assertEqual(status, 0, twice)
+        self.assertNotIn('RefocusLensBlur', twice)
+        self.assertEqual(len(twice.splitlines()), len(once.splitlines()), twice)
+
     @unittest.skipUnless(COMMAND, 'a build without the command')
     def test_same_as_the_command(self):
         portrait, lights = SCENES / 'portrait', SCENES / 'nightlights'

@@ -124,12 +124,13 @@ static uint32_t format_named(const char *name)
     static const struct {
         const char *name;
         uint32_t format;
-    } names[] = {{"NV12", REFOCUS_FORMAT_NV12},  {"NV21", REFOCUS_FORMAT_NV21},
-                 {"I420", REFOCUS_FORMAT_I420},  {"YV12", REFOCUS_FORMAT_I420},
-                 {"YUY2", REFOCUS_FORMAT_YUYV},  {"GRAY8", REFOCUS_FORMAT_I420},
-                 {"RGB", REFOCUS_FORMAT_RGB8},   {"BGR", REFOCUS_FORMAT_BGR8},
-                 {"RGBA", REFOCUS_FORMAT_RGBA8}, {"BGRA", REFOCUS_FORMAT_BGRA8},
-                 {"RGBx", REFOCUS_FORMAT_RGBA8}, {"BGRx", REFOCUS_FORMAT_BGRA8}};
+    } names[] = {{"NV12", REFOCUS_FORMAT_NV12},     {"NV21", REFOCUS_FORMAT_NV21},
+                 {"I420", REFOCUS_FORMAT_I420},     {"YV12", REFOCUS_FORMAT_I420},
+                 {"YUY2", REFOCUS_FORMAT_YUYV},     {"GRAY8", REFOCUS_FORMAT_I420},
+                 {"RGB", REFOCUS_FORMAT_RGB8},      {"BGR", REFOCUS_FORMAT_BGR8},
+                 {"RGBA", REFOCUS_FORMAT_RGBA8},    {"BGRA", REFOCUS_FORMAT_BGRA8},
+                 {"RGBx", REFOCUS_FORMAT_RGBA8},    {"BGRx", REFOCUS_FORMAT_BGRA8},
+                 {"P010_10LE", REFOCUS_FORMAT_P010}};
 
     for (size_t i = 0; i < G_N_ELEMENTS(names); i++)
         if (strcmp(names[i].name, name) == 0)
@@ -152,6 +153,18 @@ static struct refocus_image image_of(const GstVideoFrame *frame, uint8_t *chroma
         image.plane[1] = image.plane[2] = chroma;
         image.stride[1] = image.stride[2] = image.width;
         image.range = REFOCUS_RANGE_FULL;
+    }
+    switch (frame->info.colorimetry.transfer) {
+    case GST_VIDEO_TRANSFER_SMPTE2084:
+        image.transfer = REFOCUS_TRANSFER_PQ;
+        image.matrix = REFOCUS_MATRIX_BT2020;
+        break;
+    case GST_VIDEO_TRANSFER_ARIB_STD_B67:
+        image.transfer = REFOCUS_TRANSFER_HLG;
+        image.matrix = REFOCUS_MATRIX_BT2020;
+        break;
+    default:
+        break;
     }
     return image;
 }
@@ -179,6 +192,7 @@ GstBuffer *frame_expect(const char *caps, GstBuffer *frame, const struct refocus
      * on that number. */
     params = refocus_renderer_params_default(photo.width, photo.height, 40);
     params.threads = 1;
+    params.deep = photo.format == REFOCUS_FORMAT_P010;
     g_assert(refocus_renderer_create(&renderer, &params) == REFOCUS_OK);
     g_assert(refocus_prepare(renderer, &photo, map) == REFOCUS_OK);
     g_assert(refocus_render_settings(renderer, settings, &out) == REFOCUS_OK);

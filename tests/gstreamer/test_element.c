@@ -69,6 +69,22 @@ static void formats(void **state)
     check_frame("video/x-raw,format=NV12,width=63,height=47,framerate=25/1", DEPTH, 16, 64, 48);
 }
 
+/* Ten bits by the curves of video, PQ and HLG. */
+static void ten_bits(void **state)
+{
+    static const char *const colours[] = {"bt601", "bt2100-pq", "bt2100-hlg"};
+    char caps[160];
+
+    (void)state;
+    for (size_t i = 0; i < G_N_ELEMENTS(colours); i++) {
+        g_snprintf(caps, sizeof caps, "video/x-raw,format=P010_10LE,colorimetry=%s," SIZE,
+                   colours[i]);
+        check_frame(caps, DEPTH, 16, 64, 48);
+    }
+    check_frame("video/x-raw,format=P010_10LE,colorimetry=bt601,width=63,height=47,framerate=25/1",
+                DEPTH, 16, 64, 48);
+}
+
 static void depth_of_other_kinds(void **state)
 {
     (void)state;
@@ -81,6 +97,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(formats),
+#if G_BYTE_ORDER == G_LITTLE_ENDIAN
+        cmocka_unit_test(ten_bits),
+#endif
         cmocka_unit_test(depth_of_other_kinds),
     };
 

@@ -54,6 +54,27 @@ class Lines(unittest.TestCase):
             self.passes(f'videotestsrc num-buffers=2 ! {SMALL}{form} ! refocus name=r ! fakesink '
                         f'videotestsrc num-buffers=2 pattern=ball ! {SMALL}GRAY16_LE ! r.depth')
 
+    def test_ten_bits(self):
+        """P010 in and out, with all that looks at frames: what is in focus comes out as it went in."""
+        video = f'videotestsrc num-buffers=3 pattern=smpte75 ! {SMALL}P010_10LE,colorimetry=%s ! '
+        depth = 'videotestsrc num-buffers=3 pattern=%s ! video/x-raw,format=GRAY16_LE,width=%d,height=%d,framerate=25/1 ! r.depth'
+        for colour in 'bt709', 'bt2100-pq':
+            frames = self.bytes_of(video % colour + 'OUT')
+            self.assertEqual(len(frames), 3 * 96 * 64 * 3)
+            for size in (96, 64), (33, 21), (200, 120):
+                line = video % colour + 'refocus name=r blur=9 steady=0.5 %s ! OUT ' + depth
+                self.assertTrue(frames == self.bytes_of(line % ('focus-x=0.5 focus-y=0.5', 'white', *size)), 'other bytes')
+                blurred = self.bytes_of(line % ('focus=1 depth-edges=true', 'black', *size))
+                self.assertEqual(len(blurred), len(frames))
+                self.assertTrue(frames != blurred, 'nothing is blurred')
+
+    def test_depth_of_other_sizes(self):
+        """GRAY16 maps smaller and larger than frames, of another shape and rate."""
+        for size in 'width=24,height=16', 'width=321,height=45', 'width=192,height=128':
+            self.passes(f'videotestsrc num-buffers=3 ! {SMALL}NV12 ! refocus name=r steady=0.5 ! fakesink '
+                        'videotestsrc num-buffers=3 pattern=ball ! '
+                        f'video/x-raw,format=GRAY16_LE,{size},framerate=15/1 ! r.depth')
+
     def test_readme(self):
         """The line of the README, with pictures in place of cameras and no window."""
         text = (TOP / 'README.md').read_text(encoding='utf-8').replace('\\\n', ' ')

@@ -11,8 +11,13 @@
 #include "plugin.h"
 #include "settings.h"
 
-#define SIZE  "width=64,height=48,framerate=25/1"
-#define NV12  "video/x-raw,format=NV12," SIZE
+#define SIZE "width=64,height=48,framerate=25/1"
+#define NV12 "video/x-raw,format=NV12," SIZE
+#if G_BYTE_ORDER == G_LITTLE_ENDIAN
+#define P010 "video/x-raw,format=P010_10LE,colorimetry=bt601," SIZE
+#else
+#define P010 NV12
+#endif
 #define RGB   "video/x-raw,format=RGB,width=96,height=32,framerate=25/1"
 #define DEPTH "video/x-raw,format=GRAY8," SIZE
 
@@ -79,7 +84,7 @@ static void pairing(void **state)
 static void new_caps(void **state)
 {
     struct refocus_settings settings = frame_settings(1, 5);
-    const char *const caps[] = {NV12, RGB, NV12};
+    const char *const caps[] = {NV12, RGB, P010, NV12};
     GstBuffer *depth = frame_make(DEPTH, 4, 0);
     struct refocus_disparity disparity;
     struct bench bench;

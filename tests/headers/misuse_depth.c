@@ -326,6 +326,7 @@ static void filtering(void)
     }
     misuse_spoil(NULL, NULL);
     RETURNS(refocus_temporal_reset, NULL);
+    RETURNS(refocus_temporal_cancel, NULL);
     RETURNS(refocus_temporal_destroy, NULL);
     RETURNS(refocus_temporal_destroy, &filter);
     REFUSED(refocus_temporal_run, NULL, NULL, &map, out, 2 * W);
@@ -370,7 +371,8 @@ static void stacking(void)
                                  BAD(refocus_stack_params, frames, 33),
                                  BAD(refocus_stack_params, reference, -1),
                                  BAD(refocus_stack_params, reference, 3),
-                                 BAD(refocus_stack_params, align, REFOCUS_STACK_ALIGN_COUNT)};
+                                 BAD(refocus_stack_params, align, REFOCUS_STACK_ALIGN_COUNT),
+                                 BAD(refocus_stack_params, order, REFOCUS_STACK_ORDER_COUNT)};
     const struct refocus_stack_params good = RETURNS(refocus_stack_params_default, W, 16, 2);
     struct refocus_stack_result result = RETURNS(refocus_stack_result_default, );
     static uint8_t pixels[3 * W * 16];

@@ -1,5 +1,5 @@
-/* check_yuv.c: kernels of luma and chroma: encode and decode against colour/yuv.h a sample at a
- * time, the sweep of one plane and the aim of chroma against their contracts. */
+/* check_yuv.c: kernels of luma and chroma: encode, guide and decode against colour/yuv.h a sample
+ * at a time, the sweep of one plane and the aim of chroma against their contracts. */
 #include "check.h"
 
 #include <math.h>
@@ -78,6 +78,40 @@ static int check_encode(const struct subject *subject, struct guarded g[6])
                 return fail(subject, "encode", seed, -1, 0, 0);
     }
     printf("ok    %-12s %-6s 400 cases\n", "encode", subject->cpu);
+    return 0;
+}
+
+static int check_guide(const struct subject *subject, struct guarded g[6])
+{
+    for (uint32_t seed = 1; seed <= 400; seed++) {
+        const int n = seed <= 41 ? (int)seed - 1 : (int)(seed % (2 * MOST));
+        const enum place place = (enum place)(seed % PLACES);
+        uint32_t state = seed;
+        uint8_t *const luma = guarded_place(&g[0], (size_t)n, 1, place, 3);
+        uint8_t *const uv = guarded_place(&g[1], (size_t)n + n % 2, 1, place, 1);
+        uint8_t *const rgb = guarded_place(&g[2], 3 * (size_t)n, 1, place, 5);
+
+        rf_yuv_curve_init(&curve, seed % 2, seed / 2 % 2, seed / 4 % 3);
+        for (int x = 0; x < n; x++)
+            luma[x] = code(seed, &state);
+        for (int x = 0; x < n + n % 2; x++)
+            uv[x] = code(seed, &state);
+        subject->kernels.guide(rgb, luma, uv, &curve, n);
+        for (int x = 0; x < n; x++) {
+            const int tone = curve.luma[luma[x]], u = uv[x & ~1], v = uv[x | 1];
+            const int should[3] = {tone + rf_more(&curve, 1, v), tone - rf_less_green(&curve, u, v),
+                                   tone + rf_more(&curve, 0, u)};
+
+            for (int c = 0; c < 3; c++)
+                if (rgb[3 * x + c] != (rf_clip_tone(should[c]) + 2) / 4)
+                    return fail(subject, "guide", seed, 3 * x + c, rgb[3 * x + c],
+                                (rf_clip_tone(should[c]) + 2) / 4);
+        }
+        for (int i = 0; i < 3; i++)
+            if (!guarded_intact(&g[i]))
+                return fail(subject, "guide", seed, -1, 0, 0);
+    }
+    printf("ok    %-12s %-6s 400 cases\n", "guide", subject->cpu);
     return 0;
 }
 
@@ -482,9 +516,9 @@ int check_yuv(const struct subject *subject)
                    check_between(subject) + check_keep(subject);
     int made = 0;
 
-    while (made < 6 && guarded_create(&g[made], 4 * MOST + 64))
+    while (made < 6 && guarded_create(&g[made], 6 * MOST + 64))
         made++;
-    failures += made < 6 ? 1 : check_encode(subject, g);
+    failures += made < 6 ? 1 : check_encode(subject, g) + check_guide(subject, g);
     while (made > 0)
         guarded_destroy(&g[--made]);
     return failures;

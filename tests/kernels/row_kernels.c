@@ -1,5 +1,7 @@
-/* row_kernels.c: the table of row kernels, and a plain reference for each. */
+/* row_kernels.c: the table of row kernels, and a plain reference for those that row_background.c
+ * has not. */
 #include "row_kernels.h"
+#include "row_background.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -93,171 +95,6 @@ static void expect_smooth3(void *const *row, int parameter, int n)
                 smoothed((const uint16_t *)row[3 + c] + x, (const int16_t *)row[6] + x, parameter);
 }
 
-/* The unit of blurs that goes with a parameter. */
-static int unit_for(int parameter)
-{
-    return parameter % (RF_MAX_UNIT + 1);
-}
-
-/* The result is moved to the first row, whichever it is in. Values are `parameter` steps of a cone
- * without a unit apart at the most. */
-static void run_spread_row(const struct rf_kernels *k, void *const *row, int parameter, int n)
-{
-    const int unit = unit_for(parameter);
-    const uint16_t *result = k->spread_row(row[0], row[1], parameter << unit, unit, n);
-
-    if (result != row[0])
-        memcpy(row[0], result, (size_t)n * 2);
-}
-
-static int fallen(int value, int fall)
-{
-    return value > fall ? value - fall : 0;
-}
-
-static void expect_spread_row(void *const *row, int parameter, int n)
-{
-    uint16_t *const in = row[0], *const out = row[1];
-    const int fall = RF_CONE_STEP >> unit_for(parameter);
-
-    for (int x = 0; x < n; x++) {
-        int most = 0;
-
-        for (int q = 0; q < n; q++) {
-            const int value = fallen(in[q], abs(q - x) * fall);
-
-            most = value > most ? value : most;
-        }
-        out[x] = (uint16_t)most;
-    }
-    if (n > 0)
-        memcpy(in, out, (size_t)n * 2);
-}
-
-static void run_dilate_from(const struct rf_kernels *k, void *const *row, int parameter, int n)
-{
-    k->dilate_from(row[0], row[1], parameter, n);
-}
-
-static void expect_dilate_from(void *const *row, int parameter, int n)
-{
-    uint16_t *out = row[0];
-    const uint16_t *before = row[1];
-    const int half = 1 << parameter >> 1;
-
-    for (int x = 0; x < n; x++) {
-        for (int dx = -1; dx <= 1; dx++) {
-            const int fall = dx == 0 ? RF_CONE_STEP : RF_CONE_DIAGONAL;
-            const int value = fallen(before[x + dx], (fall + half) >> parameter);
-
-            if (value > out[x])
-                out[x] = (uint16_t)value;
-        }
-    }
-}
-
-static void run_mark(const struct rf_kernels *k, void *const *row, int parameter, int n)
-{
-    k->mark_foreground(row[0], row[1], row[2], parameter, n);
-}
-
-static void expect_mark(void *const *row, int parameter, int n)
-{
-    int16_t *background = row[0];
-    const int16_t *blur = row[1];
-    const uint16_t *dilated = row[2];
-
-    for (int x = 0; x < n; x++) {
-        if (dilated[x] - 32768 > blur[x] + (128 >> parameter))
-            background[x] = RF_NO_BLUR;
-        else
-            background[x] = blur[x];
-    }
-}
-
-static void run_push(const struct rf_kernels *k, void *const *row, int parameter, int n)
-{
-    uint16_t *const out[3] = {row[0], row[1], row[2]};
-    /* three channels from two pairs of rows */
-    const uint16_t *const upper[3] = {row[4], row[5], row[5]};
-    const uint16_t *const lower[3] = {row[6], row[7], row[6]};
-
-    (void)parameter;
-    k->push(out, row[3], upper, lower, row[8], row[9], n);
-}
-
-static void expect_push(void *const *row, int parameter, int n)
-{
-    static const int upper[3] = {4, 5, 5}, lower[3] = {6, 7, 6};
-
-    (void)parameter;
-    for (int x = 0; x < n; x++) {
-        int sum[3] = {0}, count = 0, farthest = RF_NO_BLUR;
-
-        for (int i = 0; i < 4; i++) {
-            const int at = 2 * x + i % 2;
-            const int blur = ((const int16_t *)row[8 + i / 2])[at];
-
-            if (blur == RF_NO_BLUR)
-                continue;
-            count++;
-            farthest = blur > farthest ? blur : farthest;
-            for (int c = 0; c < 3; c++)
-                sum[c] += ((const uint16_t *)row[i < 2 ? upper[c] : lower[c]])[at];
-        }
-        for (int c = 0; c < 3; c++)
-            ((uint16_t *)row[c])[x] =
-                count == 0 ? 0 : (uint16_t)((2 * sum[c] + count) / (2 * count));
-        ((int16_t *)row[3])[x] = (int16_t)farthest;
-    }
-}
-
-static void run_pull(const struct rf_kernels *k, void *const *row, int parameter, int n)
-{
-    (void)parameter;
-    k->pull(row[0], row[1], row[2], row[3], (uint16_t *)row[4] - 1, n);
-}
-
-static int quarters(int three, int one)
-{
-    return (3 * three + one + 2) / 4;
-}
-
-static void expect_pull(void *const *row, int parameter, int n)
-{
-    uint16_t *out = row[0];
-    const int16_t *blur = row[1];
-    const uint16_t *near_row = row[2], *far_row = row[3];
-
-    (void)parameter;
-    for (int i = 0; i < 2 * n; i++) {
-        const int x = i / 2;
-        int beside = i % 2 ? x + 1 : x - 1;
-
-        if (beside < 0 || beside >= n)
-            beside = x;
-        if (blur[i] == RF_NO_BLUR)
-            out[i] = (uint16_t)quarters(quarters(near_row[x], far_row[x]),
-                                        quarters(near_row[beside], far_row[beside]));
-    }
-}
-
-static void run_pull_blur(const struct rf_kernels *k, void *const *row, int parameter, int n)
-{
-    (void)parameter;
-    k->pull_blur(row[0], row[1], n);
-}
-
-static void expect_pull_blur(void *const *row, int parameter, int n)
-{
-    int16_t *out = row[0];
-
-    (void)parameter;
-    for (int i = 0; i < 2 * n; i++)
-        if (out[i] == RF_NO_BLUR)
-            out[i] = ((const int16_t *)row[1])[i / 2];
-}
-
 static void run_means(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
     k->means(row[0], row[1], rf_mean_scale((uint64_t)parameter), n);
@@ -324,32 +161,6 @@ static void expect_sharpest4(void *const *row, int parameter, int n)
                 best = s;
         }
         out[2 * x] = out[2 * x + 1] = (int16_t)best;
-    }
-}
-
-static void run_push1(const struct rf_kernels *k, void *const *row, int parameter, int n)
-{
-    (void)parameter;
-    k->push1(row[0], row[1], row[2], row[3], row[4], row[5], n);
-}
-
-static void expect_push1(void *const *row, int parameter, int n)
-{
-    (void)parameter;
-    for (int x = 0; x < n; x++) {
-        int sum = 0, count = 0, farthest = RF_NO_BLUR;
-
-        for (int i = 0; i < 4; i++) {
-            const int blur = ((const int16_t *)row[4 + i / 2])[2 * x + i % 2];
-
-            if (blur == RF_NO_BLUR)
-                continue;
-            count++;
-            farthest = blur > farthest ? blur : farthest;
-            sum += ((const uint16_t *)row[2 + i / 2])[2 * x + i % 2];
-        }
-        ((uint16_t *)row[0])[x] = count == 0 ? 0 : (uint16_t)((2 * sum + count) / (2 * count));
-        ((int16_t *)row[1])[x] = (int16_t)farthest;
     }
 }
 
@@ -546,21 +357,24 @@ const struct row_kernel row_kernels[] = {
      run_push,
      expect_push},
     {"pull",
-     5,
+     8,
      {{LIGHT, 2, 0, 0},
       {BLUR_OR_NONE, 2, 0, 0},
       {LIGHT, 1, 0, 0},
       {LIGHT, 1, 0, 0},
+      {BLUR, 1, 0, 0},
+      {BLUR, 1, 0, 0},
+      {SCRATCH, 1, 0, 1},
       {SCRATCH, 1, 0, 1}},
      0,
-     0,
+     INT16_MAX,
      run_pull,
      expect_pull},
     {"pull_blur",
-     2,
-     {{BLUR_OR_NONE, 2, 0, 0}, {BLUR, 1, 0, 0}},
+     4,
+     {{BLUR_OR_NONE, 2, 0, 0}, {BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}, {SCRATCH, 1, 0, 1}},
      0,
-     0,
+     INT16_MAX,
      run_pull_blur,
      expect_pull_blur},
     {"means", 2, {{LIGHT, 1, 0, 0}, {SUM, 1, 0, 0}}, 1, 1024, run_means, expect_means},

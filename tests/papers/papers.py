@@ -66,8 +66,13 @@ LISTED = """\
   which takes its four sets of tables and its 2x2 squares. A photo has no such points, and those made
   up from it would hold nothing more. Tables are for equally spaced radii, which serve every depth,
   not for equally spaced depths, which are many far away, where the radius hardly changes, and few
-  nearby. 1 / z² is on where the depth map has metres, as in the paper, though it lets what is near
-  outweigh what is sharp behind it (fence, K = 40: 10.8 dB less); `--depth-ratio 1` turns it off.
+  nearby. 1 / z² (eq. 20) is on in the paper and off here unless `--depth-ratio` is given z1 / z0: it lets
+  what is near and blurred outweigh what is sharp behind it. Of 20 views of four scenes (K = 20 and 40,
+  every focus) it gains 1.5 dB in the mean on nightlights and loses 0.2, 4.0 and 8.3 dB on tabletop,
+  portrait and fence; on one view it is below the untouched photo (fence, df = 0, K = 20: 15.56, the photo
+  18.77, without it 23.61). Ratios of √Q and Q^¼, Q = z1 / z0, lose 1.4 and 0.4 dB in the mean of the
+  scenes. With one scene left out, the mean of the others chooses no weighting three times of four, at no
+  loss; with fence left out it chooses Q^¼, which gains 0.2 dB on the others and loses 2.0 on fence.
 - NVIDIA: that the quick preview is the cheapest is measured, not claimed: the table has where it
   takes less time than `sweep` with 32 rays.
 - Mulder: level 3 spreads a pixel over 29x29 by the 5x5 filters alone; the paper counts 31x31. The

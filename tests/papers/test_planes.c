@@ -4,12 +4,15 @@
 
 enum { W = 90, H = 60, K = 7 };
 
+static struct refocus_aperture *aperture; /* NULL: the disc */
+
 static void render(struct refocus_renderer *renderer, uint32_t method, uint8_t *out)
 {
     struct refocus_settings params = refocus_settings_default(0, K);
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
     params.render.method = method;
+    params.render.aperture = aperture;
     params.render.rays = REFOCUS_RAYS_FULL;
     params.jittered.cell = 1;
     params.foveated.angle = 170;
@@ -69,6 +72,29 @@ static void one_plane(void **state)
         if (most > same[i].most)
             fail_msg("%s: %d from full tracing", refocus_method_name(same[i].method), most);
     }
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+/* A triangle that points to the side: a lens that is turned about would be seen. */
+static void triangle(void **state)
+{
+    static uint8_t truth[3 * W * H], out[3 * W * H];
+    struct picture p = picture_make(W, H, 78);
+    struct refocus_renderer *renderer;
+    double mean;
+    int most;
+
+    (void)state;
+    for (int i = 0; i < W * H; i++)
+        p.disparity[i] = 65535;
+    renderer = prepared(&p, K, 2);
+    assert_int_equal(refocus_aperture_create_polygon(&aperture, 3, 20), REFOCUS_OK);
+    render(renderer, REFOCUS_METHOD_RAYTRACE, truth);
+    render(renderer, REFOCUS_METHOD_BLUR, out);
+    differences(out, truth, &mean, &most);
+    assert_true(most <= 1);
+    refocus_aperture_destroy(&aperture);
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
 }
@@ -151,7 +177,8 @@ static void pyramids_fall_off(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_plane), cmocka_unit_test(falls_off),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(one_plane), cmocka_unit_test(triangle),
+                                       cmocka_unit_test(falls_off),
                                        cmocka_unit_test(pyramids_fall_off)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

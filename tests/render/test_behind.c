@@ -159,9 +159,10 @@ static void truth(void **state)
             known = difference(out, should, &most);
             printf("focus %.2f, %d rays: %.2f codes off, %d at the most; made up %.2f, %d\n",
                    (double)focus[i], rays[k], known, most, made_up, most_made_up);
-            assert_true(most < most_made_up && known < made_up);
-            assert_true(i > 0 || (most <= 10 && known < 0.15 * made_up));
+            assert_true(known < made_up);
+            assert_true(most < most_made_up || (k == 0 && most <= 12)); /* as much as rays miss */
             assert_true(k == 0 || most <= 12);
+            assert_true(i > 0 || (most <= 10 && known < 0.15 * made_up));
         }
     }
     refocus_renderer_destroy(&renderer);

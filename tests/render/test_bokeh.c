@@ -1,5 +1,5 @@
 /* test_bokeh.c: the look of the blur: discs of single highlights, measured in linear light; star
- * filter, grain. */
+ * filter. */
 #include "pictures.h"
 #include "things.h"
 
@@ -251,79 +251,6 @@ static void star(void **state)
     assert_true(added > 12.5 * 0.6 && added < 12.5);
 }
 
-/* Noise of the sharp half in the blurred one. */
-static double noise_of(int x0, int x1)
-{
-    double sum = 0, squares = 0;
-    int n = 0;
-
-    for (int y = 4; y < H - 4; y++) {
-        for (int x = x0; x < x1; x++, n++) {
-            const double v = out[3 * (y * W + x) + 1];
-
-            sum += v;
-            squares += v * v;
-        }
-    }
-    return sqrt(squares / n - sum / n * (sum / n));
-}
-
-static void grain(void **state)
-{
-    static uint8_t first[3 * W * H];
-    struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
-    struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 20);
-    struct refocus_renderer *renderer;
-    uint32_t seed = 5;
-
-    (void)state;
-    for (int i = 0; i < W * H; i++) {
-        int v = 120;
-
-        for (int k = 0; k < 12; k++)
-            v += (int)(noise(&seed) % 5) - 2; /* 12 of variance 2: about 4.9 */
-        memset(p.rgb + 3 * i, v, 3);
-        p.disparity[i] = i % W < W / 2 ? 60000 : 10000;
-    }
-    renderer = prepared(&p, 20, 2);
-    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
-    assert_true(noise_of(W / 2 + 20, W) < 1.5);
-    params.look.grain_seed = 1;
-    for (int amount = 1; amount <= 2; amount++) {
-        params.look.grain = (float)amount;
-        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
-        about("grain", noise_of(W / 2 + 20, W), 4.9 * amount, 0.12);
-        for (int y = 0; y < H; y++) /* a sharp pixel has its own grain */
-            assert_memory_equal(out + 3 * y * W, p.rgb + 3 * y * W, 3 * (W / 2 - 16));
-    }
-    memcpy(first, out, sizeof out);
-    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
-    assert_memory_equal(first, out, sizeof out);
-    params.look.grain_seed = 2;
-    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
-    assert_true(memcmp(first, out, sizeof out) != 0);
-    /* a method that renders the frame as a whole: grain is in each of its tiles */
-    params.render.method = REFOCUS_METHOD_SCATTER;
-    params.look.grain = 0;
-    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
-    memcpy(first, out, sizeof out);
-    params.look.grain = 2;
-    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
-    for (int y = 0; y < H; y += 16)
-        for (int x = W - 48; x < W; x += 16) {
-            int changed = 0;
-
-            for (int i = 0; i < 256; i++) {
-                const int at = 3 * ((y + i / 16) * W + x + i % 16);
-
-                changed += out[at] != first[at];
-            }
-            assert_in_range(changed, 128, 256);
-        }
-    refocus_renderer_destroy(&renderer);
-    picture_free(&p);
-}
-
 /* Every effect: a part of the picture is that part of the whole. */
 static void regions(void **state)
 {
@@ -498,7 +425,8 @@ int main(void)
         cmocka_unit_test(hearts),      cmocka_unit_test(sides),
         cmocka_unit_test(squeezed),    cmocka_unit_test(cat_eye),
         cmocka_unit_test(fringes),     cmocka_unit_test(stops),
-        cmocka_unit_test(star),        cmocka_unit_test(grain),
+        cmocka_unit_test(star),
+
         cmocka_unit_test(regions),     cmocka_unit_test(strips_and_sequences),
         cmocka_unit_test(changed_map), cmocka_unit_test(refused)};
 

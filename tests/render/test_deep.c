@@ -70,6 +70,124 @@ static void gradients(void **state)
         }
 }
 
+/* The steps of a slope over eleven codes of 8 bits are less than those of means are apart. */
+static void shallow_gradients(void **state)
+{
+    static const double begins[] = {20000 / 65535.0, 30000 / 65535.0, 50000 / 65535.0};
+    static const float blurs[] = {2, 6, 10};
+    enum { STEPS = 512, WIDE = 2 };
+
+    (void)state;
+    for (int k = 0; k < 9; k++) {
+        struct deep photo = deep_make(REFOCUS_FORMAT_RGB16, STEPS * WIDE, 32);
+        struct deep out = deep_make(REFOCUS_FORMAT_RGB16, STEPS * WIDE, 32);
+        struct refocus_renderer *renderer;
+        int steps = 0;
+
+        for (int i = 0; i < 3 * 32 * STEPS * WIDE; i++) {
+            const int step = i / 3 % (STEPS * WIDE) / WIDE;
+
+            deep_put(&photo, i / 3 % (STEPS * WIDE), i / 3 / (STEPS * WIDE), i % 3,
+                     (float)(begins[k / 3] + 11 / 255.0 * step / (STEPS - 1)));
+        }
+        renderer = deep_prepare_flat(&photo.image, 10);
+        assert_int_equal(deep_render(renderer, 1, blurs[k % 3], &out.image), REFOCUS_OK);
+        for (int i = 1; i < STEPS; i++)
+            steps += deep_get(&out, WIDE * i + 1, 16, 0) > deep_get(&out, WIDE * i - 1, 16, 0);
+        assert_in_range(steps, 500, 511);
+        refocus_renderer_destroy(&renderer);
+        free(photo.memory);
+        free(out.memory);
+    }
+}
+
+/* Light of a code between whole ones. */
+static double light_of(double code)
+{
+    const double v = code / 255;
+
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
+/* Whether the mean of Q14 nearest to this light may have the code. Where roundings of means are
+ * made up for they were two at the most. */
+static bool is_of_code(double value, int code, bool made_up)
+{
+    const double roundings = ((made_up ? 2 : 0) + 0.6) / 16380;
+
+    return light_of(value) > light_of(code - 0.5) - roundings &&
+           light_of(value) < light_of(code + 0.5) + roundings;
+}
+
+/* Each method that takes deep photos makes of one of 16 bits what it makes of the same in 8, with
+ * finer steps, and writes it in either. What is in focus comes out as it went in. */
+static void methods(void **state)
+{
+    enum { WIDE = 97, HIGH = 61 };
+    struct picture p = picture_make(WIDE, HIGH, 3);
+    const struct refocus_disparity map = picture_disparity(&p);
+    struct deep photo = deep_make(REFOCUS_FORMAT_RGB16, WIDE, HIGH);
+    struct deep out = deep_make(REFOCUS_FORMAT_RGB16, WIDE, HIGH);
+    struct deep code = deep_make(REFOCUS_FORMAT_RGB8, WIDE, HIGH);
+    struct deep plain = deep_make(REFOCUS_FORMAT_RGB8, WIDE, HIGH);
+    struct refocus_renderer_params limits = refocus_renderer_params_default(WIDE, HIGH, 12);
+    struct refocus_renderer *deep, *shallow;
+
+    (void)state;
+    photo.image.transfer = out.image.transfer = REFOCUS_TRANSFER_SRGB;
+    for (int i = 0; i < 3 * WIDE * HIGH; i++)
+        deep_put(&photo, i / 3 % WIDE, i / 3 / WIDE, i % 3, (float)p.rgb[i] / 255);
+    for (int y = 0; y < HIGH; y++)
+        memcpy(deep_at(&plain, 0, y, 0), p.rgb + 3 * WIDE * y, 3 * WIDE);
+    limits.papers = refocus_papers();
+    limits.methods = (1u << REFOCUS_METHOD_COUNT) - 1;
+    assert_int_equal(refocus_renderer_create(&shallow, &limits), REFOCUS_OK);
+    limits.deep = 1;
+    assert_int_equal(refocus_renderer_create(&deep, &limits), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(shallow, &plain.image, &map), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(deep, &photo.image, &map), REFOCUS_OK);
+    for (uint32_t m = 0; m < REFOCUS_METHOD_COUNT; m++) {
+        struct refocus_settings params = refocus_settings_default(0.4f, 12);
+        const bool takes = refocus_method_traits(m) & REFOCUS_METHOD_TAKES_DEEP;
+        int finer = 0;
+
+        params.render.method = m;
+        params.render.dither = REFOCUS_DITHER_OFF;
+        params.highlights.gain = 1;
+        if (!takes) {
+            assert_int_equal(refocus_render_settings(deep, &params, &out.image),
+                             REFOCUS_ERR_UNSUPPORTED);
+            continue;
+        }
+        assert_int_equal(refocus_render_settings(shallow, &params, &plain.image), REFOCUS_OK);
+        assert_int_equal(refocus_render_settings(deep, &params, &out.image), REFOCUS_OK);
+        assert_int_equal(refocus_render_settings(deep, &params, &code.image), REFOCUS_OK);
+        for (int i = 0; i < 3 * WIDE * HIGH; i++) {
+            const int x = i / 3 % WIDE, y = i / 3 / WIDE, c = i % 3;
+            uint16_t sample; /* at an odd place, perhaps */
+
+            memcpy(&sample, deep_at(&out, x, y, c), sizeof sample);
+            const double value = sample / 257.0;
+
+            assert_true(is_of_code(value, *deep_at(&plain, x, y, c), m == REFOCUS_METHOD_SWEEP));
+            assert_int_equal(*deep_at(&code, x, y, c), *deep_at(&plain, x, y, c));
+            finer += fabs(value - floor(value + 0.5)) > 0.1;
+        }
+        assert_in_range(finer, WIDE * HIGH, 3 * WIDE * HIGH);
+        params.render.max_blur_radius = 0;
+        assert_int_equal(refocus_render_settings(deep, &params, &out.image), REFOCUS_OK);
+        for (int y = 0; y < HIGH; y++)
+            assert_memory_equal(deep_at(&out, 0, y, 0), deep_at(&photo, 0, y, 0), 6 * WIDE);
+    }
+    refocus_renderer_destroy(&shallow);
+    refocus_renderer_destroy(&deep);
+    free(photo.memory);
+    free(out.memory);
+    free(code.memory);
+    free(plain.memory);
+    picture_free(&p);
+}
+
 /* A slope of 8 codes over 512 pixels, in focus and blurred, becomes 8 bits whose mean over 8 x 8
  * pixels has no steps; codes stay codes; without dither there are 9 of them. */
 static void dither(void **state)
@@ -300,9 +418,6 @@ static void refusals(void **state)
     }
     assert_int_equal(refocus_prepare(renderer, &photo.image, &map), REFOCUS_OK);
     assert_int_equal(refocus_render_settings(renderer, &s, &photo.image), REFOCUS_OK);
-    s.render.method = REFOCUS_METHOD_SEARCH;
-    REFUSED(UNSUPPORTED, refocus_render_settings(renderer, &s, &photo.image));
-    s = refocus_settings_default(0.5f, 5);
     s.render.blend = REFOCUS_BLEND_STORED;
     REFUSED(UNSUPPORTED, refocus_render_settings(renderer, &s, &plain));
     s = refocus_settings_default(0.5f, 5);
@@ -322,9 +437,15 @@ static void refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(in_focus),   cmocka_unit_test(gradients), cmocka_unit_test(halves),
-        cmocka_unit_test(same_bytes), cmocka_unit_test(maps),      cmocka_unit_test(dither),
+        cmocka_unit_test(in_focus),
+        cmocka_unit_test(gradients),
+        cmocka_unit_test(shallow_gradients),
+        cmocka_unit_test(halves),
+        cmocka_unit_test(same_bytes),
+        cmocka_unit_test(maps),
+        cmocka_unit_test(dither),
         cmocka_unit_test(refusals),
+        cmocka_unit_test(methods),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,9 +3,9 @@
 
 enum { W = 300, H = 300, CX = W / 2, CY = H / 2 };
 
-/* How highlights are drawn: as discs; met by rays; as masks, discs with bright edges, cat's eyes,
- * hexagons with colour fringes. */
-enum way { DISC, RAYS, MASK, BUBBLE, CAT_EYE, FRINGE, WAYS };
+/* How highlights are drawn: as discs, by sweep and search; met by rays; as masks, discs with bright
+ * edges, cat's eyes, hexagons with colour fringes. */
+enum way { DISC, SEARCHED, RAYS, MASK, BUBBLE, CAT_EYE, FRINGE, WAYS };
 
 /* The aperture of a way, which sets the look too; NULL: a disc. */
 static struct refocus_aperture *aperture_of(enum way way, struct refocus_look_params *look)
@@ -22,7 +22,7 @@ static struct refocus_aperture *aperture_of(enum way way, struct refocus_look_pa
     shape.blades = way == FRINGE ? 6 : 0;
     look->cat_eye = way == RAYS ? 0.001f : way == CAT_EYE ? 0.7f : 0;
     look->fringe = way == FRINGE ? 0.2f : 0;
-    if (way == DISC || way == CAT_EYE)
+    if (way == DISC || way == SEARCHED || way == CAT_EYE)
         return NULL;
     assert_int_equal(refocus_aperture_create(&aperture, &shape), REFOCUS_OK);
     return aperture;
@@ -37,6 +37,7 @@ static struct deep render_flat(const struct deep *photo, uint32_t format, float 
     struct refocus_aperture *aperture = aperture_of(way, &params.look);
 
     params.render.aperture = aperture;
+    params.render.method = way == SEARCHED ? REFOCUS_METHOD_SEARCH : REFOCUS_METHOD_SWEEP;
     assert_int_equal(refocus_render_settings(renderer, &params, &out.image), REFOCUS_OK);
     refocus_aperture_destroy(&aperture);
     refocus_renderer_destroy(&renderer);

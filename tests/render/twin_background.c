@@ -94,26 +94,48 @@ static int beside(int child, int parents)
     return other < 0 || other >= parents ? child / 2 : other;
 }
 
-/* Unknown children: bilinear between the four nearest parents, the blur of their own. */
-static void pull(struct level *fine, const struct level *coarse)
-{
-    const int w = coarse->width;
+/* Light and blur of two parents, 3 and 1 quarters of the light; the deeper one's alone, and its
+ * blur, where they are more than a quarter of the largest blur apart. */
+struct parents {
+    double light[3], blur;
+};
 
+static struct parents mix(struct parents near, struct parents far, double apart)
+{
+    if (near.blur - far.blur > apart)
+        return near;
+    if (far.blur - near.blur > apart)
+        return far;
+    for (int c = 0; c < 3; c++)
+        near.light[c] = (3 * near.light[c] + far.light[c]) / 4;
+    return near;
+}
+
+static struct parents parent(const struct level *coarse, int x, int y)
+{
+    const int p = y * coarse->width + x;
+
+    return (struct parents){{coarse->plane[0][p], coarse->plane[1][p], coarse->plane[2][p]},
+                            coarse->plane[3][p]};
+}
+
+/* Unknown children: of the four nearest parents, down and then across. */
+static void pull(struct level *fine, const struct level *coarse, double apart)
+{
     for (int y = 0; y < fine->height; y++) {
         for (int x = 0; x < fine->width; x++) {
             const int p = y * fine->width + x;
-            const int x0 = x / 2, x1 = beside(x, w), y0 = y / 2, y1 = beside(y, coarse->height);
+            const int x0 = x / 2, x1 = beside(x, coarse->width);
+            const int y0 = y / 2, y1 = beside(y, coarse->height);
+            struct parents both;
 
             if (!isnan(fine->plane[3][p]))
                 continue;
-            for (int c = 0; c < 3; c++) {
-                const double *from = coarse->plane[c];
-
-                fine->plane[c][p] = (9 * from[y0 * w + x0] + 3 * from[y0 * w + x1] +
-                                     3 * from[y1 * w + x0] + from[y1 * w + x1]) /
-                                    16;
-            }
-            fine->plane[3][p] = coarse->plane[3][y0 * w + x0];
+            both = mix(mix(parent(coarse, x0, y0), parent(coarse, x0, y1), apart),
+                       mix(parent(coarse, x1, y0), parent(coarse, x1, y1), apart), apart);
+            for (int c = 0; c < 3; c++)
+                fine->plane[c][p] = both.light[c];
+            fine->plane[3][p] = both.blur;
         }
     }
 }
@@ -133,7 +155,7 @@ void twin_background(struct twin *t)
         levels++;
     }
     while (--levels > 0) {
-        pull(&level[levels - 1], &level[levels]);
+        pull(&level[levels - 1], &level[levels], t->K / 4);
         for (int c = 0; c < 4; c++)
             free(level[levels].plane[c]);
     }

@@ -77,7 +77,7 @@ class Case(unittest.TestCase):
         environment = {'PATH': self.bin, 'HOME': self.folder, 'STUB_LOG': self.log,
                        'STUB_INSTALLED': installed, 'STUB_SETUP_FAILS': 'never', **more}
         result = subprocess.run([os.path.join(ROOT, script), *arguments], env=environment,
-                                cwd=self.folder, stdin=subprocess.DEVNULL, text=True, timeout=60,
+                                cwd=self.folder, stdin=subprocess.DEVNULL, text=True, timeout=240,
                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         with open(self.log, encoding='utf-8') as file:
             return result.returncode, result.stdout, file.read().splitlines()

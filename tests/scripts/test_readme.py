@@ -119,7 +119,7 @@ class Readme(unittest.TestCase):
         self.assertGreater(len(shown), 8)
         for command in shown:
             with self.subTest(command):
-                if ' serve ' in command:
+                if ' serve ' in command or ' --page ' in command:
                     self.serve(*shlex.split(command)[1:])
                     continue
                 result = self.run_it(*shlex.split(command)[1:])
@@ -138,7 +138,8 @@ class Readme(unittest.TestCase):
     def serve(self, *arguments):
         """A server prints its link, and ends when it is told to."""
         with subprocess.Popen([REFOCUS, *arguments], stdin=subprocess.DEVNULL, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as server:
+                              env=dict(NO_DISPLAY, BROWSER='true'), stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE) as server:
             self.assertRegex(server.stdout.readline(), r'^http://127\.0\.0\.1:\d+/[0-9a-f]{32}/$')
             server.terminate()
             self.assertEqual((server.wait(60), server.stderr.read()), (0, ''))

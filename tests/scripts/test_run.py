@@ -14,7 +14,8 @@ EVERYTHING = ('meson ninja-build pkg-config gcc g++ libc6-dev python3 libcmocka-
               'libtiff-dev libopenexr-dev libwebp-dev libjxl-dev libraw-dev '
               'libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev gstreamer1.0-tools '
               'gstreamer1.0-plugins-base gstreamer1.0-plugins-good libgegl-dev gegl gimp '
-              'libcamera-dev libmicrohttpd-dev libsdl2-dev xvfb xdotool '
+              'libpipewire-0.3-dev pipewire pipewire-bin wireplumber dbus-daemon gstreamer1.0-pipewire '
+              'libcamera-dev libmicrohttpd-dev libsdl2-dev libsdl2-ttf-dev fonts-dejavu-core xvfb xdotool '
               'libclang-rt-dev chromium chromium-driver python3-selenium')
 
 

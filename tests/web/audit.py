@@ -1,5 +1,6 @@
 """Checks in the browser of the needs that everybody has: names, contrast, sizes to touch, a focus
 that shows, nothing cut off. Each check returns the lines that it complains about."""
+import os
 
 SHARED = '''
 const seen = (element) => element.checkVisibility({ visibilityProperty: true }) &&
@@ -142,5 +143,24 @@ def names(browser):
     return found if any(role == 'button' for role, _ in roles) else ['no button at all']
 
 
+AXE = '''
+const done = arguments[arguments.length - 1];
+axe.run(document, { runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'] })
+    .then((result) => done(result.violations.flatMap((rule) => rule.nodes.map((node) =>
+        `axe ${rule.id}: ${node.target.join(' ')} ${node.failureSummary.slice(0, 200)}`))),
+    (error) => done([`axe: ${error}`]));
+'''
+
+
+def axe(browser):
+    """The rules of axe-core, whose axe.min.js REFOCUS_AXE names; nothing without it."""
+    file = os.environ.get('REFOCUS_AXE')
+    if not file:
+        return []
+    with open(file) as script:
+        browser.driver.execute_script(script.read())
+    return browser.driver.execute_async_script(AXE)
+
+
 def all_of_them(browser):
-    return sizes(browser) + contrast(browser) + cut_off(browser) + names(browser)
+    return sizes(browser) + contrast(browser) + cut_off(browser) + names(browser) + axe(browser)

@@ -1,121 +1,22 @@
 #!/usr/bin/env python3
-"""usage: test_page.py REFOCUS  -- the page of refocus serve in a headless Chromium.
+"""usage: test_page.py REFOCUS  -- what a person does on the page of refocus serve, in a headless Chromium.
 
-Exit status 77, after saying so, where Chromium, its driver or Selenium is missing. With
-REFOCUS_PAGE_SHOTS=FOLDER screenshots of all sizes are kept there."""
+Exit status 77, after saying so, where Chromium, its driver or Selenium is missing."""
 import base64
 import json
+import math
 import os
-import re
-import shutil
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
-import audit
 import browser
-from browser import SLOW, Browser, difference
-
-ROOT = os.environ.get('REFOCUS_SOURCE_ROOT', os.path.join(os.path.dirname(__file__), '../..'))
-SCENE = os.path.join(os.path.abspath(ROOT), 'examples/data/portrait/')
-SHOTS = os.environ.get('REFOCUS_PAGE_SHOTS')
-REFOCUS = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else 'refocus'
-SCREENS = {  # width, height, touch, device pixels of a CSS pixel
-    'small-phone': (320, 568, True, 2), 'phone': (390, 844, True, 3),
-    'phone-on-its-side': (844, 390, True, 3), 'tablet': (820, 1180, True, 2),
-    'desktop': (1440, 900, False, 1),
-}
-FACE, WALL = (0.56, 0.5), (0.08, 0.3)  # a near and a far place of the photo
-os.environ['XDG_CONFIG_HOME'] = os.devnull
+from browser import SLOW, difference
+from page import Page, REFOCUS, SHOTS, FACE, WALL
 
 
-def refocus(*arguments):
-    subprocess.run([REFOCUS, *arguments], check=True, stdout=subprocess.DEVNULL)
-
-
-class Page(unittest.TestCase):
-    maxDiff = None
-
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp(prefix='refocus-page-')
-        cls.photos = os.path.join(cls.folder, 'photos')
-        cls.saved = os.path.join(cls.folder, 'saved')
-        os.mkdir(cls.photos)
-        os.mkdir(cls.saved)
-        deep = os.path.join(cls.photos, 'deep.jpg')
-        refocus('render', SCENE + 'allfocus.png', '--depth', SCENE + 'disparity.png', '--blur',
-                '0', '--editable', '-o', deep)
-        refocus('render', deep, '--blur', '0', '--strip', '-o',
-                os.path.join(cls.photos, 'flat.jpg'))
-        shutil.copy(deep, os.path.join(cls.folder, 'elsewhere.jpg'))
-        cls.server = subprocess.Popen([REFOCUS, 'serve', cls.photos, '--port', '0'],
-                                      stdout=subprocess.PIPE, text=True)
-        cls.address = cls.server.stdout.readline().strip()
-        cls.browser = Browser(cls.saved)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.browser.quit()
-        cls.server.terminate()
-        status = cls.server.wait(30 * SLOW)
-        cls.server.stdout.close()
-        shutil.rmtree(cls.folder)
-        if status not in (0, -15):
-            raise AssertionError('the server ended with %d' % status)
-
-    def setUp(self):
-        self.allowed = ()  # errors of the console that a test provokes
-        b = self.browser
-        b.screen(1280, 800)
-        self.load()
-
-    def tearDown(self):
-        errors = [line for line in self.browser.errors()
-                  if not any(word in line for word in self.allowed)]
-        self.assertEqual(errors, [])
-        origin = re.match(r'http://[^/]+/', self.address).group()
-        for name in self.browser.requests():
-            self.assertTrue(name.startswith((origin, 'blob:' + origin)), name)
-
-    def load(self, fragment=''):
-        self.browser.driver.get('about:blank')
-        self.browser.errors()
-        self.browser.driver.get(self.address + fragment)
-
-    def card(self, name):
-        def find():
-            return [card for card in self.browser.all('.photo') if name in card.text]
-        return self.browser.until(find, 'card of ' + name)[0]
-
-    def open(self, name='deep.jpg'):
-        self.card(name).click()
-        self.browser.until(lambda: self.browser.text('name') == name, 'open ' + name)
-        return self.browser.samples()
-
-    def tab(self, name):
-        self.browser.click('tab-' + name)
-
-    def changes(self, before, what, least=0.05):
-        """The picture becomes another one; returns it."""
-        after = self.browser.samples()
-        self.assertGreater(difference(before, after), least, what)
-        return after
-
-    def downloaded(self, ending):
-        def find():
-            return [name for name in os.listdir(self.saved) if name.endswith(ending)]
-        name = self.browser.until(find, 'file ' + ending, 60)[0]
-        path = os.path.join(self.saved, name)
-        with open(path, 'rb') as file:
-            data = file.read()
-        os.remove(path)
-        return data
-
-    # Things that a person does
-
+class Use(Page):
     def test_opening(self):
         b = self.browser
         deep, flat = self.card('deep.jpg'), self.card('flat.jpg')
@@ -312,14 +213,53 @@ class Page(unittest.TestCase):
             { deltaY: -400, clientX: 300, clientY: 300, bubbles: true, cancelable: true }))''')
         self.changes(fitted, 'wheel', 1)
 
+    def fingers(self, kind, *places):
+        self.browser.command('Input.dispatchTouchEvent', type=kind, touchPoints=[
+            {'x': x, 'y': y, 'id': i} for i, (x, y) in enumerate(places)])
+
+    def two_fingers(self, *pairs):
+        """Two fingers come down at the first pair of places and move over the others."""
+        self.fingers('touchStart', pairs[0][0])
+        self.fingers('touchStart', *pairs[0])
+        for pair in pairs[1:]:
+            self.fingers('touchMove', *pair)
+            time.sleep(0.05)
+        self.fingers('touchEnd')
+
+    def value(self, slider):
+        return int(self.browser.find(slider).get_attribute('aria-valuetext').rstrip('°'))
+
+    def test_two_fingers_tilt(self):
+        b = self.browser
+        b.screen(390, 844, touch=True)
+        level = self.open()
+        self.assertFalse(b.seen('turn'))
+        # Up, side by side, in steps as large as those of a quick hand.
+        self.two_fingers(*[((150, 320 - y), (230, 320 - y)) for y in (0, 9, 25, 60, 90)])
+        tilted = self.changes(level, 'tilt')
+        tilt = self.value('tilt')
+        self.assertGreater(tilt, 5)
+        b.until(lambda: 'tilt-angle=%d' % tilt in b.driver.current_url, 'tilt in the link')
+        self.assertEqual(self.value('turn'), 0)
+        # Turned about each other by 40 degrees.
+        self.two_fingers(*[[(190 + r * math.cos(angle), 260 + r * math.sin(angle))
+                            for r in (-60, 60)] for angle in (0, 0.1, 0.25, 0.4, 0.55, 0.698)])
+        turned = self.changes(tilted, 'turn')
+        self.assertAlmostEqual(self.value('turn'), 40, delta=2)
+        self.assertEqual(self.value('tilt'), tilt)
+        # A pinch neither tilts nor turns, and nothing else zooms.
+        self.two_fingers(*[((190 - x, 260 - x / 4), (190 + x, 260 + x / 4))
+                           for x in (20, 40, 60, 90)])
+        self.changes(turned, 'pinch', 1)
+        self.assertEqual((self.value('tilt'), self.value('turn')), (tilt, 40))
+        self.two_fingers(*[((150, 320 - y), (230, 320 - y)) for y in (0, 30, 60)])
+        self.assertEqual(self.value('tilt'), tilt, 'what is zoomed is moved')
+
     def test_two_fingers(self):
         b = self.browser
         b.screen(390, 844, touch=True)
         fitted = self.open()
-
-        def fingers(kind, *places):
-            b.command('Input.dispatchTouchEvent', type=kind, touchPoints=[
-                {'x': x, 'y': y, 'id': i} for i, (x, y) in enumerate(places)])
+        fingers = self.fingers
         fingers('touchStart', (180, 300))
         fingers('touchStart', (180, 300), (220, 300))
         for spread in (30, 60, 90):
@@ -372,11 +312,37 @@ class Page(unittest.TestCase):
         self.tab('paint')
         canvas = b.find('canvas')
         browser.ActionChains(b.driver).move_to_element_with_offset(
-            canvas, *b.at(*WALL)).click_and_hold().move_by_offset(60, 40).perform()
-        seen = b.run(browser.SAMPLES)
-        self.assertGreater(difference(picture, seen), 0.1)
-        browser.ActionChains(b.driver).release().perform()
+            canvas, *b.at(0.5, 0.4)).click_and_hold().move_by_offset(60, 40).perform()
+        self.assertGreater(difference(picture, b.run(browser.SAMPLES)), 0.1)
+
+        def changed():
+            """The part of the stage that looks different from before."""
+            now = b.run(browser.SAMPLES)
+            return 3 * sum(picture[i:i + 3] != now[i:i + 3]
+                           for i in range(0, len(now), 3)) / len(now)
+        width, height = b.find('canvas').size['width'], b.find('canvas').size['height']
+        path = (math.hypot(60, 40) * 40 + math.pi * 20 ** 2) / (width * height)
+        b.until(lambda: changed() > 1.2 * path, 'selection')
+        if SHOTS:
+            b.driver.save_screenshot(os.path.join(SHOTS, 'desktop-selection.png'))
+        browser.ActionChains(b.driver).move_by_offset(20, 20).release().perform()
         b.until(lambda: len(b.all('#strokes li')) == 1, 'stroke')
+
+    def test_a_line_changes_the_picture_under_the_finger(self):
+        b = self.browser
+        self.open('flat.jpg')
+        b.pick('views', 'depth')
+        flat = b.samples()
+        actions = browser.ActionChains(b.driver, duration=50)
+        actions.move_to_element_with_offset(b.find('canvas'), *b.at(0.5, 0.98)).click_and_hold()
+        actions.move_by_offset(0, -200).perform()
+        b.until(lambda: difference(flat, b.run(browser.SAMPLES)) > 20, 'depth')
+        self.assertEqual(b.all('#strokes li'), [])
+        # A second finger, or a cross that is taken away, ends it without a stroke.
+        b.press(browser.Keys.ESCAPE)
+        b.until(lambda: difference(flat, b.run(browser.SAMPLES)) < 0.1, 'depth as before')
+        browser.ActionChains(b.driver).release().perform()
+        self.assertEqual(b.all('#strokes li'), [])
 
     def test_rack_focus(self):
         b = self.browser
@@ -438,111 +404,6 @@ class Page(unittest.TestCase):
         b.run('document.activeElement.blur()')
         b.tap(*WALL)  # the mark is drawn again
         self.assertLess(difference(picture, b.samples()), 1)
-
-    # Needs that everybody has
-
-    def walk(self):
-        """Tab through the page; returns what was met."""
-        b, met = self.browser, []
-        for _ in range(80):
-            b.press(browser.Keys.TAB)
-            at = b.run(audit.FOCUS)
-            if at is None:
-                continue
-            if any(at['what'] == one['what'] for one in met):
-                break
-            self.assertTrue(at['shows'], at['what'] + ' does not show that it has the focus')
-            met.append(at)
-        return met
-
-    def test_keys_alone(self):
-        b, keys = self.browser, browser.Keys
-        deep = self.card('deep.jpg')
-        b.until(lambda: 'depth' in deep.text, 'marks')
-        for _ in range(10):
-            b.press(keys.TAB)
-            if 'deep.jpg' in b.run(audit.FOCUS)['what']:
-                break
-        b.press(keys.ENTER)
-        b.until(lambda: b.text('name') == 'deep.jpg', 'open by Enter')
-        picture = b.samples()
-        self.assertEqual(b.run(audit.FOCUS)['id'], 'stage')
-        b.press(*[keys.ARROW_RIGHT] * 3, keys.ENTER)
-        picture = self.changes(picture, 'focus by Enter')
-        b.press('+', '+')
-        picture = self.changes(picture, 'zoom by +', 1)
-        b.press('0', 'b')
-        b.until(lambda: b.seen('divider'), 'divider by b')
-        b.press(keys.TAB)
-        self.assertEqual(b.run(audit.FOCUS)['id'], 'divider')
-        b.press(*[keys.ARROW_RIGHT] * 5)
-        self.assertEqual(b.find('divider').get_attribute('aria-valuenow'), '60')
-        while b.run(audit.FOCUS)['id'] != 'tab-adjust':
-            b.press(keys.TAB)
-        b.press(keys.TAB)
-        self.assertEqual(b.run(audit.FOCUS)['id'], 'focus')
-        b.press(keys.END)
-        picture = self.changes(picture, 'focus by End')
-        b.press_with(keys.SHIFT, keys.TAB)
-        b.press(keys.ARROW_RIGHT, keys.ARROW_RIGHT)
-        self.assertTrue(b.seen('paint'))
-        b.run("document.getElementById('stage').focus()")
-        b.press(keys.ENTER, *[keys.ARROW_RIGHT] * 4, *[keys.ARROW_DOWN] * 3, keys.ENTER)
-        b.until(lambda: len(b.all('#strokes li')) == 1, 'stroke by keys')
-        b.press_with(keys.CONTROL, 'z')
-        b.until(lambda: b.all('#strokes .undone'), 'undo by keys')
-        while b.run(audit.FOCUS)['id'] != 'save':
-            b.press_with(keys.SHIFT, keys.TAB)
-        b.press(keys.ENTER, keys.TAB, keys.TAB, keys.TAB, keys.ENTER)
-        self.assertEqual(self.downloaded('.json')[:1], b'{')
-
-    def test_tab_comes_to_everything(self):
-        b = self.browser
-        self.open()
-        for tab in ('adjust', 'look', 'paint', 'pull'):
-            self.tab(tab)
-            if tab == 'pull':
-                b.click('mark')
-                b.click('mark')
-            wanted = b.run(audit.TABBED)
-            b.run('document.activeElement.blur()')
-            met = {one['what'] for one in self.walk()}
-            self.assertEqual([one for one in wanted if one not in met], [], tab)
-
-    def test_screens(self):
-        b = self.browser
-        for name, (width, height, touch, scale) in SCREENS.items():
-            for dark in (False, True):
-                b.screen(width, height, dark, touch, scale)
-                self.load()
-                card = self.card('flat.jpg')
-                b.until(lambda: 'no depth' in card.text, 'marks')
-                self.complete(name, dark, 'open')
-                self.open()
-                self.complete(name, dark, 'adjust')
-                b.click('compare')
-                self.tab('look')
-                b.rest()
-                time.sleep(0.6)
-                self.complete(name, dark, 'look')
-                b.click('compare')
-                self.tab('paint')
-                self.complete(name, dark, 'paint')
-                self.tab('pull')
-                b.click('mark')
-                b.click('mark')
-                self.complete(name, dark, 'pull')
-                b.click('save')
-                self.complete(name, dark, 'save')
-
-    def complete(self, screen, dark, part):
-        """All checks of the page as it is seen now."""
-        shade = 'dark' if dark else 'light'
-        self.browser.rest() if part != 'open' else None
-        self.assertEqual(audit.all_of_them(self.browser), [], (screen, shade, part))
-        if SHOTS:
-            self.browser.driver.save_screenshot(
-                os.path.join(SHOTS, '%s-%s-%s.png' % (screen, shade, part)))
 
 
 if __name__ == '__main__':

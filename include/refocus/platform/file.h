@@ -282,25 +282,34 @@ REFOCUS_API int refocus_depth_set_unit(struct refocus_depth_map *map, const char
 
 struct refocus_depth_write;
 
-/** Parts that make a refocused JPEG editable: refocus_photo_read() of the result gives the
+/** Parts that make a refocused JPEG or HEIC editable: refocus_photo_read() of the result gives the
  * all-in-focus photo and the depth that it was made of. The original of a JPEG is that of the photo
  * that is kept, without what the result keeps itself, its coefficients as they are, and behind it
  * the photo's gain map and portrait matte; of a HEIC it becomes a JPEG of quality 95, with the gain
- * map; of others a PNG of 8 or 16 bits; what an earlier result holds stays byte for byte. In the
+ * map; of others a PNG of 8 or 16 bits; what an earlier result holds stays byte for byte, unless a
+ * JPEG becomes a HEIC or the other way round: its original is a JPEG of quality 95 then. In the
  * file they are GImage:Data and GDepth:Data of extended XMP, and the depth once more, in 8 bits,
- * behind the picture as Dynamic Depth. Start from refocus_editable_default().
+ * behind the picture as Dynamic Depth; of a HEIC they are in its one packet of XMP, which this
+ * library reads (libheif 1.15 writes no auxiliary depth image). Start from
+ * refocus_editable_default().
  */
 struct refocus_editable {
     uint32_t struct_size; /**< sizeof(struct refocus_editable) */
     int32_t own_depth;    /**< 1: the depth is the GDepth that the photo carries, which stays
                                byte for byte */
     /** Depth of the upright photo; its focus and range are those that the photo had, not those of
-     *  the result. It is written as GDepth when own_depth is 0, and as Dynamic Depth, of 8 bits,
-     * for others; NULL: neither, which own_depth 1 allows. */
+     *  the result. It is written as GDepth when own_depth is 0 or the file is of another kind than
+     *  the photo's, and in a JPEG as Dynamic Depth, of 8 bits, for others; NULL: neither, which
+     *  own_depth 1 allows where the kind stays. */
     const struct refocus_depth_write *depth;
     double focus_disparity;    /**< 0 to 1: a note of the result's lens for whoever opens it */
     double max_blur_radius;    /**< K in pixels, likewise */
     double simulated_f_number; /**< the photo's, see struct refocus_photo_info; 0 = none */
+    /** A matte of the upright photo, 65535 = subject, which whoever opens the result finds as the
+     *  photo's; NULL: the photo's own stays. */
+    const uint16_t *matte;
+    int32_t matte_width, matte_height; /**< samples; 0 without a matte */
+    ptrdiff_t matte_stride;            /**< bytes from a row to the next; may be negative */
 };
 
 static inline struct refocus_editable refocus_editable_default(void)
@@ -315,7 +324,7 @@ static inline struct refocus_editable refocus_editable_default(void)
 /** Parts of a file beside the pixels. Zeros: none. Start from refocus_write_options_default(). */
 struct refocus_write_options {
     uint32_t struct_size;            /**< sizeof(struct refocus_write_options) */
-    int32_t quality;                 /**< JPEG, 1 to 100; 0 = 95 */
+    int32_t quality;                 /**< JPEG and HEIC, 1 to 100; 0 = 95 and 90 */
     const struct refocus_blob *exif; /**< TIFF block, whose sides become the picture's; NULL = none.
                                           PPM and PFM take neither, nor does OpenEXR; TIFF takes no
                                           maker's note */
@@ -330,8 +339,8 @@ struct refocus_write_options {
      *  gain map, video), or are not true for it (thumbnail, orientation, sides), are cut out.
      *  NULL = nothing. */
     const struct refocus_photo *keep;
-    /** A JPEG only, of a photo `keep` that is not of floats; else, and without expat or libpng,
-     *  REFOCUS_ERR_UNSUPPORTED. NULL = original and depth are left out. */
+    /** A JPEG or HEIC only, of a photo `keep` that is not of floats; else, and without expat or
+     * libpng, REFOCUS_ERR_UNSUPPORTED. NULL = original and depth are left out. */
     const struct refocus_editable *editable;
     /** A JPEG of a picture in RGB8 only, else REFOCUS_ERR_UNSUPPORTED or REFOCUS_ERR_ARGUMENT: the
      *  light that the picture shows, as refocus_light_to_base() brought it into its tones, in
@@ -371,7 +380,8 @@ static inline struct refocus_write_options refocus_write_options_default(void)
  *                not fit another picture (give its light), its XMP may leave no room for what makes
  * the picture editable; else empty. May be NULL
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (an ending it does
- *         not know), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Thread-safe.
+ *         not know, or a HEIC where libheif has no encoder of HEVC), REFOCUS_ERR_IO,
+ * REFOCUS_ERR_MEMORY. Thread-safe.
  */
 REFOCUS_API int refocus_image_write(const char *path, const struct refocus_image *image,
                                     const struct refocus_write_options *options,

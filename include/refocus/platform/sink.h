@@ -5,6 +5,8 @@
  *     null                   nowhere, for timing
  *     window                 a window by SDL2, or the whole screen of a console (KMS)
  *     v4l2:/dev/video9       a V4L2 output node (virtual camera)
+ *     pipewire:[NAME]        a camera of PipeWire, which browsers and calls list by its
+ *                            name, else as "Refocused camera"
  *     y4m:FILE               a YUV4MPEG2 stream: RGB8 becomes 4:2:0, BT.601 limited
  *                            range; pictures of Y, U and V keep their codes, 4:2:0 or
  *                                4:2:2
@@ -63,7 +65,8 @@ REFOCUS_API int refocus_sink_start(struct refocus_sink *sink, int width, int hei
  * Whether pictures of a format can be written as they are, without a detour by R, G
  * and B: 0 or 1. RGB8 is taken by every sink; formats of Y, U and V by `null` and
  * `y4m`, by `raw` where its FORMAT is `own` or one of Y, U and V, and by `v4l2` where
- * the node has such a format: the same one, else one with as many samples, else any.
+ * the node has such a format: the same one, else one with as many samples, else any;
+ * by `pipewire` all, of which those who look choose an order.
  */
 REFOCUS_API int refocus_sink_takes(struct refocus_sink *sink, uint32_t format);
 
@@ -82,7 +85,8 @@ REFOCUS_API int refocus_sink_start_image(struct refocus_sink *sink,
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (another size or format, a plane that is
  *         NULL, a stride below a row), REFOCUS_ERR_STATE, REFOCUS_ERR_GONE (the reader
  *         closed the pipe, the device is unplugged), REFOCUS_ERR_TIMEOUT (the device took
- *         none for a second: the frame is dropped), REFOCUS_ERR_END (the user closed the
+ *         none for a second, or of `pipewire:` not yet the ones before: the frame is
+ *         dropped), REFOCUS_ERR_END (the user closed the
  *         window, or pressed Escape or q), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Never
  *         raises SIGPIPE.
  */

@@ -5,6 +5,8 @@
  *
  *     v4l2:/dev/video0            a V4L2 capture node
  *     libcamera:0                 a libcamera camera, by its number or its identifier
+ *     pipewire:[NODE]             a node of PipeWire that gives video, by its name, number or
+ *         description; of no name the best camera
  *     file:frames-%04d.png        pictures; one conversion that takes an int, from 0 or
  *         1 on
  *     file:photo.jpg              one picture, as often as it is asked for
@@ -201,7 +203,7 @@ static inline struct refocus_source_counters refocus_source_counters_default(voi
 enum refocus_source_kind {
     REFOCUS_SOURCE_KIND_NONE = 0,   /**< no source */
     REFOCUS_SOURCE_KIND_FILE = 1,   /**< file, y4m, raw: read as fast as is wanted */
-    REFOCUS_SOURCE_KIND_CAMERA = 2, /**< v4l2, libcamera: a device with a clock of its own */
+    REFOCUS_SOURCE_KIND_CAMERA = 2, /**< v4l2, libcamera, pipewire: it has a clock of its own */
     REFOCUS_SOURCE_KIND_SCRIPT = 3, /**< replay: behaves as a camera does */
 };
 
@@ -309,6 +311,7 @@ enum refocus_source_focus {
     REFOCUS_SOURCE_FOCUS_CONTINUOUS = 0, /**< by the camera, all the time */
     REFOCUS_SOURCE_FOCUS_ONCE = 1,       /**< by the camera, once; then it stays */
     REFOCUS_SOURCE_FOCUS_FIXED = 2,      /**< at a position */
+    REFOCUS_SOURCE_FOCUS_OFF = 3,        /**< not at all: it stays where it is */
     REFOCUS_SOURCE_FOCUS_COUNT
 };
 
@@ -346,7 +349,8 @@ REFOCUS_API int refocus_source_get_lens(struct refocus_source *source,
 
 /**
  * Focus. It takes effect some frames later; refocus_source_get_lens() says where the lens is.
- * Of libcamera it holds for the stream that runs, and is forgotten with its end.
+ * It may come before the source is started, and is said again to a device that is opened again.
+ * Without it libcamera focuses all the time, and V4L2 as the device does.
  *
  * @param mode      enum refocus_source_focus
  * @param position  for FIXED, within the range of the lens; else it is not read
@@ -378,7 +382,7 @@ typedef void refocus_source_found(void *user, const char *name, const char *desc
  *  REFOCUS_ERR_ARGUMENT when @p found is NULL */
 REFOCUS_API int refocus_source_list(refocus_source_found *found, void *user);
 
-/** The kinds of sources that this build has, e.g. "v4l2 libcamera file y4m raw replay".
+/** The kinds of sources that this build has, e.g. "v4l2 libcamera pipewire file y4m raw replay".
  * Thread-safe. */
 REFOCUS_API const char *refocus_source_backends(void);
 

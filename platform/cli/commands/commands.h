@@ -16,5 +16,7 @@ extern const struct command compare_command;
 extern const struct command live_command;
 extern const struct command view_command;
 extern const struct command serve_command;
+/* The command serve, and its page in a browser. */
+int serve_in_browser(int argc, char **argv);
 
 #endif

@@ -283,7 +283,7 @@ static int write_photo(const struct settings *settings, const struct input *inpu
         remove(temporary);
     free(temporary);
     interrupt_hold(false);
-    if (status > 0) /* an exit code, told already */
+    if (status > 0) /* an exit code: the failure has been reported */
         return status;
     if (status == REFOCUS_ERR_CANCELLED)
         return report_failure(EXIT_FAILED, settings->output, "interrupted; nothing was written");

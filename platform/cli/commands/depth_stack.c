@@ -8,6 +8,10 @@
 
 /* A share of measured pixels below this is no depth. */
 #define LEAST_MEASURED 0.002
+/* Frames that are less alike than this show different places. */
+#define LEAST_ALIKE 0.5
+/* An order that is found is doubtful where the next best one is no worse than this. */
+#define LEAST_ORDER_MARGIN 0.01
 /* More of it is no order: 0.03 in stacks of nine frames as they were taken, 0.9 shuffled. */
 #define MOST_DISORDER 0.5
 
@@ -26,6 +30,24 @@ const char *stack_align_name(uint32_t index)
 const char *stack_align_summary(uint32_t index)
 {
     return index < sizeof aligns / sizeof *aligns ? aligns[index].summary : NULL;
+}
+
+static const struct {
+    const char *name, *summary;
+} orders[] = {
+    [REFOCUS_STACK_ORDER_ADDED] = {"given", "the farthest focus first"},
+    [REFOCUS_STACK_ORDER_FOUND] = {"found", "found by their sharpness; which end is far is then as "
+                                            "given"},
+};
+
+const char *stack_order_name(uint32_t index)
+{
+    return index < sizeof orders / sizeof *orders ? orders[index].name : NULL;
+}
+
+const char *stack_order_summary(uint32_t index)
+{
+    return index < sizeof orders / sizeof *orders ? orders[index].summary : NULL;
 }
 
 struct frames {
@@ -112,25 +134,38 @@ static bool is_json(const char *text)
 }
 
 /* By the distances that all files name in their EXIF, else by none. What cannot be read is told
- * when it is read for its pixels. */
-static void positions_of_files(struct frames *frames)
+ * when it is read for its pixels. Frames that name one distance and several apertures are refused:
+ * how their blur compares tells how far a surface is from the focus, but not on which side. */
+static int positions_of_files(struct frames *frames)
 {
-    bool known = true;
+    double first_distance = NAN, first_aperture = NAN;
+    bool known = true, same = true, apertures = false;
 
-    for (int k = 0; k < frames->count && known; k++) {
+    for (int k = 0; k < frames->count && (known || same); k++) {
         struct refocus_reason ignored;
         struct refocus_photo *photo = NULL;
+        const bool read = standard_photo(&photo, frames->file[k], &ignored) == REFOCUS_OK;
+        const double distance = read ? photo->info->subject_distance : 0;
+        const double aperture = read ? photo->info->f_number : 0;
 
-        known = standard_photo(&photo, frames->file[k], &ignored) == REFOCUS_OK &&
-                photo->info->subject_distance > 0;
-        frames->position[k] = known ? 1 / photo->info->subject_distance : NAN;
+        first_distance = k ? first_distance : distance;
+        first_aperture = k ? first_aperture : aperture;
+        same = same && distance > 0 && distance == first_distance && aperture > 0;
+        apertures = apertures || aperture != first_aperture;
+        known = known && distance > 0;
+        frames->position[k] = known ? 1 / distance : NAN;
         for (int j = 0; j < k && known; j++)
             known = frames->position[j] != frames->position[k];
         refocus_photo_free(&photo);
     }
+    if (same && apertures)
+        return report_failure(EXIT_FAILED, frames->file[0],
+                              "the frames have one focus and several apertures, which do not tell "
+                              "the side of the focus; give frames of different focus");
     for (int k = 0; k < frames->count && !known; k++)
         frames->position[k] = NAN;
     frames->of_files = known;
+    return EXIT_DONE;
 }
 
 static int read_positions(struct frames *frames, const char *text)
@@ -139,10 +174,8 @@ static int read_positions(struct frames *frames, const char *text)
 
     for (int k = 0; k < frames->count; k++)
         frames->position[k] = NAN;
-    if (!text) {
-        positions_of_files(frames);
-        return EXIT_DONE;
-    }
+    if (!text)
+        return positions_of_files(frames);
     status =
         is_json(text) ? positions_of_file(frames, text, &n) : positions_of_text(frames, text, &n);
     if (status == EXIT_DONE && n != frames->count)
@@ -222,11 +255,52 @@ static void set_range(struct input *input, const struct frames *frames,
         input->report.far_m = settings->far_m;
 }
 
+int stack_judge(const struct refocus_stack_result *result, const char *name)
+{
+    if (result->measured < (float)LEAST_MEASURED)
+        return report_failure(EXIT_FAILED, name,
+                              "no part of the picture is sharper in one frame than in the others; "
+                              "give frames of different focus");
+    if (result->disorder > (float)MOST_DISORDER)
+        report_warning(name, "frames do not follow each other in focus; give the farthest first, "
+                             "--positions, or --order found");
+    else if (result->alike < (float)LEAST_ALIKE)
+        report_warning(name, "not all frames lie on each other: the camera moved too far, or they "
+                             "show different places; depth is wrong there");
+    return EXIT_DONE;
+}
+
+/* Tell where frames were put in another order than they were given in. */
+static void tell_order(const struct refocus_stack_result *result, const char *name, int count)
+{
+    char list[4 * REFOCUS_STACK_MOST_FRAMES] = "";
+    bool as_given = true;
+
+    for (int k = 0; k < count; k++) {
+        as_given = as_given && result->order[k] == k + 1;
+        snprintf(list + strlen(list), sizeof list - strlen(list), k ? " %d" : "%d",
+                 result->order[k]);
+    }
+    if (as_given)
+        return;
+    if (result->order_margin < (float)LEAST_ORDER_MARGIN)
+        report_warning(name,
+                       "frames are taken in the order %s, which is doubtful; give "
+                       "--positions, or the farthest first without --order",
+                       list);
+    else
+        report_warning(name,
+                       "frames are taken in the order %s; whether it begins with the "
+                       "farthest is not seen: give --positions if it does not",
+                       list);
+}
+
 static int finish(struct input *input, struct refocus_stack *stack, const struct frames *frames)
 {
     struct refocus_stack_result result = refocus_stack_result_default();
     const struct refocus_image *image = input->photo->image;
     const size_t pixels = (size_t)image->width * (size_t)image->height;
+    int status;
 
     input->disparity = malloc(pixels * sizeof *input->disparity);
     input->confidence = malloc(pixels);
@@ -241,24 +315,21 @@ static int finish(struct input *input, struct refocus_stack *stack, const struct
     report_progress("comparing", 0.6);
     if (refocus_stack_finish(stack, &result))
         return report_failure(EXIT_FAILED, input->photo_name, "the stack cannot be finished");
-    if (result.measured < (float)LEAST_MEASURED)
-        return report_failure(EXIT_FAILED, input->photo_name,
-                              "no part of the picture is sharper in one frame than in the others; "
-                              "give frames of different focus");
-    if (result.disorder > (float)MOST_DISORDER)
-        report_warning(input->photo_name,
-                       "frames do not follow each other in focus; give the farthest first, or "
-                       "--positions");
+    status = stack_judge(&result, input->photo_name);
+    if (status != EXIT_DONE)
+        return status;
+    if (isnan(frames->position[0]))
+        tell_order(&result, input->photo_name, frames->count);
     for (size_t i = 0; i < pixels; i++)
         input->report.unknown += input->confidence[i] < 128;
     snprintf(input->made_info.evidence[0], REFOCUS_INFO_LENGTH,
              "focus stack: %d frames, moved by up to %.1f pixels, in the geometry of frame %d",
-             frames->count, (double)result.moved, frames->reference + 1);
+             frames->count, (double)result.moved, result.reference);
     input->made_info.evidence_count = 1;
     if (result.moving > 0)
         snprintf(input->made_info.evidence[input->made_info.evidence_count++], REFOCUS_INFO_LENGTH,
                  "focus stack: something moves in %.1f %% of the picture, which is as in frame %d",
-                 100 * (double)result.moving, frames->reference + 1);
+                 100 * (double)result.moving, result.reference);
     if (frames->of_files)
         snprintf(input->made_info.evidence[input->made_info.evidence_count++], REFOCUS_INFO_LENGTH,
                  "EXIF: the subject distances of the frames");
@@ -298,8 +369,9 @@ int input_read_stack(struct input *input, const char *const *files,
         return status;
     begin(input);
     params = refocus_stack_params_default(input->width, input->height, frames.count);
-    params.reference = frames.reference + 1;
+    params.reference = isnan(how->reference) ? 0 : frames.reference + 1;
     params.align = (uint32_t)how->align;
+    params.order = (uint32_t)how->order;
     status = refocus_stack_create(&stack, &params);
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, files[frames.reference], "%s",

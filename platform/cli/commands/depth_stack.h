@@ -12,11 +12,12 @@ struct stack_settings {
     const char *positions; /* dioptres with commas, or a file of JSON; NULL: not known */
     double reference;      /* frame whose geometry the result has, from 1 on; NAN: the middle one */
     int align;             /* enum refocus_stack_align */
+    int order;             /* enum refocus_stack_order */
     const char *photo;     /* receives the photo as well, or NULL */
 };
 #define STACK_SETTINGS_NONE                                                                        \
     {                                                                                              \
-        false, NULL, NAN, 0, NULL                                                                  \
+        false, NULL, NAN, 0, REFOCUS_STACK_ORDER_ADDED, NULL                                       \
     }
 
 /* Rows for tables of options. */
@@ -53,6 +54,14 @@ struct stack_settings {
          .summary = stack_align_summary,                                                           \
          .help = "how frames are laid on each other",                                              \
          .needs = "--focal-stack"},                                                                \
+        {.kind = OPTION_CHOICE,                                                                    \
+         .name = "--order",                                                                        \
+         .argument = "HOW",                                                                        \
+         .offset = offsetof(type, member.order),                                                   \
+         .choice = stack_order_name,                                                               \
+         .summary = stack_order_summary,                                                           \
+         .help = "order of focus of frames without positions",                                     \
+         .needs = "--focal-stack"},                                                                \
     {                                                                                              \
         .kind = OPTION_TEXT, .name = "--photo", .argument = "FILE",                                \
         .offset = offsetof(type, member.photo),                                                    \
@@ -65,11 +74,18 @@ struct stack_settings {
 /* Words of --align and what they mean; NULL ends them. */
 const char *stack_align_name(uint32_t index);
 const char *stack_align_summary(uint32_t index);
+/* Likewise of --order. */
+const char *stack_order_name(uint32_t index);
+const char *stack_order_summary(uint32_t index);
 
 /* Read the frames, one after the other, and make the input of them: its photo is in focus
  * everywhere. The list of files ends with NULL. Returns an exit code and prints why. */
 int input_read_stack(struct input *input, const char *const *files,
                      const struct stack_settings *how, const struct depth_settings *settings);
+
+/* Judge what a stack is worth: an exit code, with a line, where its frames show no depth, and a
+ * warning where they are out of order. */
+int stack_judge(const struct refocus_stack_result *result, const char *name);
 
 /* Write the photo of a stack as a picture, or to a temporary file beside the place of a path, whose
  * name free() ends. These return exit codes and print why. */

@@ -11,13 +11,18 @@
 #include "outputs/editable.h"
 #include "inputs/standard.h"
 #include "inputs/transfer.h"
+#include "line/memory.h"
 #include "outputs/outputs.h"
 #include "outputs/result.h"
 #include "settings/settings.h"
 #include "shot/shot.h"
+#include "shot/spool.h"
 #include "shot/strips.h"
 #include "views/stereo_views.h"
 #include "views/views.h"
+
+/* Pictures of fewer rows stay in memory. */
+enum { LEAST_SPOOLED = 1000 };
 
 struct settings {
     struct shot_settings shot;
@@ -195,6 +200,9 @@ static int render(struct shot *shot, struct refocus_image *out, const struct set
 
     if (status == EXIT_DONE)
         status = shot_output(shot, settings->region, whole ? deep : REFOCUS_FORMAT_RGB8, out);
+    if (status == EXIT_DONE && settings->shot.engine.in_strips &&
+        settings->shot.engine.repeat <= 1 && out->height >= LEAST_SPOOLED)
+        shot->engine.spool = spool_open();
     if (status == EXIT_DONE && out->format == from->format && deep == REFOCUS_FORMAT_RGB16) {
         out->transfer = from->transfer; /* a PNG is of the photo's kind */
         out->white = from->white;
@@ -223,18 +231,39 @@ static int write_picture(const struct settings *settings, const struct shot *sho
                : status;
 }
 
-/* Render a photo and write it. */
-static int make(struct settings *settings, const char *photo)
+/* Once more, where the memory there is was too little. */
+static int render_in_strips(struct shot *shot, struct refocus_image *out, struct settings *settings,
+                            const char *photo)
 {
+    struct shot_settings *used = &settings->shot;
+
+    shot_close(shot);
+    report_warning(photo, "there is little memory: it is rendered in strips, as by --low-memory");
+    used->engine.memory_kib = 0;
+    used->engine.in_strips = true;
+    strips_check(&used->engine, &used->depth, false);
+    return render(shot, out, settings, photo);
+}
+
+/* Render a photo and write it. */
+static int make(const struct settings *given, const char *photo)
+{
+    struct settings own = *given, *const settings = &own;
+    struct shot_settings *used = &settings->shot;
     struct shot shot;
     struct refocus_image out = {0};
     int status;
 
-    settings->shot.depth.deep = deep_of(settings);
-    settings->shot.depth.light = settings->view == VIEW_NONE;
+    used->depth.deep = deep_of(settings);
+    used->depth.light = settings->view == VIEW_NONE;
+    if (settings->view == VIEW_NONE && !output_deep_format(settings->output) &&
+        strips_suit(&used->engine, &used->depth, used->behind.image != NULL))
+        used->engine.memory_kib = memory_free_kib() / 4 * 3; /* the rest is for the pictures */
     status = render(&shot, &out, settings, photo);
+    if (status != EXIT_DONE && shot.engine.short_of_memory)
+        status = render_in_strips(&shot, &out, settings, photo);
     if (status == EXIT_DONE && settings->view == VIEW_NONE)
-        shot_rendered(&shot);
+        status = shot_rendered(&shot, &out);
     if (status == EXIT_DONE)
         status = result_resize(&settings->result, &out);
     if (status == EXIT_DONE) {
@@ -243,7 +272,7 @@ static int make(struct settings *settings, const char *photo)
     }
     report_progress_end();
     if (status == EXIT_DONE && settings->shot.save)
-        status = settings_save(&render_command, settings->shot.save, settings);
+        status = settings_save(&render_command, settings->shot.save, given);
     if (status == EXIT_DONE)
         status = print_report(settings, &shot.engine, &shot.input, &out);
     free(out.plane[0]);

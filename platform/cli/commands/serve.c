@@ -4,14 +4,16 @@
 #include <unistd.h>
 #include "commands/commands.h"
 #include "line/interrupt.h"
+#include "line/module.h"
 #include "line/report.h"
-#include "serve/module.h"
+#include "serve/browser.h"
 #include "serve/serving.h"
 
 struct settings {
-    struct shot_settings shot;
+    struct serve_base base;
     const char *listen;
     double port, upload, memory; /* NAN: not given */
+    bool open;                   /* open the page in a browser */
 };
 
 enum { PORT = 8085, MOST_UPLOAD_MIB = 100 };
@@ -52,16 +54,33 @@ static const struct option options[] = {
      .help = "memory of all open photos together, in MiB: beyond it those are closed that nobody "
              "has used for longest; default half the machine's",
      .elsewhere = true},
+    {.kind = OPTION_HEADING, .help = "Live view"},
+    {.kind = OPTION_TEXT,
+     .name = "--live",
+     .argument = "SOURCE",
+     .offset = offsetof(struct settings, base.live.camera),
+     .brief = "a camera for the page, as of refocus live",
+     .help = "a camera that the page shows, too: a source as of refocus live --camera",
+     .elsewhere = true},
+    {.kind = OPTION_TEXT,
+     .name = "--depth",
+     .argument = "SOURCE",
+     .offset = offsetof(struct settings, base.live.depth.file),
+     .needs = "--live",
+     .help = "depth beside it: a source as of refocus live --depth, a depth map, or "
+             "estimate:MODEL.onnx",
+     .elsewhere = true},
+    DEPTH_UNIT_OPTIONS(struct settings, base.live.depth),
     {.kind = OPTION_HEADING, .help = "Photos"},
-    UPSAMPLE_OPTION(struct settings, shot.depth),
-    DEPTH_EDGES_OPTION(struct settings, shot.depth),
-    LIMIT_OPTIONS(struct settings, shot.depth.limits),
+    UPSAMPLE_OPTION(struct settings, base.shot.depth),
+    DEPTH_EDGES_OPTION(struct settings, base.shot.depth),
+    LIMIT_OPTIONS(struct settings, base.shot.depth.limits),
     {.kind = OPTION_HEADING, .help = "Running"},
     {.kind = OPTION_INTEGER,
      .elsewhere = true,
      .name = "--threads",
      .argument = "N",
-     .offset = offsetof(struct settings, shot.engine.threads),
+     .offset = offsetof(struct settings, base.shot.engine.threads),
      .greatest = 64,
      .help =
          "of each open photo; 0 = one for each processor, the default; never changes the result"},
@@ -69,7 +88,7 @@ static const struct option options[] = {
      .elsewhere = true,
      .name = "--cpu",
      .argument = "NAME",
-     .offset = offsetof(struct settings, shot.engine.cpu),
+     .offset = offsetof(struct settings, base.shot.engine.cpu),
      .choice = refocus_cpu_name,
      .help = "instruction set, auto = the best that there is, the default; never changes the "
              "result"},
@@ -84,6 +103,12 @@ static void tell_link(void *of, const char *link)
     report_end_output();
 }
 
+static void open_link(void *of, const char *link)
+{
+    tell_link(of, link);
+    browser_open(link);
+}
+
 static uint64_t memory_limit(double mebibytes)
 {
     if (!isnan(mebibytes))
@@ -93,23 +118,31 @@ static uint64_t memory_limit(double mebibytes)
 
 static int serve(struct settings *settings, const char *path)
 {
+    struct serve_base *const base = &settings->base;
     struct rf_web_setup setup = {
         .address = settings->listen ? settings->listen : "127.0.0.1",
-        .port = isnan(settings->port) ? PORT : (int)settings->port,
+        .port = !isnan(settings->port) ? (int)settings->port
+                : settings->open       ? 0
+                                       : PORT,
         .path = path,
+        .live = base->live.camera != NULL,
         .most_upload = (uint64_t)(isnan(settings->upload) ? MOST_UPLOAD_MIB : settings->upload)
                        << 20,
         .most_memory = memory_limit(settings->memory),
-        .ready = tell_link,
+        .ready = settings->open ? open_link : tell_link,
         .work = serve_work,
-        .of = &settings->shot,
+        .of = base,
     };
-    char why[256] = "";
-    web_run_fn *const run_server = web_module(why);
+    static const struct module_function server = {"../web/refocus-web.so", "refocus/refocus-web.so",
+                                                  "rf_web_run", "the server", "libmicrohttpd"};
+    int (*run_server)(const struct rf_web_setup *, char *);
+    char why[MODULE_WHY] = "";
     int status = EXIT_DONE;
 
-    if (!run_server)
+    if (!module_load(&server, &run_server, why))
         return report_failure(EXIT_FAILED, "serve", "%s", why);
+    /* The rest is for the photo and its pictures. */
+    base->shot.engine.memory_kib = (int64_t)(setup.most_memory / 1024 / 4 * 3);
     signal(SIGPIPE, SIG_IGN);
     interrupt_wait_begin();
     setup.signals = interrupt_wait_file();
@@ -122,20 +155,39 @@ static int serve(struct settings *settings, const char *path)
     return status;
 }
 
-static int run(int argc, char **argv)
+static int parse_and_serve(int argc, char **argv, bool open)
 {
-    struct settings settings = {
-        .shot = SHOT_SETTINGS_NONE, .port = NAN, .upload = NAN, .memory = NAN};
+    struct settings settings = {.base = {.shot = SHOT_SETTINGS_NONE},
+                                .port = NAN,
+                                .upload = NAN,
+                                .memory = NAN,
+                                .open = open};
+    struct shot_settings *const shot = &settings.base.shot;
     const char *files[2] = {NULL};
-    int status = options_parse(&serve_command, argc, argv, &settings, files);
+    int status;
+
+    serve_live_none(&settings.base);
+    status = options_parse(&serve_command, argc, argv, &settings, files);
 
     if (status != OPTIONS_PARSED)
         return status;
-    settings.shot.depth.optional = true;
-    settings.shot.depth.deep = DEEP_LIGHT;
-    settings.shot.depth.light = true;
-    status = shot_check(&settings.shot, false);
+    shot->depth.optional = true;
+    shot->depth.deep = DEEP_LIGHT;
+    shot->depth.light = true;
+    status = shot_check(shot, false);
+    if (status == EXIT_DONE)
+        status = serve_live_check(&settings.base);
     return status == EXIT_DONE ? serve(&settings, files[0]) : status;
+}
+
+static int run(int argc, char **argv)
+{
+    return parse_and_serve(argc, argv, false);
+}
+
+int serve_in_browser(int argc, char **argv)
+{
+    return parse_and_serve(argc, argv, true);
 }
 
 const struct command serve_command = {

@@ -206,7 +206,6 @@ static int photograph(const struct settings *settings, struct shots *shots)
     interrupt_clean_up(remove_place, &place);
     status = shots_take(shots, place.folder, place.ending);
     shots_end(shots);
-    report_progress_end();
     if (status == EXIT_DONE && settings->keep) {
         interrupt_clean_up(NULL, NULL);
         kept = true;
@@ -256,7 +255,7 @@ static int run(int argc, char **argv)
     status = check(&settings);
     if (status != EXIT_DONE)
         return status;
-    status = shots_plan(&shots, &settings.shots);
+    status = shots_plan(&shots, &settings.shots, NULL);
     if (status == EXIT_DONE)
         status = settings.dry_run ? print_plan(&settings, &shots) : photograph(&settings, &shots);
     shots_end(&shots);

@@ -1,4 +1,5 @@
-/* stack_shots.c: a camera moves its lens and photographs a focus stack into a folder.
+/* stack_shots.c: a camera moves its lens and photographs a focus stack, into a folder or for
+ * whoever takes the pictures.
  *
  * Time is that of the frames' own stamps, so a scripted camera takes none. The lens has arrived
  * when the position that it reports is the one asked for, or when it has not changed for a second;
@@ -30,6 +31,8 @@ enum {
 
 static int fail(const struct shots *shots, int status, const struct refocus_reason *reason)
 {
+    if (status == REFOCUS_ERR_CANCELLED && shots->ends_quietly)
+        return EXIT_FAILED;
     if (status == REFOCUS_ERR_CANCELLED)
         return report_failure(EXIT_FAILED, shots->settings->camera,
                               "interrupted; nothing was written");
@@ -39,13 +42,17 @@ static int fail(const struct shots *shots, int status, const struct refocus_reas
 
 static int plan_range(struct shots *shots)
 {
+    const char *option = shots->settings->option;
     const double *range = shots->settings->range;
     const struct refocus_source_lens *lens = &shots->lens;
     const bool given = !isnan(range[0]);
     const double from = given ? range[0] : lens->least, to = given ? range[1] : lens->greatest;
 
     if (!(from >= lens->least && to <= lens->greatest && from < to))
-        return report_failure(EXIT_WRONG, given ? "--range" : shots->settings->camera,
+        return report_failure(EXIT_WRONG,
+                              !given   ? shots->settings->camera
+                              : option ? option
+                                       : "--range",
                               "its lens goes from %g to %g; give the farther one first",
                               lens->least, lens->greatest);
     shots->count = (int)shots->settings->steps;
@@ -53,21 +60,24 @@ static int plan_range(struct shots *shots)
         shots->asked[k] = from + (to - from) * k / (shots->count - 1);
     for (int k = 1; k < shots->count && !lens->dioptres; k++) /* steps are whole numbers */
         if (lround(shots->asked[k]) == lround(shots->asked[k - 1]))
-            return report_failure(EXIT_WRONG, "--steps",
+            return report_failure(EXIT_WRONG, option ? option : "--steps",
                                   "its lens has %g positions in that range; give fewer steps",
                                   to - from + 1);
     return EXIT_DONE;
 }
 
-int shots_plan(struct shots *shots, const struct shots_settings *settings)
+int shots_plan(struct shots *shots, const struct shots_settings *settings,
+               struct refocus_source *source)
 {
     struct refocus_reason reason = {""};
-    int status;
+    int status = REFOCUS_OK;
 
     memset(shots, 0, sizeof *shots);
     shots->settings = settings;
     shots->lens = refocus_source_lens_default();
-    status = refocus_source_open(&shots->source, settings->camera, &reason);
+    shots->source = source;
+    if (!source)
+        status = refocus_source_open(&shots->source, settings->camera, &reason);
     if (status == REFOCUS_OK)
         status = refocus_source_get_lens(shots->source, &shots->lens, &reason);
     if (status != REFOCUS_OK)
@@ -164,10 +174,15 @@ static int arrive(struct shots *shots, double asked, double near_by, double *pos
     return status;
 }
 
+static double step_of(const struct shots *shots)
+{
+    return (shots->asked[shots->count - 1] - shots->asked[0]) / (shots->count - 1);
+}
+
 /* Moves the lens to position k. It may be off, but has to be nearer than the one before. */
 static int move_lens(struct shots *shots, int k)
 {
-    const double step = (shots->asked[shots->count - 1] - shots->asked[0]) / (shots->count - 1);
+    const double step = step_of(shots);
     double position = NAN;
     int status = focus(shots, shots->asked[k]);
 
@@ -236,7 +251,7 @@ static int add_frame(struct shots *shots, struct picture *picture)
 }
 
 /* The mean of the frames at one position. */
-static int take_picture(struct shots *shots, struct picture *picture, const char *file)
+static int take_picture(struct shots *shots, struct picture *picture)
 {
     const int frames = (int)shots->settings->average;
     int status = EXIT_DONE;
@@ -251,11 +266,7 @@ static int take_picture(struct shots *shots, struct picture *picture, const char
                 picture->rgb[b] = (uint8_t)(picture->sum[b] / frames);
         }
     }
-    if (status != EXIT_DONE)
-        return status;
-    const struct refocus_image image = refocus_image_packed(
-        REFOCUS_FORMAT_RGB8, picture->rgb, picture->width, picture->height, 3 * picture->width);
-    return output_write_image(file, &image, NULL);
+    return status;
 }
 
 bool shots_name(char name[SHOTS_NAME], const char *folder, int k, const char *ending)
@@ -309,8 +320,7 @@ static void interrupt_source(void *source)
     refocus_source_interrupt(source);
 }
 
-/* The exposure is that of the middle of the range. */
-static int begin(struct shots *shots)
+static int start(struct shots *shots)
 {
     const struct shots_settings *settings = shots->settings;
     struct refocus_source_config config = refocus_source_config_default();
@@ -324,35 +334,31 @@ static int begin(struct shots *shots)
     if (refocus_source_kind(settings->camera) == REFOCUS_SOURCE_KIND_SCRIPT)
         config.flags = REFOCUS_SOURCE_FAST;
     status = refocus_source_start(shots->source, &config, NULL, &reason);
-    if (status != REFOCUS_OK)
-        return fail(shots, status, &reason);
-    status = focus(shots, shots->asked[shots->count / 2]);
+    return status == REFOCUS_OK ? EXIT_DONE : fail(shots, status, &reason);
+}
+
+/* The exposure is that of the middle of the range. */
+static int lock_exposure(struct shots *shots)
+{
+    struct refocus_reason reason = {""};
+    int status = focus(shots, shots->asked[shots->count / 2]);
+
     if (status == EXIT_DONE)
         status = pass_time(shots, MEASURE_MS);
     if (status != EXIT_DONE)
         return status;
     status = refocus_source_lock_exposure(shots->source, 1, &reason);
     if (status == REFOCUS_ERR_UNSUPPORTED)
-        report_warning(settings->camera, "its exposure cannot be locked; frames may differ");
+        report_warning(shots->settings->camera, "its exposure cannot be locked; frames may differ");
     else if (status != REFOCUS_OK)
         return fail(shots, status, &reason);
     return EXIT_DONE;
 }
 
-/* The camera is left to itself again. */
-static void let_go(struct shots *shots)
-{
-    refocus_source_lock_exposure(shots->source, 0, NULL);
-    if (shots->lens.modes >> REFOCUS_SOURCE_FOCUS_CONTINUOUS & 1)
-        refocus_source_set_focus(shots->source, REFOCUS_SOURCE_FOCUS_CONTINUOUS, 0, NULL);
-}
-
 static void warn_of_positions(const struct shots *shots)
 {
-    const double step = (shots->asked[shots->count - 1] - shots->asked[0]) / (shots->count - 1);
-
     for (int k = 0; k < shots->count; k++)
-        if (fabs(shots->reported[k] - shots->asked[k]) > 0.25 * step) {
+        if (fabs(shots->reported[k] - shots->asked[k]) > 0.25 * step_of(shots)) {
             report_warning(shots->settings->camera,
                            "its lens reports %g where %g was asked for; depth goes by what it "
                            "reports",
@@ -361,30 +367,70 @@ static void warn_of_positions(const struct shots *shots)
         }
 }
 
-int shots_take(struct shots *shots, const char *folder, const char *ending)
+int shots_photograph(struct shots *shots, shots_picture_fn *take, void *user)
 {
     struct picture picture = {0};
-    char name[SHOTS_NAME];
-    int status;
+    int status = lock_exposure(shots);
 
-    interrupt_call(interrupt_source, shots->source);
-    status = begin(shots);
     for (int k = 0; k < shots->count && status == EXIT_DONE; k++) {
         report_progress("photographing", (double)k / shots->count);
         status = move_lens(shots, k);
         if (status == EXIT_DONE)
-            status = shots_name(name, folder, k, ending)
-                         ? take_picture(shots, &picture, name)
-                         : report_failure(EXIT_FAILED, folder, "the name is too long");
+            status = take_picture(shots, &picture);
+        if (status == EXIT_DONE) {
+            const struct refocus_image image = refocus_image_packed(
+                REFOCUS_FORMAT_RGB8, picture.rgb, picture.width, picture.height, 3 * picture.width);
+
+            status = take(user, shots, k, &image);
+        }
     }
-    interrupt_call(NULL, NULL);
-    let_go(shots);
-    if (status == EXIT_DONE) {
+    refocus_source_lock_exposure(shots->source, 0, NULL);
+    report_progress_end();
+    if (status == EXIT_DONE)
         warn_of_positions(shots);
-        status = write_positions(shots, folder, ending);
-    }
     refocus_converter_destroy(&picture.converter);
     free(picture.rgb);
     free(picture.sum);
     return status;
+}
+
+int shots_rest(struct shots *shots, int k)
+{
+    double position;
+    int status = focus(shots, shots->asked[k]);
+
+    if (status == EXIT_DONE)
+        status = arrive(shots, shots->asked[k], 0.1 * step_of(shots), &position);
+    return status == EXIT_DONE ? pass_time(shots, shots->settings->settle) : status;
+}
+
+struct place {
+    const char *folder, *ending;
+};
+
+static int write_picture(void *user, const struct shots *shots, int k,
+                         const struct refocus_image *image)
+{
+    const struct place *place = user;
+    char name[SHOTS_NAME];
+
+    (void)shots;
+    return shots_name(name, place->folder, k, place->ending)
+               ? output_write_image(name, image, NULL)
+               : report_failure(EXIT_FAILED, place->folder, "the name is too long");
+}
+
+int shots_take(struct shots *shots, const char *folder, const char *ending)
+{
+    struct place place = {folder, ending};
+    int status;
+
+    interrupt_call(interrupt_source, shots->source);
+    status = start(shots);
+    if (status == EXIT_DONE)
+        status = shots_photograph(shots, write_picture, &place);
+    interrupt_call(NULL, NULL);
+    if (shots->lens.modes >> REFOCUS_SOURCE_FOCUS_CONTINUOUS & 1) /* the camera's own again */
+        refocus_source_set_focus(shots->source, REFOCUS_SOURCE_FOCUS_CONTINUOUS, 0, NULL);
+    return status == EXIT_DONE ? write_positions(shots, folder, ending) : status;
 }

@@ -3,39 +3,40 @@
 #include <stdlib.h>
 #include <string.h>
 #include "commands/commands.h"
-#include "commands/view_module.h"
 #include "commands/view_save.h"
 #include "inputs/painted.h"
 #include "line/interrupt.h"
+#include "line/module.h"
 #include "line/report.h"
 #include "settings/settings.h"
 #include "outputs/outputs.h"
 #include "shot/shot.h"
+#include "view/view.h"
 
 struct settings {
     struct shot_settings shot;
-    const char *output, *strokes;
-    double size[2], seconds;
-    bool fullscreen;
+    const char *output, *strokes, *font;
+    double size[2], dpi, seconds;
+    bool fullscreen, page;
 };
 
 #define SETTINGS_NONE                                                                              \
     {                                                                                              \
-        .shot = SHOT_SETTINGS_NONE, .size = {NAN, NAN}, .seconds = NAN                             \
+        .shot = SHOT_SETTINGS_NONE, .size = {NAN, NAN}, .dpi = NAN, .seconds = NAN                 \
     }
 
 static const struct option options[] = {
     OUTPUT_OPTION(struct settings, output,
-                  "the picture that 's' saves: " OUTPUT_PICTURES "; settings, depth and strokes "
-                  "get names of it. Default: the photo's name with -refocused.jpg, here"),
-    {.kind = OPTION_HEADING, .help = "Depth; without any it can be painted"},
+                  "the picture that 's' saves: " OUTPUT_PICTURES "; settings and depth get "
+                  "names of it. Default: the photo's name with -refocused.jpg, here"),
+    {.kind = OPTION_HEADING, .help = "Depth"},
     SHOT_DEPTH_OPTIONS(struct settings, shot),
     {.kind = OPTION_TEXT,
      .name = "--strokes",
      .argument = "FILE.json",
      .offset = offsetof(struct settings, strokes),
-     .brief = "paint these strokes to begin with",
-     .help = "paint these strokes to begin with: over the depth, or over nothing",
+     .brief = "depth by strokes over a photo",
+     .help = "depth by strokes, over that of the photo or over nothing; the page saves them",
      .elsewhere = true},
     SHOT_LENS_OPTIONS(struct settings, shot),
     SHOT_METHOD_OPTIONS(struct settings, shot),
@@ -44,6 +45,14 @@ static const struct option options[] = {
     SETTINGS_OPTION(struct settings, shot.load),
     RUN_OPTIONS(struct settings, shot.engine),
     {.kind = OPTION_HEADING, .help = "Window"},
+    {.kind = OPTION_FLAG,
+     .name = "--page",
+     .offset = offsetof(struct settings, page),
+     .brief = "the page of refocus serve in a browser",
+     .help = "the page of 'refocus serve' in a browser in place of the window, with the options of "
+             "that: the program that $BROWSER names opens it, or xdg-open; where there is neither, "
+             "open the link that is printed. The port is a free one unless --port says which",
+     .elsewhere = true},
     {.kind = OPTION_NUMBERS,
      .name = "--size",
      .argument = "WxH",
@@ -51,7 +60,6 @@ static const struct option options[] = {
      .least = 64,
      .greatest = 16384,
      .count = 2,
-     .brief = "of the window",
      .help = "of the window; default: as large as the photo and the screen allow",
      .elsewhere = true},
     {.kind = OPTION_FLAG,
@@ -59,6 +67,22 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, fullscreen),
      .brief = "the whole screen",
      .help = "the whole screen",
+     .elsewhere = true},
+    {.kind = OPTION_TEXT,
+     .name = "--font",
+     .argument = "FILE|none",
+     .offset = offsetof(struct settings, font),
+     .help =
+         "font of its text, TrueType or OpenType; default: DejaVu Sans, Noto Sans or Liberation "
+         "Sans, where the system has them; without any the text is in the title",
+     .elsewhere = true},
+    {.kind = OPTION_NUMBER,
+     .name = "--dpi",
+     .argument = "N",
+     .offset = offsetof(struct settings, dpi),
+     .least = 24,
+     .greatest = 2400,
+     .help = "of the screen, by which the text has its size; default: what the screen says, or 96",
      .elsewhere = true},
     {.kind = OPTION_NUMBER,
      .name = "--seconds",
@@ -97,13 +121,13 @@ static int print_report(const struct input *input, const struct rf_view_report *
     for (int i = 0; i < report->count; i++)
         json_array_append_new(times, time_json(&report->times[i]));
     return report_print_json(json_pack(
-        "{s:o, s:i, s:i, s:s, s:i, s:i, s:i, s:s, s:f, s:f, s:i, s:i, s:o, s:I}", "file",
+        "{s:o, s:i, s:i, s:s, s:i, s:i, s:i, s:s, s:f, s:f, s:i, s:o, s:I}", "file",
         report_text_json(input->photo_name), "width", (int)input->photo->image->width, "height",
         (int)input->photo->image->height, "driver", report->driver, "window_width", report->width,
         "window_height", report->height, "reduction", report->reduction, "method",
         refocus_method_name(report->last.method), "focus", (double)report->last.focus, "blur",
-        (double)report->last.blur, "strokes", report->strokes, "saved", saving->saved, "times",
-        times, "peak_rss_kib", (json_int_t)report_peak_rss_kib()));
+        (double)report->last.blur, "saved", saving->saved, "times", times, "peak_rss_kib",
+        (json_int_t)report_peak_rss_kib()));
 }
 
 /* The setup of the window, and the part of it that the session's thread needs. */
@@ -111,8 +135,7 @@ struct viewing {
     struct settings settings;
     struct engine engine;
     struct input input;
-    struct refocus_strokes *strokes; /* NULL: none to begin with */
-    char *text;                      /* text of the settings */
+    double f_number; /* the one that a blur of 1 pixel has; NAN: it is not known */
 };
 
 /* A tap is a new --focus-at: the plane of focus turns about its line, and one through
@@ -171,8 +194,6 @@ static int choose_state(struct viewing *v, struct rf_view_state *state)
 {
     const struct shot_settings *shot = &v->settings.shot;
     struct refocus_settings *params = &v->engine.params;
-    const uint16_t *disparity =
-        v->strokes ? refocus_strokes_disparity(v->strokes) : v->input.disparity;
     const struct refocus_image *photo = v->input.photo->image;
     double blur = 0;
     int status = input_blur(&v->input, &shot->lens, &blur);
@@ -181,7 +202,7 @@ static int choose_state(struct viewing *v, struct rf_view_state *state)
     if (status == EXIT_DONE)
         status = papers_place(&shot->engine.papers, params, photo->width, photo->height);
     if (status == EXIT_DONE)
-        status = shot_aim(&v->input, &shot->lens, &v->engine.controls, disparity, params);
+        status = shot_aim(&v->input, &shot->lens, &v->engine.controls, v->input.disparity, params);
     if (status == EXIT_DONE)
         status = controls_check_method(params);
     if (status == EXIT_DONE)
@@ -190,6 +211,41 @@ static int choose_state(struct viewing *v, struct rf_view_state *state)
     state->focus = params->render.focus_disparity;
     state->method = params->render.method;
     return status;
+}
+
+/* The f-number of a blur of 1 pixel, by one so small that its blur is not limited. */
+static double f_number_of_pixel(const struct input *input, const struct lens_settings *lens)
+{
+    struct lens_settings small = *lens;
+    double blur, number;
+
+    small.blur = NAN;
+    small.f_number = 64;
+    if (!(input->report.near_m > 0 && input->report.far_m > input->report.near_m) ||
+        input_blur_and_f_number(input, &small, &blur, &number) != EXIT_DONE)
+        return NAN;
+    return blur * number;
+}
+
+/* The lens in the words of photographers, as far as the depth has metres. */
+static void describe(void *of, const struct rf_view_state *state, char *words, size_t size)
+{
+    const struct viewing *v = of;
+    const struct refocus_depth_range range = {v->input.report.near_m, v->input.report.far_m};
+    char focus[32], number[32] = "";
+
+    snprintf(focus, sizeof focus, "%.3f", (double)state->focus);
+    if (!isnan(v->f_number)) {
+        const double metres = refocus_depth_of_disparity(&range, (double)state->focus);
+
+        if (isinf(metres))
+            snprintf(focus, sizeof focus, "\u221e");
+        else
+            snprintf(focus, sizeof focus, "%.3g m", metres);
+        if (state->blur > 0)
+            snprintf(number, sizeof number, " \u00b7 f/%.2g", v->f_number / (double)state->blur);
+    }
+    snprintf(words, size, "focus %s%s \u00b7 blur %.1f px", focus, number, (double)state->blur);
 }
 
 /* The methods that can do what the settings ask for. */
@@ -205,36 +261,36 @@ static uint32_t suitable_methods(const struct engine *engine)
     return methods;
 }
 
+typedef int view_run_fn(const struct rf_view_setup *setup, struct rf_view_report *report,
+                        char *reason);
+
 static int show(struct viewing *v, view_run_fn *run_window)
 {
-    static const char *const in_sight[] = {"--depth",    "--depth-unit",     "--focus",
-                                           "--focus-at", "--focus-distance", "--focus-rectangle",
-                                           "--blur",     "--method",         NULL};
-    static const struct settings usual = SETTINGS_NONE;
     const struct settings *settings = &v->settings;
     const char *name = v->input.photo_name;
     struct view_saving saving = {.input = &v->input,
                                  .settings = save_settings,
                                  .of = v,
                                  .quiet = settings->shot.engine.json};
-    struct rf_view_setup setup = {
-        .title = name, .stop = interrupted, .fullscreen = settings->fullscreen};
+    struct rf_view_setup setup = {.title = name,
+                                  .font = settings->font,
+                                  .dpi = isnan(settings->dpi) ? 0 : settings->dpi,
+                                  .describe = describe,
+                                  .describe_user = v,
+                                  .stop = interrupted,
+                                  .fullscreen = settings->fullscreen};
     struct rf_view_report *const report = calloc(1, sizeof *report);
     char reason[256] = "";
     int status;
 
-    v->text = settings_text(&view_command, settings, &usual, in_sight);
-    if (!report || !v->text) {
-        free(report);
+    if (!report)
         return report_failure(EXIT_FAILED, name, "not enough memory");
-    }
     status = choose_state(v, &setup.state);
-    setup.settings = v->text;
+    v->f_number = f_number_of_pixel(&v->input, &settings->shot.lens);
     setup.methods = suitable_methods(&v->engine);
     setup.session.photo = v->input.photo->image;
     setup.session.disparity = v->input.disparity;
     setup.session.matte = v->input.matte.samples ? &v->input.matte : NULL;
-    setup.session.strokes = v->strokes;
     setup.session.params = v->engine.params;
     setup.session.aim = aim;
     setup.session.aim_user = v;
@@ -275,7 +331,7 @@ static int check_method(const struct engine_settings *settings)
                           method_words(words, REFOCUS_METHOD_WHOLE_PHOTO, false));
 }
 
-/* The photo, its depth, all 0 where there is none, and the strokes over it. */
+/* The photo and its depth, or depth by strokes. */
 static int read_input(struct viewing *v, const char *photo)
 {
     const struct depth_settings *depth = &v->settings.shot.depth;
@@ -283,25 +339,26 @@ static int read_input(struct viewing *v, const char *photo)
     int status = input_read(input, photo, depth);
 
     input->most_blur = REFOCUS_PLAIN_BLUR_RADIUS; /* keys change the method */
-    if (status == EXIT_DONE && !input->disparity) {
+    if (status != EXIT_DONE)
+        return status;
+    if (!input->disparity && !v->settings.strokes)
+        return report_failure(EXIT_FAILED, photo,
+                              "it carries no depth; give a depth map to --depth or MODEL.onnx to "
+                              "--estimate, or paint it: 'refocus view --page PHOTO'");
+    if (!input->disparity)
         painted_begin(input, depth);
-        input->disparity =
-            calloc((size_t)input->width * (size_t)input->height, sizeof *input->disparity);
-        if (!input->disparity)
-            status = report_failure(EXIT_FAILED, photo, "not enough memory");
-    }
-    if (status == EXIT_DONE && v->settings.strokes)
-        status = painted_open(input, v->settings.strokes, &v->strokes);
-    return status;
+    return v->settings.strokes ? painted_apply(input, v->settings.strokes) : EXIT_DONE;
 }
 
 static int open_photo(struct viewing *v, const char *photo)
 {
-    char why[256];
-    view_run_fn *const run_window = view_module(why);
+    static const struct module_function window = {
+        "../view/refocus-view.so", "refocus/refocus-view.so", "rf_view_run", "the window", "SDL2"};
+    view_run_fn *run_window;
+    char why[MODULE_WHY];
     int status;
 
-    if (!run_window)
+    if (!module_load(&window, &run_window, why))
         return report_failure(EXIT_FAILED, photo, "%s", why);
     status = engine_begin(&v->engine, &v->settings.shot.engine);
     v->engine.name = photo;
@@ -312,20 +369,19 @@ static int open_photo(struct viewing *v, const char *photo)
             status = show(v, run_window);
         report_progress_end();
     }
-    refocus_strokes_destroy(&v->strokes);
     input_free(&v->input);
     engine_end(&v->engine);
-    free(v->text);
     return status;
 }
 
 static int check(struct settings *settings, const char *photo)
 {
-    const char *inputs[SHOT_INPUTS + 1];
+    const char *inputs[SHOT_INPUTS + 2];
     int count = shot_inputs(&settings->shot, photo, inputs);
     int status = shot_check(&settings->shot, false);
 
     inputs[count++] = settings->strokes;
+    inputs[count++] = settings->font;
     settings->shot.depth.full = settings->shot.depth.optional = true;
     if (status == EXIT_DONE)
         status = check_method(&settings->shot.engine);
@@ -338,10 +394,19 @@ static int run(int argc, char **argv)
 {
     struct viewing viewing = {.settings = SETTINGS_NONE};
     const char *files[2] = {NULL};
-    int status = options_parse(&view_command, argc, argv, &viewing.settings, files);
+    int status;
 
+    /* The page takes the options of serve. */
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+        if (strcmp(argv[i], "--page") == 0) {
+            memmove(argv + i, argv + i + 1, (size_t)(argc - i) * sizeof *argv);
+            return serve_in_browser(argc - 1, argv);
+        }
+    status = options_parse(&view_command, argc, argv, &viewing.settings, files);
     if (status != OPTIONS_PARSED)
         return status;
+    if (viewing.settings.page) /* by the configuration file */
+        return serve_in_browser(argc, argv);
     status = check(&viewing.settings, files[0]);
     return status == EXIT_DONE ? open_photo(&viewing, files[0]) : status;
 }
@@ -349,15 +414,12 @@ static int run(int argc, char **argv)
 const struct command view_command = {
     .name = "view",
     .usage = "PHOTO [options]",
-    .summary = "interactive window: tap to focus, change the aperture, paint depth",
+    .summary = "viewfinder: tap to focus, drag for the aperture",
     .notes = "Tap or click to focus; drag or turn the wheel for the aperture; ctrl and "
              "the wheel, or two fingers, to enlarge; drag with the right button to "
-             "move. Keys: t focus, m method, d depth, k peaking, b before and after, p "
-             "paint an object, a more of it, x less of it, o brush, g gradient, l a "
-             "layer of the whole picture, f fill anew, 0 to 9, page up and page down "
-             "the disparity to fill with, [ ] brush, u undo, home and end the size, s "
-             "save the picture, j the settings, w depth and strokes, i shows the other "
-             "settings, h keys, q quit.\n"
+             "move. Keys: b before and after, d depth, k peaking: what is sharp, m next "
+             "method, home and end the whole photo and pixel by pixel, s save the "
+             "picture, j its settings, w the depth, h or ? shows the keys, q quit.\n"
              "A tap is a new --focus-at: a plane of --tilt-angle then turns about it, "
              "and one of --focus-plane ends. What 's' saves is what render makes of "
              "the settings that 'j' saves.",

@@ -1,4 +1,4 @@
-/* view_save.c: pictures, settings, depth and strokes of `refocus view` are saved. */
+/* view_save.c: pictures, settings and depth of `refocus view` are saved. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,25 +22,13 @@ bool view_make_names(struct view_names *names, const char *output, const char *p
         snprintf(names->picture, sizeof names->picture, "%.*s-refocused.jpg", stem, base);
     snprintf(names->settings, sizeof names->settings, "%.*s-settings.json", stem, base);
     snprintf(names->depth, sizeof names->depth, "%.*s-depth.png", stem, base);
-    snprintf(names->strokes, sizeof names->strokes, "%.*s-strokes.json", stem, base);
     return true;
 }
 
-static int save_strokes(const struct view_saving *saving, const struct refocus_strokes *strokes)
+static void count(struct view_saving *saving, int status, const char *name, char *words)
 {
-    char *text;
-    size_t size;
-    int status = refocus_strokes_save(strokes, &text, &size);
-
-    if (status != REFOCUS_OK)
-        return report_failure(EXIT_FAILED, saving->names.strokes, "%s", refocus_strerror(status));
-    status = output_write_file(saving->names.strokes, text, size);
-    free(text);
-    return status;
-}
-
-static void count(struct view_saving *saving, int status, const char *name)
-{
+    snprintf(words, RF_VIEW_WORDS, status == EXIT_DONE ? "saved %.200s" : "%.200s was not saved",
+             name);
     if (status != EXIT_DONE) {
         saving->failed++;
         return;
@@ -52,7 +40,7 @@ static void count(struct view_saving *saving, int status, const char *name)
     }
 }
 
-void view_save(void *user, const struct rf_view_result *result)
+void view_save(void *user, const struct rf_view_result *result, char words[RF_VIEW_WORDS])
 {
     struct view_saving *const saving = user;
     const struct view_names *const names = &saving->names;
@@ -60,14 +48,13 @@ void view_save(void *user, const struct rf_view_result *result)
     const struct refocus_write_options keeps = output_keeps(saving->input->photo);
 
     if (result->what & RF_SAVE_PICTURE)
-        count(saving, output_write_image(names->picture, picture, &keeps), names->picture);
+        count(saving, output_write_image(names->picture, picture, &keeps), names->picture, words);
     if (result->what & RF_SAVE_SETTINGS)
-        count(saving, saving->settings(saving->of, result, names->settings), names->settings);
+        count(saving, saving->settings(saving->of, result, names->settings), names->settings,
+              words);
     if (result->what & RF_SAVE_DEPTH) {
         count(saving,
               output_write_gray16(names->depth, result->disparity, picture->width, picture->height),
-              names->depth);
-        if (refocus_strokes_count(result->strokes) > 0)
-            count(saving, save_strokes(saving, result->strokes), names->strokes);
+              names->depth, words);
     }
 }

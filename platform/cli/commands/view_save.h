@@ -6,7 +6,7 @@
 #include "view/session.h"
 
 struct view_names {
-    char picture[1024], settings[1024], depth[1024], strokes[1024];
+    char picture[1024], settings[1024], depth[1024];
 };
 
 struct view_saving {
@@ -25,6 +25,6 @@ struct view_saving {
 bool view_make_names(struct view_names *names, const char *output, const char *photo);
 
 /* A callback for rf_session_setup.save; user is a struct view_saving. */
-void view_save(void *user, const struct rf_view_result *result);
+void view_save(void *user, const struct rf_view_result *result, char words[RF_VIEW_WORDS]);
 
 #endif

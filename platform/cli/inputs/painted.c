@@ -51,7 +51,8 @@ static int take(struct input *input, const struct refocus_strokes *strokes)
     return REFOCUS_OK;
 }
 
-int painted_open(struct input *input, const char *file, struct refocus_strokes **strokes)
+/* To be destroyed before the input, also after an error. */
+static int open_strokes(struct input *input, const char *file, struct refocus_strokes **strokes)
 {
     const struct refocus_disparity base = refocus_disparity16(
         input->disparity, input->width, input->height, 2 * (ptrdiff_t)input->width);
@@ -77,7 +78,7 @@ int painted_apply(struct input *input, const char *file)
 {
     struct refocus_photo_info *const info = &input->made_info;
     struct refocus_strokes *strokes = NULL;
-    int status = painted_open(input, file, &strokes);
+    int status = open_strokes(input, file, &strokes);
 
     if (status == EXIT_DONE && take(input, strokes) != REFOCUS_OK)
         status = report_failure(EXIT_FAILED, file, "%s", refocus_strerror(REFOCUS_ERR_MEMORY));

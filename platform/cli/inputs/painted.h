@@ -2,7 +2,6 @@
 #ifndef RF_CLI_PAINTED_H
 #define RF_CLI_PAINTED_H
 
-#include <refocus/platform/strokes.h>
 #include "inputs/inputs.h"
 
 /* Read a photo without any depth, for strokes to be painted over; or go on with one
@@ -10,12 +9,8 @@
 int painted_read(struct input *input, const char *photo, const struct depth_settings *settings);
 void painted_begin(struct input *input, const struct depth_settings *settings);
 
-/* The painting of the strokes of a file over the disparities, which have the photo's
- * size, or over nothing when there are none yet: to be destroyed before the input, also
- * after an error. Returns an exit code and prints why. */
-int painted_open(struct input *input, const char *file, struct refocus_strokes **strokes);
-
-/* Paint the strokes of a file into the disparities. */
+/* Paint the strokes of a file over the disparities, which have the photo's size, or over nothing
+ * when there are none yet. */
 int painted_apply(struct input *input, const char *file);
 
 #endif

@@ -3,13 +3,19 @@
 #include "inputs/shape.h"
 #include "line/report.h"
 
-bool shape_is_another(int width, int height, const struct refocus_image *photo)
+static bool shape_is_told(int width, int height)
 {
     enum { FEWEST = 16 };
+
+    return width >= FEWEST && height >= FEWEST;
+}
+
+bool shape_is_another(int width, int height, const struct refocus_image *photo)
+{
     const int64_t wide = (int64_t)width * photo->height;
     const int64_t high = (int64_t)height * photo->width;
 
-    return width >= FEWEST && height >= FEWEST && width != height &&
+    return shape_is_told(width, height) && width != height &&
            (2 * wide > 3 * high || 2 * high > 3 * wide);
 }
 
@@ -21,8 +27,15 @@ bool shape_lies_on_its_side(int width, int height, const struct refocus_image *p
 int shape_check(const char *file, int width, int height, const struct refocus_image *photo,
                 const char *what)
 {
-    if (!shape_is_another(width, height, photo))
+    const int64_t wide = (int64_t)width * photo->height, high = (int64_t)height * photo->width;
+
+    if (!shape_is_another(width, height, photo)) {
+        if ((8 * wide > 9 * high || 8 * high > 9 * wide) && width != height &&
+            shape_is_told(width, height) && shape_is_told(photo->width, photo->height))
+            report_warning(file, "its %dx%d samples are stretched to the shape of the photo, %dx%d",
+                           width, height, (int)photo->width, (int)photo->height);
         return EXIT_DONE;
+    }
     return report_failure(EXIT_FAILED, file,
                           "its %dx%d samples have another shape than the photo of %dx%d pixels; "
                           "give the %s of this photo, as upright as the photo is",

@@ -14,8 +14,8 @@ bool shape_is_another(int width, int height, const struct refocus_image *photo);
 /* Whether a picture has another shape as it lies, and the photo's once it is turned. */
 bool shape_lies_on_its_side(int width, int height, const struct refocus_image *photo);
 
-/* An exit code, and prints why it is not EXIT_DONE: the shape is another. `what` names what has it.
- */
+/* An exit code, and prints why it is not EXIT_DONE: the shape is another. A shape that is off by
+ * more than an eighth is told of. `what` names what has it. */
 int shape_check(const char *file, int width, int height, const struct refocus_image *photo,
                 const char *what);
 

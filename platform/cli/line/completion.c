@@ -23,7 +23,7 @@ static void print_about(const struct option *option, const char *special)
 {
     const char *text = option->brief ? option->brief : option->help;
 
-    print_escaped(text, option->brief ? strlen(text) : strcspn(text, ";:("), special);
+    print_escaped(text, option->brief ? strlen(text) : strcspn(text, ";("), special);
 }
 
 static bool is_number(const struct option *option)

@@ -2,12 +2,12 @@
 #include <signal.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include "line/interrupt.h"
 #include "line/jobs.h"
+#include "line/memory.h"
 #include "line/report.h"
 
 struct process {
@@ -23,21 +23,6 @@ struct run {
     int64_t memory_kib; /* for all together */
     bool stopped;
 };
-
-/* Memory that there is without taking it from others; else half of the machine's. */
-static int64_t free_memory_kib(void)
-{
-    FILE *file = fopen("/proc/meminfo", "r");
-    int64_t kib = (int64_t)sysconf(_SC_PHYS_PAGES) * (sysconf(_SC_PAGESIZE) / 1024) / 2;
-    char line[128];
-
-    while (file && fgets(line, sizeof line, file))
-        if (strncmp(line, "MemAvailable:", 13) == 0)
-            kib = strtoll(line + 13, NULL, 10);
-    if (file)
-        fclose(file);
-    return kib;
-}
 
 /* The number of processes that may run now: of photos whose need is not known yet one, and then
  * as many as three quarters of the memory hold when each takes as much as the largest has. */
@@ -173,7 +158,7 @@ static int report(const struct run *run)
 
 int jobs_run(const struct jobs *jobs)
 {
-    struct run run = {.jobs = jobs, .memory_kib = free_memory_kib()};
+    struct run run = {.jobs = jobs, .memory_kib = memory_free_kib()};
     int status;
 
     run.most = jobs->at_once > 0 ? jobs->at_once : report_processors();

@@ -62,3 +62,17 @@ void *module_symbol(void *module, const char *name)
     return NULL;
 }
 #endif
+
+bool module_load(const struct module_function *wanted, void *function, char why[MODULE_WHY])
+{
+    char reason[MODULE_WHY] = "it is of another version";
+    void *const module = module_open(wanted->built, wanted->installed, reason);
+    void *const symbol = module ? module_symbol(module, wanted->name) : NULL;
+
+    if (symbol)
+        memcpy(function, &symbol, sizeof symbol);
+    else
+        snprintf(why, MODULE_WHY, "%s cannot be loaded: %.150s; it is built with %s", wanted->part,
+                 reason, wanted->library);
+    return symbol != NULL;
+}

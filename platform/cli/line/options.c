@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 #include "line/help.h"
 #include "line/options.h"
 #include "line/report.h"
@@ -76,6 +77,9 @@ static int unknown_option(const struct command *command, const char *argument)
     nearest = options_nearest_name(command, name);
     if (nearest)
         return report_failure(EXIT_WRONG, name, "unknown option; did you mean %s?", nearest);
+    if (access(argument, F_OK) == 0)
+        return report_failure(EXIT_WRONG, argument,
+                              "unknown option; a file of this name is given as ./%s", argument);
     return report_failure(EXIT_WRONG, name, "unknown option; 'refocus %s --help-all' lists them",
                           command->name);
 }

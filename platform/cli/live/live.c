@@ -1,21 +1,20 @@
 /* live.c: the command refocus live: cameras are opened, the threads run, and the report is made. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 #include "commands/commands.h"
 #include "line/interrupt.h"
-#include "live/live_calibration.h"
 #include "live/live_colour.h"
 #include "live/live_commands.h"
 #include "live/live_depth_camera.h"
 #include "live/live_estimate.h"
+#include "live/live_lens.h"
 #include "live/live_look.h"
 #include "live/live_options.h"
 #include "live/live_output.h"
 #include "live/live_render.h"
 #include "live/live_report.h"
-#include "live/live_state.h"
+#include "live/live_sources.h"
+#include "live/live_stack.h"
 
 static void print_camera(void *user, const char *name, const char *description)
 {
@@ -27,7 +26,6 @@ static int print_modes(const char *name)
 {
     struct refocus_reason reason = {""};
     struct refocus_source_mode mode = refocus_source_mode_default();
-    struct refocus_source_lens lens = refocus_source_lens_default();
     struct refocus_source *source;
     const int status = refocus_source_open(&source, name, &reason);
 
@@ -36,9 +34,7 @@ static int print_modes(const char *name)
     for (int i = 0; refocus_source_get_mode(source, i, &mode) == REFOCUS_OK; i++)
         printf("%-6s %5dx%-5d %g fps\n", refocus_frame_format_name(mode.format), (int)mode.width,
                (int)mode.height, mode.fps);
-    if (refocus_source_get_lens(source, &lens, NULL) == REFOCUS_OK && lens.modes)
-        printf("lens%s %g to %g%s\n", lens.modes & 1 ? ", autofocus," : "", lens.least,
-               lens.greatest, lens.dioptres ? " dioptres" : "");
+    live_lens_print(source);
     refocus_source_close(&source);
     return report_end_output();
 }
@@ -52,39 +48,10 @@ static int list(const struct live_settings *settings)
     n = refocus_source_list(print_camera, NULL);
     if (n < 0)
         return report_failure(EXIT_FAILED, "--list", "%s", refocus_strerror(n));
+    if (n == 0)
+        report_warning("--list",
+                       "no camera is there; --camera replay:SCRIPT plays pictures instead");
     return report_end_output();
-}
-
-/* A signal ends the wait for a camera, too: all that follows is then over before it begins. */
-static int open_camera(struct live *live, const char *name, bool depth,
-                       struct refocus_source **source, struct refocus_source_mode *mode)
-{
-    struct refocus_source *opened;
-    const struct live_settings *settings = live->settings;
-    struct refocus_source_config config = refocus_source_config_default();
-    struct refocus_reason reason = {""};
-    int status;
-
-    *mode = refocus_source_mode_default();
-    if (!depth) {
-        config.format = (uint32_t)settings->format;
-        config.width = isnan(settings->size[0]) ? 0 : (int32_t)settings->size[0];
-        config.height = isnan(settings->size[0]) ? 0 : (int32_t)settings->size[1];
-    }
-    config.fps = isnan(settings->fps) ? 0 : settings->fps;
-    config.flags =
-        (settings->fast ? REFOCUS_SOURCE_FAST : 0) | (settings->loop ? REFOCUS_SOURCE_LOOP : 0) |
-        (settings->dmabuf ? REFOCUS_SOURCE_DMABUF : 0) | (depth ? REFOCUS_SOURCE_DEPTH : 0);
-    status = refocus_source_open(&opened, name, &reason);
-    pthread_mutex_lock(&live->lock);
-    *source = opened;
-    pthread_mutex_unlock(&live->lock);
-    if (status == REFOCUS_OK)
-        status = refocus_source_start(opened, &config, mode, &reason);
-    if (status != REFOCUS_OK && !(status == REFOCUS_ERR_CANCELLED && live_is_over(live)))
-        return report_failure(input_exit_code(status), name, "%s",
-                              reason.text[0] ? reason.text : refocus_strerror(status));
-    return EXIT_DONE;
 }
 
 static int open_all(struct live *live)
@@ -93,18 +60,8 @@ static int open_all(struct live *live)
     struct refocus_reason reason = {""};
     int status = live_commands_open(live);
 
-    if (status == EXIT_DONE && settings->calibration)
-        status = live_read_calibration(&live->calibration, settings->calibration);
-    /* A network takes a while to load, in which a camera that runs would lose frames. */
-    if (status == EXIT_DONE && settings->estimate.model[0])
-        status = live_estimate_open(live);
     if (status == EXIT_DONE)
-        status = open_camera(live, settings->camera, false, &live->camera, &live->mode);
-    if (status == EXIT_DONE && refocus_source_kind(settings->depth.file))
-        status =
-            open_camera(live, settings->depth.file, true, &live->depth_camera, &live->depth_mode);
-    else if (status == EXIT_DONE && !live->estimator)
-        status = live_read_fixed_depth(live);
+        status = live_sources_open(live);
     if (status == EXIT_DONE && live->mode.width > 0 && live->mode.height > 0)
         status = live_look_place(live, live->mode.width, live->mode.height);
     if (status != EXIT_DONE)
@@ -198,11 +155,8 @@ static int run_live(struct live *live)
     if (status == EXIT_DONE)
         status = live_report(live);
     interrupt_call(NULL, NULL);
-    refocus_source_close(&live->camera);
-    refocus_source_close(&live->depth_camera);
+    live_sources_close(live);
     live_commands_close(live);
-    live_estimate_close(live);
-    free(live->calibration);
     return status;
 }
 
@@ -212,7 +166,6 @@ static int run(int argc, char **argv)
     struct engine engine;
     struct live *live;
     const char *files[1];
-    bool newest_wins;
     int status;
 
     status = options_parse(&live_command, argc, argv, &settings, files);
@@ -226,36 +179,18 @@ static int run(int argc, char **argv)
     live = calloc(1, sizeof *live);
     if (!live)
         return report_failure(EXIT_FAILED, "live", "not enough memory");
-    live->settings = &settings;
-    live->engine = &engine;
-    live->lens_dioptres = live->focus_disparity = live->blur = NAN;
-    live->command_fd = -1;
-    live->wake_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    pthread_mutex_init(&live->lock, NULL);
-    sem_init(&live->first_commands, 0, 0);
-    newest_wins = settings.policy == POLICY_NEWEST;
-    live_queue_init(&live->captured, newest_wins);
-    live_queue_init(&live->rendered, newest_wins);
-    live_queue_init(&live->to_estimate, newest_wins);
-    live_depths_init(&live->depths, settings.policy == POLICY_EVERY);
-    live_focus_init(&live->focus, &settings.lens);
-    live->focus.blur = settings.lens.blur;
-    live->focus.blur_most = settings.blur_most;
+    status = live_begin(live, &settings, &engine);
+    if (status != EXIT_DONE) {
+        free(live);
+        return status;
+    }
     status = engine_begin(&engine, &settings.engine);
     if (status == EXIT_DONE)
         status = live_look_check_method(live);
     if (status == EXIT_DONE)
         status = run_live(live);
     engine_end(&engine);
-    live_queue_free(&live->captured);
-    live_queue_free(&live->rendered);
-    live_queue_free(&live->to_estimate);
-    live_depths_free(&live->depths);
-    pthread_mutex_destroy(&live->focus.lock);
-    pthread_mutex_destroy(&live->lock);
-    sem_destroy(&live->first_commands);
-    if (live->wake_fd >= 0)
-        close(live->wake_fd);
+    live_clear(live);
     free(live);
     return status;
 }
@@ -265,8 +200,9 @@ const struct command live_command = {
     .usage = "--camera SOURCE --depth SOURCE [--out SINK] [options]",
     .summary = "camera in, refocused frames out",
     .notes = "While it runs, standard input (and --socket) takes a command a line: focus D, "
-             "focus-at X,Y, "
-             "pull D SECONDS, pull-at X,Y SECONDS (smooth), blur K, quit. Depth is paired with "
+             "focus-at X,Y, focus-rectangle X,Y,W,H (follows), "
+             "pull D SECONDS, pull-at X,Y SECONDS (smooth), blur K, stack (take a new one), quit. "
+             "Depth is paired with "
              "colour by time within half a frame; without a pair the newest depth serves, or, "
              "with --frames-policy every, the nearest in time. "
              "After a fault the camera is opened again; platform/README.md lists faults and "

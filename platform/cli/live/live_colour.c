@@ -3,6 +3,7 @@
 #include "live/live_colour.h"
 #include "live/live_estimate.h"
 #include "live/live_lane.h"
+#include "live/live_stack.h"
 
 /* When it was taken: by the camera's clock where that is ours and plausible. */
 static int64_t taken_at(const struct refocus_frame *frame, int64_t now_ns)
@@ -67,6 +68,7 @@ void *live_colour_thread(void *argument)
         live_lane_of(live, live->camera, live->settings->camera, &live->mode, &live->capture);
 
     lane.deliver = deliver_colour;
+    lane.between = live->stack ? live_stack_take : NULL;
     if (refocus_converter_create(&lane.converter) == REFOCUS_OK)
         live_lane_run(&lane);
     else

@@ -12,6 +12,7 @@
 #include "line/report.h"
 #include "live/live_commands.h"
 #include "live/live_lines.h"
+#include "live/live_stack.h"
 
 enum { MOST_CLIENTS = 8, WAKE = 0, LISTENER, FIRST, MOST_FDS = FIRST + 1 + MOST_CLIENTS };
 
@@ -38,21 +39,23 @@ static void obey(void *user, char *line)
     bool quit = false;
 
     live->commands++;
-    if (live_focus_command(&live->focus, line, &quit, why, sizeof why)) {
+    if (strcmp(line, "stack") == 0
+            ? live_stack_ask(live, why, sizeof why)
+            : live_focus_command(&live->focus, line, &quit, why, sizeof why)) {
         answer(client, "ok\n");
     } else {
         live->commands_refused++;
         snprintf(reply, sizeof reply, "refused: %s\n", why);
         answer(client, reply);
         if (!client->is_socket)
-            report_failure(EXIT_FAILED, line, "%s", why); /* says it, and goes on */
+            report_failure(EXIT_FAILED, line, "%s", why); /* printed, and live goes on */
     }
     if (quit)
         live_end(live);
 }
 
 /* False when no more will come. */
-static bool hear(struct client *client)
+static bool read_commands(struct client *client)
 {
     char bytes[512];
     const ssize_t got = read(client->fd, bytes, sizeof bytes);
@@ -66,15 +69,15 @@ static bool hear(struct client *client)
 enum { FIRST_MS = 250, FIRST_READS = 4096 };
 
 /* Reads at the beginning what stands on standard input: a file whole, and of a pipe what whoever
- * fills it has written, for which it is given a moment. Of a terminal nothing. */
-static void hear_first(struct client *client)
+ * fills it has written, for which it is given a moment. Nothing is read from a terminal. */
+static void read_waiting(struct client *client)
 {
     struct pollfd fd = {.fd = client->fd, .events = POLLIN};
 
     if (client->fd < 0 || isatty(client->fd))
         return;
     for (int i = 0; i < FIRST_READS && poll(&fd, 1, i == 0 ? FIRST_MS : 0) > 0; i++)
-        if (!hear(client)) {
+        if (!read_commands(client)) {
             client->fd = -1;
             break;
         }
@@ -107,7 +110,7 @@ void *live_command_thread(void *argument)
     if (!live->settings->no_commands)
         clients[0].fd = STDIN_FILENO;
     if (live->settings->offline)
-        hear_first(&clients[0]);
+        read_waiting(&clients[0]);
     sem_post(&live->first_commands);
     while (!live_is_over(live) && (clients[0].fd >= 0 || live->command_fd >= 0)) {
         struct pollfd fds[MOST_FDS] = {[WAKE] = {.fd = live->wake_fd, .events = POLLIN},
@@ -118,7 +121,7 @@ void *live_command_thread(void *argument)
         if ((poll(fds, MOST_FDS, -1) < 0 && errno != EINTR) || fds[WAKE].revents)
             break;
         for (int i = 0; i <= MOST_CLIENTS; i++)
-            if (clients[i].fd >= 0 && fds[FIRST + i].revents && !hear(&clients[i])) {
+            if (clients[i].fd >= 0 && fds[FIRST + i].revents && !read_commands(&clients[i])) {
                 if (clients[i].is_socket)
                     close(clients[i].fd);
                 clients[i].fd = -1;

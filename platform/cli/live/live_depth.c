@@ -5,28 +5,25 @@
 #include <string.h>
 #include <time.h>
 #include "live/live_depth.h"
+#include "live/live_lock.h"
 
-void live_depths_init(struct live_depths *depths, bool every)
+bool live_depths_init(struct live_depths *depths, bool every)
 {
-    pthread_condattr_t attributes;
-
     memset(depths, 0, sizeof *depths);
-    pthread_mutex_init(&depths->lock, NULL);
-    pthread_condattr_init(&attributes);
-    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_cond_init(&depths->changed, &attributes);
-    pthread_condattr_destroy(&attributes);
+    depths->made = live_lock_make(&depths->lock, &depths->changed);
     depths->pinned = -1;
     depths->every = every;
     depths->needed_ns = INT64_MIN;
+    return depths->made;
 }
 
 void live_depths_free(struct live_depths *depths)
 {
     for (int i = 0; i < LIVE_DEPTHS; i++)
         free(depths->map[i].disparity);
-    pthread_cond_destroy(&depths->changed);
-    pthread_mutex_destroy(&depths->lock);
+    if (depths->made)
+        live_lock_end(&depths->lock, &depths->changed);
+    depths->made = false;
 }
 
 void live_depths_end(struct live_depths *depths)
@@ -104,6 +101,8 @@ void live_depths_put(struct live_depths *depths, struct live_depth_map *map, int
 {
     pthread_mutex_lock(&depths->lock);
     depths->still |= still;
+    for (int i = 0; still && i < LIVE_DEPTHS; i++)
+        depths->map[i].number = 0; /* none before it counts any more */
     map->timestamp_ns = timestamp_ns;
     map->number = ++depths->count;
     pthread_cond_broadcast(&depths->changed);

@@ -25,11 +25,13 @@ struct live_depths {
     uint64_t count;    /* maps so far */
     int pinned;        /* the one that is being used, or -1 */
     int64_t needed_ns; /* maps from before this moment are needed no more */
+    bool made;         /* the lock and the condition are there */
     bool every, ended;
-    bool still; /* there is one map for all times */
+    bool still; /* the newest map is for all times */
 };
 
-void live_depths_init(struct live_depths *depths, bool every);
+/* False: there is no lock to be had; live_depths_free() is right even so. */
+bool live_depths_init(struct live_depths *depths, bool every);
 void live_depths_free(struct live_depths *depths);
 void live_depths_end(struct live_depths *depths);
 /* A map to fill that no one uses; NULL when it is over or there is no memory. */

@@ -4,11 +4,21 @@
 #include <stdlib.h>
 #include <string.h>
 #include "live/live_focus.h"
+#include "live/live_lock.h"
 
-void live_focus_init(struct live_focus *focus, const struct lens_settings *lens)
+/* Until it is followed its middle is focused on. */
+static void aim_at_rectangle(struct live_focus *focus, struct live_target *target)
+{
+    target->known = target->follows_lens = false;
+    for (int i = 0; i < 2; i++)
+        target->point[i] = focus->rectangle[i] + focus->rectangle[2 + i] / 2;
+    focus->rectangles++;
+}
+
+bool live_focus_init(struct live_focus *focus, const struct lens_settings *lens)
 {
     memset(focus, 0, sizeof *focus);
-    pthread_mutex_init(&focus->lock, NULL);
+    focus->made = live_lock_make(&focus->lock, NULL);
     focus->to.known = !isnan(lens->focus);
     focus->to.follows_lens = isnan(lens->focus) && isnan(lens->focus_at[0]);
     focus->to.value = lens->focus;
@@ -19,8 +29,19 @@ void live_focus_init(struct live_focus *focus, const struct lens_settings *lens)
         focus->to.follows_lens = false;
         focus->to.value = 1 / lens->focus_distance;
     }
+    memcpy(focus->rectangle, lens->focus_rectangle, sizeof focus->rectangle);
+    if (!isnan(focus->rectangle[0]))
+        aim_at_rectangle(focus, &focus->to);
     focus->from = focus->to;
     focus->stretch = 1;
+    return focus->made;
+}
+
+void live_focus_free(struct live_focus *focus)
+{
+    if (focus->made)
+        live_lock_end(&focus->lock, NULL);
+    focus->made = false;
 }
 
 static double clamp(double disparity)
@@ -184,6 +205,35 @@ void live_focus_found(struct live_focus *focus, const double point[2], double di
     pthread_mutex_unlock(&focus->lock);
 }
 
+bool live_focus_rectangle(struct live_focus *focus, double rectangle[4], uint64_t *asked)
+{
+    bool wanted;
+
+    pthread_mutex_lock(&focus->lock);
+    wanted = !isnan(focus->rectangle[0]);
+    memcpy(rectangle, focus->rectangle, sizeof focus->rectangle);
+    *asked = focus->rectangles;
+    pthread_mutex_unlock(&focus->lock);
+    return wanted;
+}
+
+void live_focus_follow(struct live_focus *focus, double disparity, bool first, double seconds)
+{
+    static const double settle_s = 0.08;
+    double was;
+
+    pthread_mutex_lock(&focus->lock);
+    was = present(focus);
+    if (!isnan(focus->rectangle[0])) {
+        focus->to = focus->from = (struct live_target){.known = true, .value = disparity};
+        if (!first)
+            focus->to.value += (was - disparity) * exp(-seconds / settle_s);
+        focus->duration_ns = 0;
+        focus->from = focus->to = standing(focus);
+    }
+    pthread_mutex_unlock(&focus->lock);
+}
+
 void live_focus_size(struct live_focus *focus, int width, int height)
 {
     pthread_mutex_lock(&focus->lock);
@@ -210,9 +260,8 @@ void live_focus_lens(struct live_focus *focus, double per_dioptre)
     pthread_mutex_unlock(&focus->lock);
 }
 
-/* "0.5", "0.5 2", "320,240" or "320,240 2": up to two values and, behind a blank,
- * seconds. */
-static bool parse_values(const char *text, int count, double values[2], double *seconds)
+/* "0.5", "0.5 2", "320,240" or "320,240 2": up to four values and, behind a blank, seconds. */
+static bool parse_values(const char *text, int count, double values[4], double *seconds)
 {
     char *end;
 
@@ -239,23 +288,34 @@ static bool is_inside(const struct live_focus *focus, const double at[2])
            (at[0] >= 0 && at[0] < focus->width && at[1] >= 0 && at[1] < focus->height);
 }
 
+bool live_focus_has_inside(const struct live_focus *focus, const double box[4])
+{
+    const bool positive = box[0] >= 0 && box[1] >= 0 && box[2] >= 1 && box[3] >= 1;
+
+    return positive &&
+           (!focus->width || (box[0] + box[2] <= focus->width && box[1] + box[3] <= focus->height));
+}
+
 static bool apply(struct live_focus *focus, const char *word, const char *rest, char *why,
                   size_t size)
 {
     const bool point = strcmp(word, "focus-at") == 0 || strcmp(word, "pull-at") == 0;
-    double values[2] = {0, 0}, seconds = strncmp(word, "pull", 4) == 0 ? 1 : 0;
+    const bool rectangle = strcmp(word, "focus-rectangle") == 0;
+    double values[4] = {0, 0, 0, 0}, seconds = strncmp(word, "pull", 4) == 0 ? 1 : 0;
     struct live_target target = {.known = !point, .point = {NAN, NAN}};
 
     if (strcmp(word, "blur") != 0 && strcmp(word, "focus") != 0 && strcmp(word, "pull") != 0 &&
-        !point) {
+        !point && !rectangle) {
         snprintf(why, size,
-                 "unknown; give focus D, focus-at X,Y, pull D SECONDS, "
-                 "pull-at X,Y SECONDS, blur K or quit");
+                 "unknown; give focus D, focus-at X,Y, focus-rectangle X,Y,W,H, pull D SECONDS, "
+                 "pull-at X,Y SECONDS, blur K, stack or quit");
         return false;
     }
-    if (!parse_values(rest, point ? 2 : 1, values, &seconds)) {
+    if (!parse_values(rest, rectangle ? 4 : point ? 2 : 1, values, &seconds)) {
         snprintf(why, size, "'%.60s' is no number as it takes them; give %s", rest,
-                 point ? "X,Y or X,Y SECONDS" : "one number, and seconds behind it");
+                 rectangle ? "X,Y,W,H"
+                 : point   ? "X,Y or X,Y SECONDS"
+                           : "one number, and seconds behind it");
         return false;
     }
     if (strcmp(word, "blur") == 0) {
@@ -268,6 +328,14 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest, 
         focus->blur_asked = true;
         focus->per_dioptre = 0;
         focus->stretch = 1;
+    } else if (rectangle && !live_focus_has_inside(focus, values)) {
+        snprintf(why, size, "%g,%g,%g,%g does not lie within pictures of %dx%d", values[0],
+                 values[1], values[2], values[3], focus->width, focus->height);
+        return false;
+    } else if (rectangle) {
+        memcpy(focus->rectangle, values, sizeof focus->rectangle);
+        aim_at_rectangle(focus, &target);
+        pull(focus, &target, 0);
     } else if (point && !is_inside(focus, values)) {
         snprintf(why, size, "%g,%g is outside of pictures of %dx%d", values[0], values[1],
                  focus->width, focus->height);
@@ -275,12 +343,14 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest, 
     } else if (point) {
         target.point[0] = values[0];
         target.point[1] = values[1];
+        focus->rectangle[0] = NAN;
         pull(focus, &target, seconds);
     } else if (!(values[0] >= 0 && values[0] <= 1)) {
         snprintf(why, size, "%g is out of 0 (farthest) to 1 (nearest)", values[0]);
         return false;
     } else {
         target.value = values[0];
+        focus->rectangle[0] = NAN;
         pull(focus, &target, seconds);
     }
     return true;

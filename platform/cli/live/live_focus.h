@@ -19,6 +19,7 @@ struct live_target {
 
 struct live_focus {
     pthread_mutex_t lock;
+    bool made;                   /* the lock is there */
     struct live_target from, to; /* a pull from one to the other */
     int64_t begin_ns, duration_ns;
     bool begun; /* at begin_ns; else it begins with the next frame */
@@ -30,9 +31,13 @@ struct live_focus {
     bool blur_asked;    /* by a command */
     double per_dioptre; /* 0, or K of a lens for a scene 1/m deep, which holds in place of blur */
     int width, height;  /* size of the pictures; 0: none has come */
+    double rectangle[4]; /* x, y, width, height of what is followed; NAN: nothing is */
+    uint64_t rectangles; /* Rectangles asked for so far. */
 };
 
-void live_focus_init(struct live_focus *focus, const struct lens_settings *lens);
+/* False: there is no lock to be had; live_focus_free() is right even so. */
+bool live_focus_init(struct live_focus *focus, const struct lens_settings *lens);
+void live_focus_free(struct live_focus *focus);
 /* A line of commands, which holds from the next frame on; false: it is not understood, and why.
  * *quit is set by "quit". */
 bool live_focus_command(struct live_focus *focus, const char *line, bool *quit, char *why,
@@ -47,6 +52,14 @@ bool live_focus_point(struct live_focus *focus, double point[2]);
 /* The pixel that is focused on, or will be after the pull; NAN: none was said. */
 void live_focus_looked_at(struct live_focus *focus, double point[2]);
 void live_focus_found(struct live_focus *focus, const double point[2], double disparity);
+/* The rectangle that is to be followed from the frame on in which *asked, that of the last call, is
+ * not the number that it receives; false: none is. */
+bool live_focus_rectangle(struct live_focus *focus, double rectangle[4], uint64_t *asked);
+/* Whether a rectangle lies within the pictures, as far as their size is known. */
+bool live_focus_has_inside(const struct live_focus *focus, const double box[4]);
+/* The subject has that disparity: the focus goes there within some tenths of a second, and to
+ * a first one at once. */
+void live_focus_follow(struct live_focus *focus, double disparity, bool first, double seconds);
 /* The disparity in focus and the blur that hold for that frame. */
 void live_focus_get(struct live_focus *focus, double *disparity, double *blur);
 /* From now on the blur is that of a lens whose K is so much for a scene 1/m deep, until the command

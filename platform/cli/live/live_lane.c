@@ -154,11 +154,15 @@ static const struct refocus_frame *skip_to_newest(struct live_lane *lane,
 void live_lane_run(struct live_lane *lane)
 {
     struct live *live = lane->live;
-    int64_t quiet_since = live_now_ns(), fault_ns = 0;
+    int64_t fault_ns = 0;
 
+    lane->quiet_since_ns = live_now_ns();
     while (!live_is_over(live)) {
         struct refocus_reason reason = {""};
         const struct refocus_frame *frame = NULL;
+
+        if (lane->between && lane->between(lane) != EXIT_DONE)
+            return;
         int status = refocus_source_wait(lane->source, WAIT_MS, &frame, &reason);
 
         if (status == REFOCUS_OK) {
@@ -168,7 +172,7 @@ void live_lane_run(struct live_lane *lane)
             if (fault_ns)
                 note_recovery(lane, fault_ns);
             fault_ns = 0;
-            quiet_since = live_now_ns();
+            lane->quiet_since_ns = live_now_ns();
             if (result != EXIT_DONE || lane->done)
                 return;
             continue;
@@ -178,7 +182,7 @@ void live_lane_run(struct live_lane *lane)
         if (status == REFOCUS_ERR_TIMEOUT) {
             lane->stage->timeouts++;
             /* A device that says nothing for long may have to be opened again. */
-            if (ms_since(quiet_since) < 2000)
+            if (ms_since(lane->quiet_since_ns) < 2000)
                 continue;
         } else if (!can_restart(status)) {
             live_fail(live, EXIT_FAILED, lane->name, reason.text);
@@ -195,7 +199,7 @@ void live_lane_run(struct live_lane *lane)
             live_fail(live, EXIT_FAILED, lane->name, "no frame comes; check the camera");
             return;
         }
-        quiet_since = live_now_ns();
+        lane->quiet_since_ns = live_now_ns();
     }
 }
 

@@ -21,8 +21,11 @@ struct live_lane {
     /* A status; the frame is released by the caller. */
     int (*deliver)(struct live_lane *lane, const struct refocus_frame *frame, int64_t now_ns,
                    struct refocus_reason *reason);
+    /* Before each wait for a frame; a code other than EXIT_DONE ends the lane. May be NULL. */
+    int (*between)(struct live_lane *lane);
     void *user; /* for deliver() */
     int64_t last_ns;
+    int64_t quiet_since_ns;        /* no frame has come from then on */
     int64_t period_ns;             /* between two frames */
     struct live_moment sure, seen; /* the last frame of a sound time, and the last of all */
     bool doubted;                  /* the last frame's time was not believed */

@@ -58,6 +58,15 @@ int live_look_place(struct live *live, int width, int height)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, 3 * (ptrdiff_t)width);
     int status = papers_place(&live->settings->engine.papers, &live->engine->params, width, height);
 
+    if (status == EXIT_DONE && !isnan(lens->focus_rectangle[0]) && live->frames_rendered <= 1) {
+        live_focus_size(&live->focus, width, height);
+        if (!live_focus_has_inside(&live->focus, lens->focus_rectangle))
+            status =
+                report_failure(EXIT_WRONG, "--focus-rectangle",
+                               "%g,%g,%g,%g does not lie within the %dx%d pixels of the camera",
+                               lens->focus_rectangle[0], lens->focus_rectangle[1],
+                               lens->focus_rectangle[2], lens->focus_rectangle[3], width, height);
+    }
     if (status == EXIT_DONE)
         status = live_look_aim(live, &photo, &aimed);
     if (status == EXIT_DONE && !isnan(lens->f_number)) {
@@ -72,7 +81,6 @@ int live_look_aim(struct live *live, const struct refocus_image *photo,
                   struct refocus_settings *params)
 {
     const struct engine *const engine = live->engine;
-    const struct live_range *const range = &live->range;
     const double *const at = live->settings->lens.focus_at;
     const struct refocus_disparity size =
         refocus_disparity16(NULL, photo->width, photo->height, 2 * (ptrdiff_t)photo->width);
@@ -80,9 +88,7 @@ int live_look_aim(struct live *live, const struct refocus_image *photo,
     double looked_at[2];
 
     live_focus_looked_at(&live->focus, looked_at);
-    papers_suit(&live->settings->engine.papers,
-                live_range_is_known(range) ? range->near / range->far : NAN, looked_at,
-                photo->width, photo->height, params);
+    papers_suit(&live->settings->engine.papers, looked_at, photo->width, photo->height, params);
     params->field.disparity = isnan(engine->field_disparity) ? params->render.focus_disparity
                                                              : (float)engine->field_disparity;
     if (!isnan(at[0]))

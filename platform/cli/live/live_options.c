@@ -5,6 +5,7 @@
 #include "live/live_estimate.h"
 #include "live/live_look.h"
 #include "live/live_options.h"
+#include "live/live_stack.h"
 
 static const char *policy_name(uint32_t index)
 {
@@ -30,17 +31,19 @@ const struct option live_options[] = {
      .name = "--camera",
      .argument = "SOURCE",
      .offset = offsetof(struct live_settings, camera),
-     .brief = "v4l2:/dev/video0, libcamera:0, file:f-%04d.png, ...",
-     .help = "v4l2:/dev/video0, libcamera:0, file:frames-%04d.png, y4m:FILE, "
+     .brief = "v4l2:/dev/video0, libcamera:0, pipewire:, ...",
+     .help = "v4l2:/dev/video0, libcamera:0, pipewire:[NODE], file:frames-%04d.png, y4m:FILE, "
              "raw:FILE,NV12,640x480,30 or replay:SCRIPT"},
     {.kind = OPTION_TEXT,
      .name = "--depth",
      .argument = "SOURCE",
      .offset = offsetof(struct live_settings, depth.file),
-     .brief = "such a source, a depth map, or estimate:MODEL.onnx",
+     .brief = "such a source, a map, estimate:MODEL.onnx, or stack:",
      .help = "depth beside it: such a source of Y16, Z16 or GREY, the file of one fixed depth "
              "map, or estimate:MODEL.onnx[,every=N][,preset=NAME], a network that sees every "
-             "N-th picture"},
+             "N-th picture; or stack:[steps=N][,far=P,near=P][,average=N][,settle=MS], for still "
+             "scenes: the camera moves its lens, and a focus stack becomes the depth, at the "
+             "beginning and at each command 'stack'; the parts are the options of refocus stack"},
     DEPTH_UNIT_OPTIONS(struct live_settings, depth),
     {.kind = OPTION_NUMBER,
      .name = "--steady",
@@ -70,8 +73,9 @@ const struct option live_options[] = {
      .name = "--out",
      .argument = "SINK",
      .offset = offsetof(struct live_settings, out),
-     .brief = "window, y4m:FILE, v4l2:/dev/video9, f-%04d.png, ...",
-     .help = "window, v4l2:/dev/video9, y4m:FILE, raw:FILE[,FORMAT], frames-%04d.png or null "
+     .brief = "window, pipewire:, v4l2:/dev/video9, y4m:FILE, ...",
+     .help = "window, v4l2:/dev/video9, pipewire:[NAME] (a camera that browsers list), y4m:FILE, "
+             "raw:FILE[,FORMAT], frames-%04d.png or null "
              "(default); FILE may be - for standard output, FORMAT own (as frames come), NV12, "
              "NV21, YUV420, YUYV, UYVY, RGB24 (default), BGR24, RGBX or BGRX"},
     {.kind = OPTION_FLAG,
@@ -101,6 +105,13 @@ const struct option live_options[] = {
      .above = true,
      .greatest = 10000,
      .help = "frames a second"},
+    {.kind = OPTION_TEXT,
+     .name = "--autofocus",
+     .argument = "HOW",
+     .offset = offsetof(struct live_settings, focus_way),
+     .help = "the camera's own lens: off (it stays where it is), once, continuous, or fixed:P at a "
+             "position, which --list shows with --camera; default as the camera does, with "
+             "libcamera continuous"},
     {.kind = OPTION_HEADING, .help = "Focus and blur"},
     {.kind = OPTION_NUMBER,
      .name = "--focus",
@@ -121,6 +132,16 @@ const struct option live_options[] = {
      .help = "focus on the surface at that pixel of the first frame, and stay at its distance; "
              "without any --focus...: where the camera's lens is, if it says so, else the "
              "centre"},
+    {.kind = OPTION_NUMBERS,
+     .name = "--focus-rectangle",
+     .argument = "X,Y,W,H",
+     .offset = offsetof(struct live_settings, lens.focus_rectangle),
+     .least = 0,
+     .greatest = REFOCUS_MAX_SIDE,
+     .count = 4,
+     .help =
+         "follow what the first frame shows in that rectangle, and focus on the nearest surface "
+         "that has a quarter of it; while it is not to be seen the focus stays"},
     {.kind = OPTION_NUMBER,
      .name = "--focus-distance",
      .argument = "M",
@@ -335,7 +356,17 @@ int live_check_settings(struct live_settings *settings)
         if (status != EXIT_DONE)
             return status;
     }
-    status = live_look_check(settings);
+    if (live_stack_is_meant(settings->depth.file)) {
+        status = live_stack_parse(settings);
+        if (status != EXIT_DONE)
+            return status;
+    }
+    status = live_lens_parse(&settings->autofocus, settings->focus_way);
+    if (status == EXIT_DONE && settings->autofocus.wanted && settings->stack.steps > 0)
+        status = report_failure(EXIT_WRONG, "--autofocus",
+                                "the lens takes a focus stack for --depth; leave it out");
+    if (status == EXIT_DONE)
+        status = live_look_check(settings);
     if (status == EXIT_DONE)
         status = check_sources(settings);
     if (status != EXIT_DONE)

@@ -28,7 +28,8 @@ static bool reopen(struct live *live, const struct refocus_image *image,
 
 static bool is_device(const struct live *live)
 {
-    return strncmp(live->settings->out, "v4l2:", 5) == 0;
+    return strncmp(live->settings->out, "v4l2:", 5) == 0 ||
+           strncmp(live->settings->out, "pipewire:", 9) == 0;
 }
 
 /* Whether a write may wait for whoever reads: then a signal may cut it short. */

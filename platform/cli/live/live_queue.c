@@ -3,36 +3,27 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include "live/live_lock.h"
 #include "live/live_queue.h"
 
-/* A condition whose time-outs follow CLOCK_MONOTONIC. */
-static void init_condition(pthread_cond_t *condition)
-{
-    pthread_condattr_t attributes;
-
-    pthread_condattr_init(&attributes);
-    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_cond_init(condition, &attributes);
-    pthread_condattr_destroy(&attributes);
-}
-
-void live_queue_init(struct live_queue *queue, bool newest_wins)
+bool live_queue_init(struct live_queue *queue, bool newest_wins)
 {
     memset(queue, 0, sizeof *queue);
-    pthread_mutex_init(&queue->lock, NULL);
-    init_condition(&queue->changed);
+    queue->made = live_lock_make(&queue->lock, &queue->changed);
     queue->newest_wins = newest_wins;
     queue->most = queue->newest_wins ? 1 : 2;
     for (int i = 0; i < LIVE_SLOTS; i++)
         queue->free[queue->free_count++] = i;
+    return queue->made;
 }
 
 void live_queue_free(struct live_queue *queue)
 {
     for (int i = 0; i < LIVE_SLOTS; i++)
         free(queue->slot[i].image.plane[0]);
-    pthread_cond_destroy(&queue->changed);
-    pthread_mutex_destroy(&queue->lock);
+    if (queue->made)
+        live_lock_end(&queue->lock, &queue->changed);
+    queue->made = false;
 }
 
 void live_queue_close(struct live_queue *queue)

@@ -26,12 +26,14 @@ struct live_queue {
     int free[LIVE_SLOTS], free_count;
     int full[LIVE_SLOTS], full_count; /* oldest first */
     int most;                         /* full ones at a time */
+    bool made;                        /* the lock and the condition are there */
     bool newest_wins, closed;
     uint64_t dropped;
 };
 
-/* When the newest wins, a picture replaces one that waits; else the giver waits. */
-void live_queue_init(struct live_queue *queue, bool newest_wins);
+/* When the newest wins, a picture replaces one that waits; else the giver waits. False: there is no
+ * lock to be had; live_queue_free() is right even so. */
+bool live_queue_init(struct live_queue *queue, bool newest_wins);
 void live_queue_free(struct live_queue *queue);
 /* No more will come; full slots can still be taken. */
 void live_queue_close(struct live_queue *queue);

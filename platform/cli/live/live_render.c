@@ -1,4 +1,5 @@
 /* live_render.c: each frame gets its depth, is refocused, and goes on to the output. */
+#include <math.h>
 #include <stdlib.h>
 #include "inputs/lens.h"
 #include "line/interrupt.h"
@@ -63,6 +64,43 @@ static void find_points(struct live *live, int width, int height)
     free(disparity);
 }
 
+/* The focus goes with the subject of a rectangle, if one is followed, and where the subject cannot
+ * be found it stays. */
+static void follow(struct live *live, const struct refocus_image *photo,
+                   const struct refocus_disparity *map)
+{
+    struct live_tracker *const tracker = &live->tracker;
+    const double seconds = (double)(live->clock_ns - live->tracked_ns) / 1e9;
+    double rectangle[4];
+    int corner[2], end[2];
+    uint64_t asked;
+    float disparity;
+    bool first;
+
+    live->tracked_ns = live->clock_ns;
+    if (!live_focus_rectangle(&live->focus, rectangle, &asked)) {
+        live->tracked = 0;
+        return;
+    }
+    first = live->tracked != asked;
+    if (first)
+        live_track_begin(tracker, rectangle);
+    live->tracked = asked;
+    if (!live_track_frame(tracker, photo))
+        return;
+    for (int i = 0; i < 2; i++) {
+        const int samples = i ? map->height : map->width;
+        const double scale = (double)samples / (i ? photo->height : photo->width);
+
+        corner[i] = (int)fmin(fmax(tracker->box[i] * scale, 0), samples - 1);
+        end[i] = (int)fmin(
+            fmax(ceil((tracker->box[i] + tracker->box[2 + i]) * scale), corner[i] + 1), samples);
+    }
+    if (refocus_focus_in_rectangle(map, corner[0], corner[1], end[0] - corner[0],
+                                   end[1] - corner[1], &disparity) == REFOCUS_OK)
+        live_focus_follow(&live->focus, (double)disparity, first, seconds);
+}
+
 /* Time goes on with the frames, so that the same ones make the same pull however long they take;
  * it stands still when one lies before the last. */
 static void advance(struct live *live, const struct live_picture *picture)
@@ -102,6 +140,7 @@ static int refocus(struct live *live, const struct live_picture *picture,
     if (status != REFOCUS_OK)
         return status;
     live_times_add(&live->prepare.times, (double)(live_now_ns() - begin) / 1e6);
+    follow(live, &picture->image, &disparity);
     find_points(live, picture->image.width, picture->image.height);
     live_focus_get(&live->focus, &live->focus_disparity, &live->blur);
     begin = live_now_ns();
@@ -115,8 +154,7 @@ static int refocus(struct live *live, const struct live_picture *picture,
     return status;
 }
 
-/* The depth of a picture, or NULL; counts which it was. */
-static const struct live_depth_map *pair(struct live *live, const struct live_picture *picture)
+const struct live_depth_map *live_pair(struct live *live, const struct live_picture *picture)
 {
     const double fps = live->mode.fps > 0 ? live->mode.fps : 30;
     const int64_t begin = live_now_ns();
@@ -142,7 +180,7 @@ static const struct live_depth_map *pair(struct live *live, const struct live_pi
 static bool process(struct live *live, struct live_picture *picture, int size[2], int placed[2])
 {
     const int width = picture->image.width, height = picture->image.height;
-    const struct live_depth_map *map = pair(live, picture);
+    const struct live_depth_map *map = live_pair(live, picture);
     struct refocus_reason reason = {""};
     struct live_picture *out;
     bool memory;
@@ -153,7 +191,8 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
     if (live->settings->steady > 0) {
         status = live_steady_run(&live->steady, live->settings->steady, &map, &picture->image);
         if (status != REFOCUS_OK) {
-            live_fail(live, EXIT_FAILED, "--steady", refocus_strerror(status));
+            if (status != REFOCUS_ERR_CANCELLED)
+                live_fail(live, EXIT_FAILED, "--steady", refocus_strerror(status));
             return false;
         }
     }

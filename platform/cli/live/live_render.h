@@ -6,4 +6,7 @@
 
 void live_render(struct live *live);
 
+/* The depth of a picture, or NULL; counts which it was. */
+const struct live_depth_map *live_pair(struct live *live, const struct live_picture *picture);
+
 #endif

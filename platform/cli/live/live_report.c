@@ -80,14 +80,24 @@ int live_report(struct live *live)
     if (json) {
         json_object_set_new(json, "rendered_in", json_string(rendered_in(live->rendered_format)));
         json_object_set_new(json, "colour", stage_json(&live->capture));
-        if (live->depth_camera || live->estimator)
+        if (live->depth_camera || live->estimator || live->stack)
             json_object_set_new(json, "depth", stage_json(&live->depth));
+        if (live->stack)
+            json_object_set_new(json, "stacks", json_integer((json_int_t)live->stacks));
         json_object_set_new(json, "dropped_rendered", /* part of "dropped" */
                             json_integer((json_int_t)dropped_rendered));
         json_object_set_new(json, "buffers_lost", json_integer((json_int_t)counters.lost));
         json_object_set_new(json, "sink_recoveries",
                             json_integer((json_int_t)live->output.recoveries));
         json_object_set_new(json, "lens_dioptres", report_number_json(live->lens_dioptres));
+        json_object_set_new(json, "lens", live_lens_json(live->camera, &settings->autofocus));
+        if (live->tracked) /* where the subject is, and how often it was not found */
+            json_object_set_new(json, "tracked",
+                                json_pack("{s:[f, f, f, f], s:f, s:I}", "rectangle",
+                                          live->tracker.box[0], live->tracker.box[1],
+                                          live->tracker.box[2], live->tracker.box[3], "likeness",
+                                          live->tracker.likeness, "lost",
+                                          (json_int_t)live->tracker.lost));
         /* These are for the last frame, in the words of render. */
         json_object_set_new(json, "focus", report_number_json(live->focus_disparity));
         json_object_set_new(json, "blur", report_number_json(live->blur));

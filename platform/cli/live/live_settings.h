@@ -3,8 +3,10 @@
 #define RF_CLI_LIVE_SETTINGS_H
 
 #include <stdbool.h>
+#include "commands/stack_shots.h"
 #include "inputs/inputs.h"
 #include "inputs/lens.h"
+#include "live/live_lens.h"
 #include "shot/engine.h"
 
 /* "--depth estimate:MODEL,every=N,preset=NAME" */
@@ -15,9 +17,11 @@ struct live_estimate_settings {
 };
 
 struct live_settings {
-    const char *camera, *out, *calibration, *socket;
+    const char *camera, *out, *calibration, *socket, *focus_way;
     struct depth_settings depth;
     struct live_estimate_settings estimate;
+    struct live_lens_settings autofocus;
+    struct shots_settings stack; /* parts of "--depth stack:"; no steps: not wanted */
     struct lens_settings lens;
     struct engine_settings engine;
     double size[2], fps, frames, duration, patience, blur_most, steady;

@@ -15,6 +15,7 @@ void live_end(struct live *live)
     const uint64_t one = 1;
 
     atomic_store(&live->quit, true);
+    live_steady_cancel(&live->steady);
     if (write(live->wake_fd, &one, sizeof one) < 0)
         return;
     pthread_mutex_lock(&live->lock);

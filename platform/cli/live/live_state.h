@@ -17,8 +17,10 @@
 #include "live/live_settings.h"
 #include "live/live_steady.h"
 #include "live/live_times.h"
+#include "live/live_track.h"
 
 struct live_estimator;
+struct live_stack;
 
 /* Counts and times of one thread each; read when all have ended. */
 struct live_stage {
@@ -38,6 +40,7 @@ struct live {
     struct live_queue captured, rendered;
     struct live_queue to_estimate;    /* copies of every n-th picture */
     struct live_estimator *estimator; /* or NULL */
+    struct live_stack *stack;         /* or NULL */
     int64_t offered, key;             /* belongs to the thread that captures */
     struct live_depths depths;
     struct live_focus focus;
@@ -49,6 +52,7 @@ struct live {
     int command_fd;       /* listens on the socket of the commands, or -1 */
     sem_t first_commands; /* offline: those that stand on standard input have been read */
     bool socket_is_ours;
+    bool has_lock, has_semaphore; /* the lock that follows, and first_commands, are there */
     pthread_mutex_t lock;
     int exit_code; /* under the lock, with what and why of the first failure */
     char what[256], why[512];
@@ -56,10 +60,14 @@ struct live {
     struct live_stage capture, depth, pair, prepare, render, output;
     struct live_times latency;
     atomic_uint_fast64_t frames_out;
+    uint64_t stacks; /* focus stacks that became depth */
     uint64_t paired, unpaired, without_depth;
     uint64_t sink_dropped, commands, commands_refused;
     double create_ms;
-    struct live_steady steady; /* belongs to the thread that renders */
+    struct live_steady steady; /* belongs to the thread that renders, as do these: */
+    struct live_tracker tracker;
+    uint64_t tracked; /* number of the rectangle that is followed */
+    int64_t tracked_ns;
     struct engine *engine;
     uint32_t yuv_formats;     /* bit f: pictures of enum refocus_format f stay as they are */
     uint32_t rendered_format; /* enum refocus_format; belongs to the thread that captures */

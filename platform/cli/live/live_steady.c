@@ -1,7 +1,11 @@
 /* live_steady.c: depth is kept from flickering by the temporal filter, between pairing and
  * preparing. */
+#include <pthread.h>
 #include <stdlib.h>
 #include "live/live_steady.h"
+
+/* The handle of the filter, while a thread cancels or another changes it. */
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
 /* Depth that is older shows another moment: the camera was away, or a file begins again. */
 static const int64_t longest_gap_ns = 1000000000;
@@ -10,15 +14,19 @@ static int fit(struct live_steady *steady, double strength, const struct live_de
 {
     struct refocus_temporal_params params =
         refocus_temporal_params_default(map->width, map->height);
+    struct refocus_temporal *filter;
     int status;
 
     if (steady->filter && steady->map.width == map->width && steady->map.height == map->height)
         return REFOCUS_OK;
     live_steady_end(steady);
     params.strength = (float)strength;
-    status = refocus_temporal_create(&steady->filter, &params);
+    status = refocus_temporal_create(&filter, &params);
     if (status != REFOCUS_OK)
         return status;
+    pthread_mutex_lock(&lock);
+    steady->filter = filter;
+    pthread_mutex_unlock(&lock);
     steady->map.disparity = malloc((size_t)map->width * (size_t)map->height * 2);
     steady->map.width = map->width;
     steady->map.height = map->height;
@@ -74,9 +82,18 @@ int live_steady_run(struct live_steady *steady, double strength, const struct li
     return status;
 }
 
+void live_steady_cancel(struct live_steady *steady)
+{
+    pthread_mutex_lock(&lock);
+    refocus_temporal_cancel(steady->filter);
+    pthread_mutex_unlock(&lock);
+}
+
 void live_steady_end(struct live_steady *steady)
 {
+    pthread_mutex_lock(&lock);
     refocus_temporal_destroy(&steady->filter);
+    pthread_mutex_unlock(&lock);
     free(steady->map.disparity);
     steady->map = (struct live_depth_map){0};
 }

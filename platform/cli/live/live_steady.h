@@ -16,6 +16,8 @@ struct live_steady {
  * refocus_temporal_create() and refocus_temporal_run() return. */
 int live_steady_run(struct live_steady *steady, double strength, const struct live_depth_map **map,
                     const struct refocus_image *photo);
+/* End a live_steady_run() that is under way early, with REFOCUS_ERR_CANCELLED; from any thread. */
+void live_steady_cancel(struct live_steady *steady);
 void live_steady_end(struct live_steady *steady);
 
 #endif

@@ -1,5 +1,5 @@
-/* editable.c: a result holds its all-in-focus original and depth where it is a JPEG, made of a JPEG
- * or HEIC if nothing is asked for. */
+/* editable.c: a result holds its all-in-focus original and depth where it is a JPEG or HEIC, made
+ * of one of the two if nothing is asked for. */
 #include <string.h>
 #include <strings.h>
 #include "outputs/editable.h"
@@ -13,6 +13,14 @@ static bool is_jpeg(const char *name)
     return dot && (strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0);
 }
 
+/* Whether the format holds original and depth. */
+static bool is_holder(const char *name)
+{
+    const char *const dot = strrchr(name, '.');
+
+    return is_jpeg(name) || (dot && strcasecmp(dot, ".heic") == 0);
+}
+
 int keep_check(const struct keep_settings *settings, const char *output, bool whole)
 {
     if (!settings->editable)
@@ -24,9 +32,10 @@ int keep_check(const struct keep_settings *settings, const char *output, bool wh
         return report_failure(
             EXIT_WRONG, "--editable",
             "it is for the whole photo, refocused; leave --region and --view out");
-    if (!is_jpeg(output))
+    if (!is_holder(output))
         return report_failure(EXIT_WRONG, "--editable",
-                              "it is for JPEG; end the name of the output in .jpg");
+                              "it is for JPEG and HEIC; end the name of the output in .jpg or "
+                              ".heic");
     return EXIT_DONE;
 }
 
@@ -84,7 +93,7 @@ int keep_options(const struct keep_settings *settings, const struct input *input
         return report_failure(EXIT_FAILED, input->photo_name,
                               "--editable is for photos that are not of floats, by a build with "
                               "expat and libpng; leave it out");
-    if (!can || !wanted || !whole || settings->strip || settings->no_editable || !is_jpeg(output))
+    if (!can || !wanted || !whole || settings->strip || settings->no_editable || !is_holder(output))
         return EXIT_DONE;
     editable->given = refocus_editable_default();
     editable->given.own_depth = has_own_depth(input, depth);
@@ -93,6 +102,12 @@ int keep_options(const struct keep_settings *settings, const struct input *input
     editable->given.focus_disparity = lens->focus_disparity;
     editable->given.max_blur_radius = lens->max_blur_radius;
     editable->given.simulated_f_number = input->depth_from->info->simulated_f_number;
+    if (depth->matte && input->matte.samples) {
+        editable->given.matte = input->matte.samples;
+        editable->given.matte_width = (int32_t)input->matte.width;
+        editable->given.matte_height = (int32_t)input->matte.height;
+        editable->given.matte_stride = input->matte.stride;
+    }
     editable->options.editable = &editable->given;
     return EXIT_DONE;
 }

@@ -17,7 +17,7 @@ struct keep_settings {
      .name = "--editable",                                                                         \
      .offset = offsetof(type, member.editable),                                                    \
      .help = "keep the all-in-focus original and its depth in the result, which every command "    \
-             "then starts from; the default for a JPEG made of a JPEG or HEIC"},                   \
+             "then starts from; the default for a JPEG or HEIC made of one of them"},              \
         {.kind = OPTION_FLAG,                                                                      \
          .elsewhere = true,                                                                        \
          .name = "--no-editable",                                                                  \

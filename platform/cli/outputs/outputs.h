@@ -20,7 +20,7 @@
 /* Kinds of files by their endings, to be or-ed. */
 enum { OUTPUT_PICTURE = 1, OUTPUT_DEPTH = 2 };
 /* The endings of pictures as the help lists them. */
-#define OUTPUT_PICTURES ".jpg, .png, .tif, .exr, .ppm or .pfm"
+#define OUTPUT_PICTURES ".jpg, .png, .heic, .tif, .exr, .ppm or .pfm"
 
 /* Check before the work that there is a name, that it ends as these kinds or as one of the other
  * endings (which end with NULL, or are NULL), that its folder can be written to, and that it is

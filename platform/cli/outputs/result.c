@@ -18,11 +18,12 @@ const char *result_format(uint32_t index)
     return index == 0 ? "auto" : ending ? ending + 1 : NULL;
 }
 
-static bool is_jpeg(const char *output)
+static bool is_lossy(const char *output)
 {
     const char *dot = strrchr(output, '.');
 
-    return dot && (strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0);
+    return dot && (strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0 ||
+                   strcasecmp(dot, ".heic") == 0);
 }
 
 int result_check(const struct result_settings *settings, const char *output, bool alone)
@@ -38,9 +39,9 @@ int result_check(const struct result_settings *settings, const char *output, boo
         return report_failure(EXIT_WRONG, "--resize",
                               "'%s' cannot be used; give a width W, WxH, or N%% up to 100%%",
                               settings->resize);
-    if (alone && !isnan(settings->quality) && !is_jpeg(output))
+    if (alone && !isnan(settings->quality) && !is_lossy(output))
         return report_failure(EXIT_WRONG, "--jpeg-quality",
-                              "it changes nothing of %s, which is no JPEG; leave it out",
+                              "it changes nothing of %s, which is no JPEG or HEIC; leave it out",
                               settings->standard ? "standard output" : output);
     return EXIT_DONE;
 }

@@ -45,7 +45,9 @@ const char *result_format(uint32_t index);
     {                                                                                              \
         .kind = OPTION_INTEGER, .elsewhere = true, .name = "--jpeg-quality", .argument = "Q",      \
         .offset = offsetof(type, member.quality), .least = 1, .greatest = 100,                     \
-        .help = "of JPEG; default 95. Below 90 colour is stored at half the size"                  \
+        .help = "of JPEG, default 95, or HEIC, default 90. Below 90 the colour of a JPEG is "      \
+                "stored at half "                                                                  \
+                "the size"                                                                         \
     }
 
 /* These return exit codes and print why it is not EXIT_DONE. */

@@ -7,6 +7,12 @@
 #include "serve/serving.h"
 
 static int depth_told = -1;
+static uint32_t frame_told;
+
+void answer_frame(uint32_t number)
+{
+    frame_told = number;
+}
 
 void answer_depth(int depth)
 {
@@ -33,11 +39,13 @@ static void send_all(int socket, const void *bytes, size_t size)
 static void send_reply(const struct serving *s, int status, const char *type, const char *ending,
                        const void *bytes, size_t size)
 {
-    struct rf_web_reply reply = {.status = status, .depth = depth_told, .bytes = size};
+    struct rf_web_reply reply = {
+        .status = status, .depth = depth_told, .frame = frame_told, .bytes = size};
 
     snprintf(reply.type, sizeof reply.type, "%s", type);
     snprintf(reply.ending, sizeof reply.ending, "%s", ending);
     depth_told = -1;
+    frame_told = 0;
     send_all(s->work->socket, &reply, sizeof reply);
     send_all(s->work->socket, bytes, size);
 }
@@ -72,7 +80,7 @@ static void append(char *text, size_t size, const char *part, size_t length)
 /* Failures name the path that the photo is opened by; people know its name. */
 void answer_failure(struct serving *s, int status)
 {
-    const char *const path = s->work->photo;
+    const char *const path = s->work->photo ? s->work->photo : s->work->name;
     const char *at = s->why, *found;
     char text[2048] = "";
 

@@ -46,16 +46,19 @@ static int read_depth(struct serving *s)
 
 int serve_open(struct serving *s)
 {
-    const struct refocus_image *photo;
-    size_t pixels;
     int status = input_read(&s->input, s->work->photo, &s->base.depth);
 
     s->input.most_blur = REFOCUS_PLAIN_BLUR_RADIUS; /* the page may change the method */
     if (status == EXIT_DONE)
         status = read_depth(s);
-    if (status != EXIT_DONE)
-        return status;
-    photo = s->input.photo->image;
+    return status == EXIT_DONE ? serve_reduce(s) : status;
+}
+
+int serve_reduce(struct serving *s)
+{
+    const struct refocus_image *const photo = s->input.photo->image;
+    size_t pixels;
+
     s->reduction = reduction_for(photo, SERVE_QUICK_PIXELS, SERVE_QUICK_SIDE);
     s->width = (photo->width + s->reduction - 1) / s->reduction;
     s->height = (photo->height + s->reduction - 1) / s->reduction;
@@ -141,19 +144,19 @@ static json_t *session_json(const struct serving *s, json_t *settings)
     const struct refocus_image *const photo = s->input.photo->image;
     const double number = s->input.photo->info->f_number;
 
-    return json_pack("{s:s, s:o, s:i, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o}", "session",
-                     s->work->session, "name", report_text_json(s->work->name), "width",
-                     (int)photo->width, "height", (int)photo->height, "depth", s->has_depth,
-                     "f_number", number > 0 ? json_real(number) : json_null(), "range",
-                     range_json(s), "settings", settings, "limits", limits_json(s), "presets",
-                     looks_json(), "films", serve_films_json());
+    return json_pack(
+        "{s:b, s:s, s:o, s:i, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o}", "live", s->feed != NULL,
+        "session", s->work->session, "name", report_text_json(s->work->name), "width",
+        (int)photo->width, "height", (int)photo->height, "depth", s->has_depth, "f_number",
+        number > 0 ? json_real(number) : json_null(), "range", range_json(s), "settings", settings,
+        "limits", limits_json(s), "presets", looks_json(), "films", serve_films_json());
 }
 
 void serve_answer_session(struct serving *s)
 {
     struct engine engine;
     double blur = 0;
-    int status = serve_open(s);
+    int status = s->work->photo ? serve_open(s) : serve_live_open(s);
 
     if (status != EXIT_DONE) {
         answer_failure(s, ANSWER_NOT_A_PHOTO);

@@ -3,10 +3,10 @@
 #include <string.h>
 #include "serve/serving.h"
 
-static void answer_count(struct serving *s)
+static json_t *count_json(const struct serving *s)
 {
-    answer_json(s, json_pack("{s:i, s:i}", "strokes", refocus_strokes_count(s->strokes), "undone",
-                             (int)json_array_size(s->undone)));
+    return json_pack("{s:i, s:i}", "strokes", refocus_strokes_count(s->strokes), "undone",
+                     (int)json_array_size(s->undone));
 }
 
 static int failed(int status, const char *words)
@@ -45,29 +45,155 @@ static int add(struct serving *s, json_t *stroke)
     return status == REFOCUS_OK ? EXIT_DONE : failed(status, reason.text);
 }
 
-static void changed(struct serving *s)
+/* NULL: it is none, which is reported. */
+static json_t *read_stroke(const char *bytes, size_t size)
 {
-    s->small_stale = s->full_stale = true;
-    answer_count(s);
+    json_t *const stroke = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, NULL);
+
+    if (json_is_object(stroke))
+        return stroke;
+    json_decref(stroke);
+    failed(REFOCUS_ERR_FORMAT, "it is no JSON object");
+    return NULL;
+}
+
+static void set_draft(struct serving *s, json_t *stroke)
+{
+    json_decref(s->draft);
+    s->draft = json_incref(stroke);
+}
+
+static int drop_draft(struct serving *s)
+{
+    if (s->draft && refocus_strokes_undo(s->strokes, NULL) != REFOCUS_OK)
+        return failed(REFOCUS_ERR_MEMORY, "");
+    if (s->draft)
+        s->small_stale = s->full_stale = true;
+    set_draft(s, NULL);
+    return EXIT_DONE;
+}
+
+/* Have strokes, of which none is a draft. */
+static int begin_whole(struct serving *s)
+{
+    const int status = begin(s);
+
+    return status == EXIT_DONE ? drop_draft(s) : status;
+}
+
+/* Whether a stroke is the draft, or goes on from it. */
+static bool continues_draft(const struct serving *s, json_t *stroke)
+{
+    json_t *const points = json_object_get(stroke, "points");
+    const json_t *const old = json_object_get(s->draft, "points");
+    const json_t *value;
+    const char *name;
+    bool same = true;
+    size_t i;
+
+    if (!old || json_array_size(points) < json_array_size(old) ||
+        json_object_size(stroke) != json_object_size(s->draft))
+        return false;
+    json_object_foreach(stroke, name, value)
+    {
+        same = same && (value == points || json_equal(value, json_object_get(s->draft, name)));
+    }
+    json_array_foreach(old, i, value)
+    {
+        same = same && json_equal(value, json_array_get(points, i));
+    }
+    return same;
+}
+
+/* Paint only what a stroke has more than the draft, which takes a fraction of the time and comes to
+ * the same. False: the stroke is to be painted by itself. */
+static bool extend_draft(struct serving *s, json_t *stroke)
+{
+    const json_t *const points = json_object_get(stroke, "points");
+    const size_t old = json_array_size(json_object_get(s->draft, "points"));
+    const bool longer = continues_draft(s, stroke);
+    const size_t count = longer ? json_array_size(points) - old : 0;
+    float *const more = malloc((2 * count + 1) * sizeof *more);
+    bool done = more && longer;
+
+    for (size_t i = 0; i < count && done; i++) {
+        double x, y;
+
+        done = json_unpack(json_array_get(points, old + i), "[F, F!]", &x, &y) == 0;
+        if (done) {
+            more[2 * i] = (float)x;
+            more[2 * i + 1] = (float)y;
+        }
+    }
+    if (done && count > 0)
+        done = refocus_strokes_extend(s->strokes, more, (int)count, NULL) == REFOCUS_OK;
+    free(more);
+    return done;
+}
+
+/* Paint a stroke in place of the draft; an empty object is none. */
+static int paint(struct serving *s, json_t *stroke)
+{
+    int status = begin(s);
+
+    if (status != EXIT_DONE || extend_draft(s, stroke))
+        return status;
+    status = drop_draft(s);
+    return status == EXIT_DONE && json_object_size(stroke) > 0 ? add(s, stroke) : status;
 }
 
 void serve_answer_stroke(struct serving *s, const char *bytes, size_t size)
 {
-    json_error_t error;
-    json_t *const stroke = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
-    int status = begin(s);
+    json_t *const stroke = read_stroke(bytes, size);
+    const int status = stroke ? paint(s, stroke) : EXIT_WRONG;
 
-    if (status == EXIT_DONE && !json_is_object(stroke))
-        status = failed(REFOCUS_ERR_FORMAT, "it is no JSON object");
-    if (status == EXIT_DONE)
-        status = add(s, stroke);
     json_decref(stroke);
+    s->small_stale = s->full_stale = true;
     if (status != EXIT_DONE) {
         answer_failure(s, ANSWER_WRONG);
         return;
     }
+    set_draft(s, NULL);
     json_array_clear(s->undone);
-    changed(s);
+    answer_json(s, count_json(s));
+}
+
+/* The selection of the last stroke, in the size of the reduced photo: first pixel and length of
+ * each run of selected ones, row by row; NULL without memory. */
+static json_t *selection_json(const struct serving *s)
+{
+    const size_t pixels = (size_t)s->width * (size_t)s->height;
+    uint8_t *const mask = malloc(pixels);
+    json_t *const runs = mask ? json_array() : NULL;
+
+    if (mask && refocus_strokes_selection(s->strokes, mask, s->width, s->height, s->width) == 0)
+        for (size_t i = 0, end; i < pixels; i = end) {
+            for (end = i + 1; end < pixels && mask[end] == mask[i];)
+                end++;
+            if (mask[i]) {
+                json_array_append_new(runs, json_integer((json_int_t)i));
+                json_array_append_new(runs, json_integer((json_int_t)(end - i)));
+            }
+        }
+    free(mask);
+    return json_pack("{s:i, s:i, s:o}", "width", s->width, "height", s->height, "runs", runs);
+}
+
+void serve_answer_draft(struct serving *s, const char *bytes, size_t size)
+{
+    json_t *const stroke = read_stroke(bytes, size);
+    json_t *object;
+
+    s->small_stale = s->full_stale = true;
+    if (!stroke || paint(s, stroke) != EXIT_DONE) {
+        answer_failure(s, ANSWER_WRONG);
+    } else {
+        set_draft(s, json_object_size(stroke) > 0 ? stroke : NULL);
+        object = count_json(s);
+        json_object_set_new(object, "selection", s->draft ? selection_json(s) : json_null());
+        answer_json(s, object);
+    }
+    json_decref(stroke);
 }
 
 /* The strokes as their file, parsed. */
@@ -119,19 +245,20 @@ static int redo(struct serving *s)
 
 void serve_answer_undo(struct serving *s, bool again)
 {
-    int status = begin(s);
+    int status = begin_whole(s);
 
     if (status == EXIT_DONE)
         status = again ? redo(s) : undo(s);
+    s->small_stale = s->full_stale = true;
     if (status == EXIT_DONE)
-        changed(s);
+        answer_json(s, count_json(s));
     else
         answer_failure(s, ANSWER_REPLACED);
 }
 
 void serve_answer_strokes(struct serving *s)
 {
-    if (begin(s) == EXIT_DONE)
+    if (begin_whole(s) == EXIT_DONE)
         answer_json(s, list(s));
     else
         answer_failure(s, ANSWER_FAILED);

@@ -1,9 +1,11 @@
 /* picture.c: pictures for the page as `refocus render` makes them. */
 #include <stdlib.h>
 #include <string.h>
+#include "line/memory.h"
 #include "outputs/outputs.h"
 #include "outputs/resize.h"
 #include "serve/serving.h"
+#include "shot/strips.h"
 
 static struct refocus_disparity map_of(const uint16_t *samples, int width, int height)
 {
@@ -16,6 +18,15 @@ int serve_settings(const struct serving *s, const char *bytes, size_t size,
     const int status = serve_lens_read(bytes, size, &s->base, settings);
 
     return status == EXIT_DONE ? shot_check(settings, false) : status;
+}
+
+bool serve_has_settings(struct serving *s, const struct rf_web_ask *ask, const char *bytes,
+                        struct shot_settings *settings)
+{
+    if (serve_settings(s, bytes, ask->bytes, settings) == EXIT_DONE)
+        return true;
+    answer_failure(s, ANSWER_WRONG);
+    return false;
 }
 
 int serve_failed(const struct serving *s, int status)
@@ -61,20 +72,64 @@ static bool has_own_depth(const struct serving *s)
 
 static bool serves(const struct made_for *made, const struct made_for *wanted)
 {
-    return (made->methods & wanted->methods) == wanted->methods && made->thin >= wanted->thin &&
-           made->textured >= wanted->textured && made->deep == wanted->deep &&
-           made->edges >= wanted->edges;
+    return !made->in_strips && (made->methods & wanted->methods) == wanted->methods &&
+           made->thin >= wanted->thin && made->textured >= wanted->textured &&
+           made->deep == wanted->deep && made->edges >= wanted->edges;
+}
+
+void serve_release_full(struct serving *s)
+{
+    serve_watch(NULL);
+    refocus_renderer_destroy(&s->full);
+    s->full_stale = true;
+}
+
+/* Leaves out what strip mode cannot do, as `refocus render` does where there is little memory. */
+static void leave_out(struct engine *engine, const struct engine_settings *settings)
+{
+    engine->has_matte = engine->deep = engine->places_edges = false;
+    engine->light = NULL;
+    engine_add_grain(engine, settings);
+}
+
+/* A new renderer, in strips where one for the whole photo would take more than there is. That one
+ * is for this picture's blur alone: strips overlap by what a renderer may blur, and it is soon
+ * made. */
+static int make_renderer(struct serving *s, const struct shot_settings *settings,
+                         struct engine *engine, bool *in_strips)
+{
+    const struct refocus_image *const photo = s->input.photo->image;
+    const int64_t most = memory_free_kib() / 4 * 3; /* the rest is for the pictures */
+    const uint32_t methods = engine->methods;
+    const double blur = (double)engine->params.render.max_blur_radius;
+    struct engine_settings used = settings->engine;
+    int status;
+
+    *in_strips = false;
+    if (!strips_suit(&used, &settings->depth, false))
+        used.memory_kib = 0;
+    else if (most < used.memory_kib)
+        used.memory_kib = most;
+    engine->methods |= s->made_for.methods;
+    status = engine_create(engine, &used, photo->width, photo->height, REFOCUS_PLAIN_BLUR_RADIUS);
+    if (!engine->short_of_memory)
+        return status;
+    *in_strips = used.in_strips = true;
+    used.memory_kib = 0;
+    engine->methods = methods;
+    leave_out(engine, &used);
+    return engine_create(engine, &used, photo->width, photo->height, blur);
 }
 
 /* Give the engine the renderer that there is, or a new one. */
 static int take_renderer(struct serving *s, const struct shot_settings *settings,
                          struct engine *engine)
 {
-    const struct refocus_image *const photo = s->input.photo->image;
-    const struct made_for wanted = {engine->methods | s->made_for.methods,
-                                    engine->params.thin.enabled != 0,
-                                    engine->params.render.inpaint == REFOCUS_INPAINT_TEXTURED,
-                                    engine->deep, engine->places_edges};
+    struct made_for wanted = {.methods = engine->methods,
+                              .thin = engine->params.thin.enabled != 0,
+                              .textured = engine->params.render.inpaint == REFOCUS_INPAINT_TEXTURED,
+                              .deep = engine->deep,
+                              .edges = engine->places_edges};
     int status;
 
     if (s->full && serves(&s->made_for, &wanted)) {
@@ -82,13 +137,10 @@ static int take_renderer(struct serving *s, const struct shot_settings *settings
         s->full = NULL;
         return EXIT_DONE;
     }
-    serve_watch(NULL);
-    refocus_renderer_destroy(&s->full);
-    engine->methods = wanted.methods;
-    status = engine_create(engine, &settings->engine, photo->width, photo->height,
-                           REFOCUS_PLAIN_BLUR_RADIUS);
+    serve_release_full(s);
+    status = make_renderer(s, settings, engine, &wanted.in_strips);
+    wanted.methods = engine->methods;
     s->made_for = wanted;
-    s->full_stale = true;
     return status;
 }
 
@@ -98,7 +150,7 @@ static int prepare(struct serving *s, struct engine *engine)
     const struct refocus_disparity full = map_of(serve_disparity(s), photo->width, photo->height);
     const struct refocus_disparity given =
         map_of(s->input.disparity, s->input.width, s->input.height);
-    const bool own = has_own_depth(s);
+    const bool own = has_own_depth(s) && !s->made_for.in_strips;
     struct refocus_scene scene = input_scene(&s->input, own ? &given : &full);
     int status;
 
@@ -108,6 +160,8 @@ static int prepare(struct serving *s, struct engine *engine)
         scene.photo = photo;
     if (!own)
         scene.confidence = NULL;
+    if (s->made_for.in_strips)
+        scene.matte = NULL;
     scene.depth_edges = engine->places_edges;
     status = engine_prepare(engine, &scene);
     s->full_stale = status != EXIT_DONE;
@@ -124,6 +178,7 @@ int serve_render(struct serving *s, const struct shot_settings *settings, bool k
     engine->name = s->work->name;
     engine->has_matte = s->input.matte.samples != NULL;
     engine->deep = s->input.deep.plane[0] && engine_takes_deep(&engine->params);
+    engine_add_grain(engine, &settings->engine);
     engine->places_edges = has_own_depth(s) && input_has_edges_placed(&s->input, &s->base.depth);
     engine->light = engine->deep ? s->input.light : NULL;
     engine->keeps_light = keeps_light;
@@ -199,16 +254,13 @@ void serve_answer_rendered(struct serving *s, int status, int size, int quality,
 
 void serve_answer_picture(struct serving *s, const struct rf_web_ask *ask, const char *bytes)
 {
-    enum { QUICK_QUALITY = 85 };
     struct refocus_image picture = {0};
     struct shot_settings settings;
     struct engine engine;
-    int status = serve_settings(s, bytes, ask->bytes, &settings);
+    int status;
 
-    if (status != EXIT_DONE) {
-        answer_failure(s, ANSWER_WRONG);
+    if (!serve_has_settings(s, ask, bytes, &settings))
         return;
-    }
     if (serve_is_replaced()) {
         memset(&engine, 0, sizeof engine);
         status = EXIT_FAILED;
@@ -218,5 +270,5 @@ void serve_answer_picture(struct serving *s, const struct rf_web_ask *ask, const
         status = serve_render(s, &settings, false, &engine, &picture);
     }
     engine_end(&engine);
-    serve_answer_rendered(s, status, ask->size, ask->quick ? QUICK_QUALITY : 0, &picture);
+    serve_answer_rendered(s, status, ask->size, ask->quick ? SERVE_QUICK_QUALITY : 0, &picture);
 }

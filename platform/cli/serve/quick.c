@@ -18,7 +18,9 @@ static int prepare_small(struct serving *s)
     const struct refocus_image *const photo = s->input.photo->image;
     const struct refocus_image small = refocus_image_packed(
         REFOCUS_FORMAT_RGB8, s->small_photo, s->width, s->height, 3 * (ptrdiff_t)s->width);
-    const struct refocus_disparity map = map_of(s->small_disparity, s->width, s->height);
+    const struct refocus_disparity map =
+        s->feed ? map_of(s->input.disparity, s->input.width, s->input.height)
+                : map_of(s->small_disparity, s->width, s->height);
     struct refocus_renderer_params params = refocus_renderer_params_default(
         s->width, s->height, (float)REFOCUS_PLAIN_BLUR_RADIUS / (float)s->reduction);
     struct refocus_scene scene = refocus_scene_default(&small, &map);
@@ -125,15 +127,13 @@ void serve_answer_overlay(struct serving *s, const struct rf_web_ask *ask, const
     struct refocus_image picture = {0};
     struct shot_settings settings;
     struct engine engine;
-    int status = serve_settings(s, bytes, ask->bytes, &settings);
+    int status;
 
-    if (status != EXIT_DONE) {
-        answer_failure(s, ANSWER_WRONG);
+    if (!serve_has_settings(s, ask, bytes, &settings))
         return;
-    }
     status = serve_render_quick(s, &settings, &engine, &picture);
-    if (status == EXIT_DONE)
+    if (status == EXIT_DONE && strcmp(ask->word, "picture") != 0)
         status = draw_overlay(s, ask->word, &engine.params, &picture);
     engine_end(&engine);
-    serve_answer_rendered(s, status, ask->size, 0, &picture);
+    serve_answer_rendered(s, status, ask->size, s->feed ? SERVE_QUICK_QUALITY : 0, &picture);
 }

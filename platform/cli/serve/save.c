@@ -125,19 +125,20 @@ void serve_answer_save(struct serving *s, const struct rf_web_ask *ask, const ch
                    {"depth", "image/png", "depth.png"}};
     struct refocus_blob file = {0};
     struct shot_settings settings;
-    int status = serve_settings(s, bytes, ask->bytes, &settings);
-    int format = 0;
+    int status, format = 0;
 
-    if (status != EXIT_DONE) {
-        answer_failure(s, ANSWER_WRONG);
+    if (!serve_has_settings(s, ask, bytes, &settings))
         return;
-    }
     while (format < 3 && strcmp(formats[format].word, ask->word) != 0)
         format++;
     if (format == 2)
         status = save_settings(&settings, &file);
     else if (format == 3)
         status = encode_depth(s, &file);
+    else if (s->feed)
+        status = format == 0 ? serve_live_still(s, &file)
+                             : report_failure(EXIT_WRONG, s->work->name,
+                                              "what is captured is a JPEG; ask for that");
     else
         status = save_picture(s, &settings, format == 0 ? "picture.jpg" : "picture.png", &file);
     if (status == EXIT_DONE)

@@ -4,6 +4,7 @@
 #define RF_CLI_SERVE_SERVING_H
 
 #include <refocus/platform/strokes.h>
+#include "live/live_feed.h"
 #include "shot/shot.h"
 #include "web/web.h"
 
@@ -17,21 +18,37 @@ enum {
 };
 
 /* The most pixels of a reduced photo, and of its longer side. */
-enum { SERVE_QUICK_PIXELS = 600000, SERVE_QUICK_SIDE = 1024 };
+enum { SERVE_QUICK_PIXELS = 600000, SERVE_QUICK_SIDE = 1024, SERVE_QUICK_QUALITY = 85 };
 
 /* A full renderer can do again what it was made for. */
 struct made_for {
     uint32_t methods;
     bool thin, textured, deep, edges;
+    bool in_strips; /* memory was too little for the whole photo: it is for one picture */
+};
+
+/* Settings of the command line, for every process. */
+struct serve_base {
+    struct shot_settings shot;
+    struct live_settings live;
 };
 
 struct serving {
     const struct rf_web_work *work;
+    const struct live_settings *live;
+    struct live_feed *feed;  /* frames of cameras; NULL: it is a photo */
+    uint32_t frame;          /* number of the one that is seen */
+    struct live_frame taken; /* the frame that `input` is made of, as a photo */
+    struct refocus_photo as_photo;
+    struct refocus_photo_info no_info;
+    struct refocus_image no_image;
+    struct refocus_depth_map no_depth;
     struct shot_settings base; /* settings of the command line */
     struct input input;
     uint16_t *placed;                /* disparities of the photo's size, or all 0 */
     bool has_depth;                  /* the photo has some of its own */
     struct refocus_strokes *strokes; /* painted over it, or NULL */
+    json_t *draft;                   /* the last stroke, while it is not finished, or NULL */
     json_t *undone;                  /* strokes that can be done again, the last one first to be */
 
     int reduction, width, height; /* size of the reduced photo */
@@ -55,6 +72,9 @@ void answer_failure(struct serving *s, int status);
 /* Note whether the photo has depth, for the next reply. */
 void answer_depth(int depth);
 
+/* Note the number of the frame that is seen, for the next reply. */
+void answer_frame(uint32_t number);
+
 /* work.c: a picture that something newer makes out of date. */
 
 /* The renderer that is ended early then, or NULL. */
@@ -77,6 +97,19 @@ void serve_answer_session(struct serving *s);
 void serve_answer_thumbnail(struct serving *s);
 void serve_answer_focus(struct serving *s, const char *bytes, size_t size);
 
+/* Make what follows from the photo and its size: the reduced one. An exit code. */
+int serve_reduce(struct serving *s);
+
+/* live.c: frames of cameras in place of a photo; exit codes. */
+
+/* The settings when no camera is given, and the check of those that are. */
+void serve_live_none(struct serve_base *base);
+int serve_live_check(struct serve_base *base);
+int serve_live_open(struct serving *s);
+/* The frame as a JPEG with its depth, as cameras take it: in focus everywhere. */
+int serve_live_still(struct serving *s, struct refocus_blob *bytes);
+void serve_answer_live_frame(struct serving *s, const struct rf_web_ask *ask, const char *bytes);
+
 /* Whether something is painted over the photo's depth. */
 bool serve_is_painted(const struct serving *s);
 
@@ -86,6 +119,13 @@ const uint16_t *serve_disparity(const struct serving *s);
 /* picture.c: the settings of a request, which are checked; an exit code. */
 int serve_settings(const struct serving *s, const char *bytes, size_t size,
                    struct shot_settings *settings);
+
+/* The settings of a request, or false, after it has been answered with what is wrong with them. */
+bool serve_has_settings(struct serving *s, const struct rf_web_ask *ask, const char *bytes,
+                        struct shot_settings *settings);
+
+/* Give back the full renderer, which the next full picture makes anew. */
+void serve_release_full(struct serving *s);
 
 /* A picture, whose plane[0] is to be freed; exit codes. engine: receives what rendered
  * it, without its renderer, and is ended by engine_end(), whatever is returned. */
@@ -113,6 +153,7 @@ int serve_render_reduced(struct serving *s, struct refocus_settings *params, int
                          struct refocus_image *out);
 int serve_render_quick(struct serving *s, const struct shot_settings *settings,
                        struct engine *engine, struct refocus_image *out);
+/* A view by its kind: depth, blur, peaking; of a live frame "picture", too. */
 void serve_answer_overlay(struct serving *s, const struct rf_web_ask *ask, const char *bytes);
 
 /* pull.c */
@@ -130,7 +171,9 @@ int serve_encode(const char *ending, const struct refocus_image *image,
 int serve_temporary(const char *ending, char **path);
 int serve_read_back(const char *path, struct refocus_blob *bytes);
 
-/* paint.c */
+/* paint.c: a draft is a stroke under the finger: it is replaced by the next one, or by the stroke
+ * that it has become, and answered with what it selects. */
+void serve_answer_draft(struct serving *s, const char *bytes, size_t size);
 void serve_answer_stroke(struct serving *s, const char *bytes, size_t size);
 void serve_answer_undo(struct serving *s, bool redo);
 void serve_answer_strokes(struct serving *s);

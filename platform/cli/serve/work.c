@@ -1,6 +1,7 @@
 /* work.c: the life of a process of `refocus serve`: it answers requests one after the other, and a
  * thread of its own waits for word that the picture under way is out of date. */
 #include <errno.h>
+#include <poll.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,9 @@
 #include <time.h>
 #include <unistd.h>
 #include "serve/serving.h"
+
+/* A full renderer is kept for so long after the last request. */
+enum { KEEP_MS = 15000 };
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static struct refocus_renderer *watched; /* these three under the lock */
@@ -80,8 +84,21 @@ static void *wait_for_word(void *of)
     _exit(EXIT_FAILED);
 }
 
+/* A frame of a camera is gone with the next one: nothing can be worked out or painted over many
+ * requests. */
+static bool is_for_photos(uint32_t what)
+{
+    return what != RF_WEB_OPEN && what != RF_WEB_FOCUS && what != RF_WEB_SAVE &&
+           what != RF_WEB_FRAME;
+}
+
 static void answer(struct serving *s, const struct rf_web_ask *ask, const char *body)
 {
+    if (s->feed && is_for_photos(ask->what)) {
+        report_failure(EXIT_WRONG, s->work->name, "capture a photo first, and open that");
+        answer_failure(s, ANSWER_WRONG);
+        return;
+    }
     switch ((enum rf_web_what)ask->what) {
     case RF_WEB_OPEN:
         serve_answer_session(s);
@@ -97,6 +114,9 @@ static void answer(struct serving *s, const struct rf_web_ask *ask, const char *
         break;
     case RF_WEB_OVERLAY:
         serve_answer_overlay(s, ask, body);
+        break;
+    case RF_WEB_DRAFT:
+        serve_answer_draft(s, body, ask->bytes);
         break;
     case RF_WEB_STROKE:
         serve_answer_stroke(s, body, ask->bytes);
@@ -114,22 +134,36 @@ static void answer(struct serving *s, const struct rf_web_ask *ask, const char *
     case RF_WEB_PULL:
         serve_answer_pull(s, ask, body);
         break;
+    case RF_WEB_FRAME:
+        serve_answer_live_frame(s, ask, body);
+        break;
     case RF_WEB_NOTHING:
         _exit(EXIT_FAILED);
     }
 }
 
+/* Wait for the next request. A session that somebody only looks at gives back the memory of its
+ * full renderer, which is most of what it holds; quick pictures stay as quick as they are. */
+static bool receive_request(struct serving *s, struct rf_web_ask *ask)
+{
+    struct pollfd line = {.fd = s->work->socket, .events = POLLIN};
+
+    if (s->full && poll(&line, 1, KEEP_MS) == 0)
+        serve_release_full(s);
+    return receive_all(s->work->socket, ask, sizeof *ask);
+}
+
 void serve_work(void *of, const struct rf_web_work *work)
 {
-    const struct shot_settings *const base = of;
-    struct serving serving = {.work = work, .base = *base};
+    const struct serve_base *const base = of;
+    struct serving serving = {.work = work, .base = base->shot, .live = &base->live};
     struct rf_web_ask ask;
     pthread_t thread;
 
     report_keep(serving.why, sizeof serving.why);
     if (pthread_create(&thread, NULL, wait_for_word, (void *)work) != 0)
         return;
-    while (receive_all(work->socket, &ask, sizeof ask)) {
+    while (receive_request(&serving, &ask)) {
         char *body;
 
         if (ask.bytes > RF_WEB_MOST_BODY)

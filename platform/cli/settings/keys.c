@@ -10,6 +10,7 @@
 #include <refocus/platform/file.h>
 #include "line/options.h"
 #include "line/report.h"
+#include "settings/settings.h"
 
 enum { MOST_KEYS = 1024, MOST_BYTES = 1 << 20, VERSION = 1 };
 #define MOST_SECONDS 3600.0
@@ -226,14 +227,12 @@ static int read_all(struct keys **keys, const char *file, json_t *root)
 
 int keys_read(struct keys **keys, const char *file, const char *bytes, size_t size)
 {
-    json_error_t error;
-    json_t *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
+    json_t *const root = settings_parse(file, bytes, size);
     int status;
 
     *keys = NULL;
     if (!root)
-        return report_failure(EXIT_FAILED, file, "is not JSON: line %d, column %d: %s", error.line,
-                              error.column, error.text);
+        return EXIT_FAILED;
     status = read_all(keys, file, root);
     json_decref(root);
     if (status != EXIT_DONE) {

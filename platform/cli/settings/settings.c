@@ -165,13 +165,11 @@ int settings_take(const struct command *command, const char *file, json_t *root,
 int settings_read(const struct command *command, const char *file, const char *bytes, size_t size,
                   void *settings)
 {
-    json_error_t error;
-    json_t *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
+    json_t *const root = settings_parse(file, bytes, size);
     int status;
 
     if (!root)
-        return report_failure(EXIT_FAILED, file, "is not JSON: line %d, column %d: %s", error.line,
-                              error.column, error.text);
+        return EXIT_FAILED;
     status = is_version(json_object_get(root, "refocus"))
                  ? set_members(command, file, root, settings)
                  : not_settings(file);
@@ -265,62 +263,6 @@ static json_t *member_of(const struct option *option, const void *settings, int 
     }
     *failed = *failed || !json;
     return json;
-}
-
-static bool is_among(const char *name, const char *const *names)
-{
-    for (int i = 0; names[i]; i++)
-        if (strcmp(names[i], name) == 0)
-            return true;
-    return false;
-}
-
-/* Write a line "name 1,2,3"; returns its length. */
-static size_t line_of(const struct option *option, const json_t *json, char *text, size_t size)
-{
-    char value[LONGEST_VALUE];
-    int n;
-
-    if (json_is_string(json))
-        report_clean(value, sizeof value, json_string_value(json));
-    else if (json_is_true(json) ||
-             (!number_text(json, value, sizeof value) && !numbers_text(json, value, sizeof value)))
-        value[0] = '\0';
-    n = snprintf(text, size, "%s%s%s\n", option->name + 2, *value ? " " : "", value);
-    return n > 0 && (size_t)n < size ? (size_t)n : 0;
-}
-
-char *settings_text(const struct command *command, const void *settings, const void *usual,
-                    const char *const *names)
-{
-    size_t size = 1, used = 0;
-    bool failed = false;
-    char *text;
-
-    for (const struct option *option = command->options; option->help; option++)
-        size += LONGEST_NAME + LONGEST_VALUE;
-    text = malloc(size);
-    if (!text)
-        return NULL;
-    text[0] = '\0';
-    for (const struct option *option = command->options; option->help; option++) {
-        int digits = 15;
-        json_t *json, *other;
-
-        if (option->elsewhere || option->kind == OPTION_HEADING || is_among(option->name, names))
-            continue;
-        json = member_of(option, settings, &digits, &failed);
-        other = member_of(option, usual, &digits, &failed);
-        if (json && !(other && json_equal(json, other)))
-            used += line_of(option, json, text + used, size - used);
-        json_decref(json);
-        json_decref(other);
-    }
-    if (failed) {
-        free(text);
-        return NULL;
-    }
-    return text;
 }
 
 char *settings_dump(const struct command *command, const void *settings)

@@ -44,6 +44,9 @@ enum { SETTINGS_VERSION = 1, SETTINGS_MOST_BYTES = 1 << 20 };
  * printed. Texts live as long as the program. */
 int settings_load(const struct command *command, const char *file, void *settings);
 
+/* A text as JSON, or NULL, after the failure has been reported. */
+json_t *settings_parse(const char *file, const char *bytes, size_t size);
+
 /* Read it from memory; `file` is what errors call it. */
 int settings_read(const struct command *command, const char *file, const char *bytes, size_t size,
                   void *settings);
@@ -54,11 +57,6 @@ int settings_take(const struct command *command, const char *file, json_t *root,
 
 /* Check before the work that a file of settings can be written there, and is none of the inputs. */
 int settings_check(const char *file, const char *const *inputs, int input_count);
-
-/* A line "option value" for each option of the picture that says something else than in `usual`
- * and is not among `names`, which end with NULL. To be freed; NULL without memory. */
-char *settings_text(const struct command *command, const void *settings, const void *usual,
-                    const char *const *names);
 
 /* The text of a file of these settings, to be freed; NULL without memory, or where a file's name is
  * not UTF-8. */

@@ -73,9 +73,16 @@ const char *bokeh_figure_summary(uint32_t index);
         BOKEH_NUMBER(type, member, "--fringe", "A", fringe, -0.5, 0.5,                             \
                      "edges of colour: green behind the focus and magenta before it, or "          \
                      "the contrary; default 0"),                                                   \
-        BOKEH_NUMBER(type, member, "--grain", "G", grain, 0, 4,                                    \
-                     "grain of the sharp parts put back into the blurred ones, 1 = as "            \
-                     "much as there was; default 0; --seed chooses it"),                           \
+        {.kind = OPTION_NUMBER,                                                                    \
+         .name = "--grain",                                                                        \
+         .argument = "G",                                                                          \
+         .offset = offsetof(type, member.grain),                                                   \
+         .least = 0,                                                                               \
+         .greatest = 4,                                                                            \
+         .word = "off",                                                                            \
+         .help = "the photo's noise put back into what is blurred: 1 = as much as was measured, "  \
+                 "off = 0; default 1 for stills of 8 bits, 0 for others and for live; --seed "     \
+                 "chooses it"},                                                                    \
     {                                                                                              \
         .kind = OPTION_NUMBER, .name = "--highlight-stops", .argument = "S",                       \
         .offset = offsetof(type, member.highlight_stops), .least = 0, .greatest = 4,               \

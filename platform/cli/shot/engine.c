@@ -2,9 +2,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #include <refocus/platform/file.h>
 #include "shot/engine.h"
 #include "line/interrupt.h"
+#include "shot/spool.h"
 
 static const struct {
     const char *name, *summary;
@@ -80,6 +82,7 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
     int status;
 
     memset(engine, 0, sizeof *engine);
+    engine->spool = -1;
     *params = refocus_settings_default(0, 0);
     params->render.method = (uint32_t)settings->method;
     params->render.blend = (uint32_t)settings->blend;
@@ -151,13 +154,20 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
     params.deep = engine->deep;
     params.textured = engine->params.render.inpaint == REFOCUS_INPAINT_TEXTURED;
     engine->params.render.max_blur_radius = (float)blur;
-    status = refocus_renderer_create(&engine->renderer, &params);
+    if (settings->memory_kib > 0 &&
+        refocus_renderer_memory(&params) / 1024 > (uint64_t)settings->memory_kib)
+        status = REFOCUS_ERR_MEMORY;
+    else
+        status = refocus_renderer_create(&engine->renderer, &params);
     engine->create_ms = report_clock_ms() - start;
     if (status == REFOCUS_ERR_UNSUPPORTED)
         return report_failure(EXIT_FAILED, "--cpu", "this processor or build has no %s; give auto",
                               refocus_cpu_name(params.cpu));
     if (status == REFOCUS_ERR_THREAD)
         return report_failure(EXIT_FAILED, "--threads", "%s; give fewer", refocus_strerror(status));
+    engine->short_of_memory = status == REFOCUS_ERR_MEMORY && settings->memory_kib > 0;
+    if (engine->short_of_memory)
+        return EXIT_FAILED;
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, engine->name,
                               "%s: %dx%d pixels with blur %.4g need %.0f MiB; give a "
@@ -192,20 +202,27 @@ int engine_prepare(struct engine *engine, const struct refocus_scene *scene)
 
 bool engine_takes_deep(const struct refocus_settings *params)
 {
-    return params->render.method == REFOCUS_METHOD_SWEEP &&
+    return (refocus_method_traits(params->render.method) & REFOCUS_METHOD_TAKES_DEEP) &&
            params->render.blend == REFOCUS_BLEND_LINEAR && params->render.sigma >= 1e6f &&
            params->look.grain == 0 && params->look.star_spikes == 0;
 }
 
-/* Render whole, or, where that is slow and somebody watches, in strips of rows. The
+void engine_add_grain(struct engine *engine, const struct engine_settings *settings)
+{
+    if (isnan(settings->bokeh.grain) && !engine->deep)
+        engine->params.look.grain = 1;
+}
+
+/* Render whole, or, where that is slow and somebody watches, or into a file, in strips of rows. The
  * progress goes from begin by share. */
 static int render_strips(struct engine *engine, const struct refocus_image *out, double begin,
                          double share)
 {
-    enum { STRIPS = 20 };
+    enum { STRIPS = 20, SPOOLED = 4 };
+    const bool spools = engine->spool >= 0;
     const bool strips = report_is_watched() && out->height >= STRIPS &&
                         engine->params.render.method == REFOCUS_METHOD_RAYTRACE;
-    const int count = strips ? STRIPS : 1;
+    const int count = strips ? STRIPS : spools ? SPOOLED : 1;
     int status = REFOCUS_OK;
 
     for (int i = 0; i < count && status == REFOCUS_OK; i++) {
@@ -220,8 +237,11 @@ static int render_strips(struct engine *engine, const struct refocus_image *out,
         params.render.region_y += y0;
         params.render.region_width = strip.width;
         params.render.region_height = strip.height = y1 - y0;
-        strip.plane[0] += y0 * strip.stride[0];
+        strip.plane[0] += spools ? 0 : y0 * strip.stride[0];
         status = refocus_render_settings(engine->renderer, &params, &strip);
+        if (status == REFOCUS_OK && spools &&
+            spool_put(engine->spool, engine->name, out->height, &strip) != EXIT_DONE)
+            return REFOCUS_ERR_IO;
     }
     return status;
 }
@@ -287,6 +307,8 @@ int engine_render(struct engine *engine, const struct refocus_image *out, int re
     free(times);
     if (status == REFOCUS_ERR_CANCELLED)
         return interrupted(engine);
+    if (status == REFOCUS_ERR_IO)
+        return EXIT_FAILED; /* spool_put() has said why */
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, engine->name, "it cannot be rendered: %s",
                               refocus_strerror(status));
@@ -299,6 +321,8 @@ void engine_end(struct engine *engine)
     refocus_renderer_destroy(&engine->renderer);
     refocus_aperture_destroy(&engine->aperture);
     free(engine->rendered.plane[0]);
+    if (engine->spool >= 0)
+        close(engine->spool);
     free((void *)engine->field_map.samples);
     controls_free(&engine->controls);
 }

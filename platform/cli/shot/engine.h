@@ -17,7 +17,8 @@ struct engine_settings {
     double threads, repeat;
     const char *aperture; /* NULL: that of the bokeh's preset */
     bool mirror, background, no_thin, json;
-    bool in_strips; /* in little memory, as strips.h says */
+    bool in_strips;     /* in little memory, as strips.h says */
+    int64_t memory_kib; /* most that the renderer may take, else it is short_of_memory; 0: any */
     struct paper_settings papers;
     struct control_settings controls;
     struct bokeh_settings bokeh;
@@ -182,7 +183,11 @@ struct engine {
     bool keeps_light;                  /* `rendered` is wanted; before engine_render() */
     /* Such light as it was rendered, before it went back into 8 bits; no plane: there is none. */
     struct refocus_image rendered;
-    uint32_t methods;  /* methods that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
+    int spool; /* a file of spool.h that the picture goes to, `out` being the room for it; -1: none;
+                  before engine_render() */
+    bool
+        short_of_memory; /* settings->memory_kib was too little: engine_create() failed, silently */
+    uint32_t methods;    /* methods that the renderer is made for, REFOCUS_METHOD_BIT or-ed */
     bool places_edges; /* the renderer can put edges of a map on the photo's; before engine_create()
                         */
     struct refocus_depth_edges_report edges; /* by the last scene; struct_size 0: as given */
@@ -198,6 +203,9 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings);
 
 /* Whether deep photos can be rendered so, as the core says. */
 bool engine_takes_deep(const struct refocus_settings *params);
+
+/* Give a still grain where none was asked for nor refused; `deep` is known. */
+void engine_add_grain(struct engine *engine, const struct engine_settings *settings);
 
 /* The largest blur radius, in pixels, that the method of these settings renders. */
 double engine_most_blur(const struct engine_settings *settings);

@@ -155,11 +155,9 @@ static int place(const char *name, const double at[2], int width, int height, fl
     return EXIT_DONE;
 }
 
-void papers_suit(const struct paper_settings *settings, double depth_ratio,
-                 const double looked_at[2], int width, int height, struct refocus_settings *params)
+void papers_suit(const struct paper_settings *settings, const double looked_at[2], int width,
+                 int height, struct refocus_settings *params)
 {
-    if (isnan(settings->depth_ratio) && depth_ratio >= 1)
-        params->scatter.depth_ratio = (float)fmin(depth_ratio, 1000);
     if (!isnan(settings->attention[0]) || isnan(looked_at[0]))
         return;
     params->foveated.x = part_of(looked_at[0], width);

@@ -64,7 +64,7 @@ const char *papers_solver_name(uint32_t index);
                      .needs = "--spread"),                                                         \
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--depth-ratio", "Q", depth_ratio, 1, 1000,      \
                      "scatter: far / near metres, for light that falls with the square "           \
-                     "of the distance; default: by the photo's metres; 1, not at all, without",    \
+                     "of the distance; default 1, not at all",                                     \
                      OF_METHODS(type, method, OF_SCATTER)),                                        \
         PAPER_NUMBER(type, member, OPTION_INTEGER, "--star", "N", star, 0, 16,                     \
                      "sweep, scatter: spikes of a star filter, 0 or 2 to 16; default 0",           \
@@ -143,10 +143,10 @@ int papers_apply(const struct paper_settings *settings, struct refocus_settings 
 int papers_place(const struct paper_settings *settings, struct refocus_settings *params, int width,
                  int height);
 
-/* Set what single methods take of a photo where no option says it: `scatter` far / near metres,
- * `foveated` the pixel where the focus is. NAN: not known. */
-void papers_suit(const struct paper_settings *settings, double depth_ratio,
-                 const double looked_at[2], int width, int height, struct refocus_settings *params);
+/* Set what single methods take of a photo where no option says it: `foveated` the pixel where the
+ * focus is. NAN: not known. */
+void papers_suit(const struct paper_settings *settings, const double looked_at[2], int width,
+                 int height, struct refocus_settings *params);
 
 /* A grey picture from a file, one byte a pixel and no padding, to be freed. */
 uint8_t *papers_read_grey(const char *file, int *width, int *height);

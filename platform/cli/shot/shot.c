@@ -6,6 +6,7 @@
 #include "line/interrupt.h"
 #include "line/report.h"
 #include "shot/shot.h"
+#include "shot/spool.h"
 #include "shot/strips.h"
 
 int shot_aim(const struct input *input, const struct lens_settings *lens,
@@ -31,12 +32,10 @@ void shot_suit_papers(const struct input *input, const struct lens_settings *len
                       const struct paper_settings *papers, struct refocus_settings *params)
 {
     const struct refocus_image *photo = input->photo->image;
-    const double near_m = input->report.near_m, far_m = input->report.far_m;
     double looked_at[2];
 
     input_focus_point(input, lens, looked_at);
-    papers_suit(papers, near_m > 0 ? far_m / near_m : NAN, looked_at, photo->width, photo->height,
-                params);
+    papers_suit(papers, looked_at, photo->width, photo->height, params);
 }
 
 static int choose_focus(struct shot *shot, const struct lens_settings *lens)
@@ -150,6 +149,7 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     shot->engine.has_matte = shot->input.matte.samples != NULL;
     shot->engine.behind = settings->behind.image != NULL;
     shot->engine.deep = shot->input.deep.plane[0] != NULL;
+    engine_add_grain(&shot->engine, &settings->engine);
     shot->engine.light = shot->input.light;
     shot->engine.params.render.dither =
         depth.no_dither ? REFOCUS_DITHER_OFF : REFOCUS_DITHER_ORDERED;
@@ -162,12 +162,14 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     return status == EXIT_DONE ? choose_focus(shot, &settings->lens) : status;
 }
 
-void shot_rendered(struct shot *shot)
+int shot_rendered(struct shot *shot, const struct refocus_image *out)
 {
     interrupt_watch(NULL);
     refocus_renderer_destroy(&shot->engine.renderer);
     free(shot->full);
     shot->full = NULL;
+    return shot->engine.spool >= 0 ? spool_get(shot->engine.spool, shot->input.photo_name, out)
+                                   : EXIT_DONE;
 }
 
 void shot_close(struct shot *shot)

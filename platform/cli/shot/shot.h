@@ -72,8 +72,9 @@ int shot_aim(const struct input *input, const struct lens_settings *lens,
              const struct controls *controls, const uint16_t *disparity,
              struct refocus_settings *params);
 
-/* Give back what no picture needs that was rendered; shot_close() is still to come. */
-void shot_rendered(struct shot *shot);
+/* Give back what no picture needs that was rendered, and fill `out` where that went to a file;
+ * shot_close() is still to come. */
+int shot_rendered(struct shot *shot, const struct refocus_image *out);
 
 /* most_blur: what the renderer is made for, where that is more than the settings' blur;
  * 0: that. Ended by shot_close(), whatever it returned. */

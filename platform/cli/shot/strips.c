@@ -10,22 +10,43 @@
 /* Placing edges takes some 30 bytes a pixel: 120 MB for this many. */
 enum { MOST_PIXELS = 4000000 };
 
+/* The option that does not go with strips, or NULL. */
+static const char *conflict_of(const struct engine_settings *engine,
+                               const struct depth_settings *depth, bool behind)
+{
+    if (behind)
+        return "--behind";
+    if (depth->matte && !matte_is_none(depth->matte))
+        return "--matte";
+    return engine->fill == FILL_TEXTURED ? "--fill textured" : NULL;
+}
+
+static bool needs_whole_photo(const struct engine_settings *engine)
+{
+    return refocus_method_traits((uint32_t)engine->method) & REFOCUS_METHOD_WHOLE_PHOTO;
+}
+
 int strips_check(const struct engine_settings *engine, struct depth_settings *depth, bool behind)
 {
-    if (refocus_method_traits((uint32_t)engine->method) & REFOCUS_METHOD_WHOLE_PHOTO)
+    const char *conflict = conflict_of(engine, depth, behind);
+
+    if (needs_whole_photo(engine))
         return report_failure(EXIT_WRONG, "--low-memory",
                               "method %s needs the whole photo; leave one out",
                               refocus_method_name((uint32_t)engine->method));
-    if (behind || (depth->matte && !matte_is_none(depth->matte)))
+    if (conflict)
         return report_failure(EXIT_WRONG, "--low-memory", "it does not go with %s; leave one out",
-                              behind ? "--behind" : "--matte");
-    if (engine->fill == FILL_TEXTURED)
-        return report_failure(EXIT_WRONG, "--low-memory",
-                              "it does not go with --fill textured; leave one out");
+                              conflict);
     depth->matte = "none";
     depth->deep = DEEP_NONE;
     depth->light = false;
     return EXIT_DONE;
+}
+
+bool strips_suit(const struct engine_settings *engine, const struct depth_settings *depth,
+                 bool behind)
+{
+    return !engine->in_strips && !needs_whole_photo(engine) && !conflict_of(engine, depth, behind);
 }
 
 struct work {

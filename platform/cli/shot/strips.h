@@ -12,12 +12,18 @@
         .help = "render in strips: a fourth of the memory, and longer. Thin structures are "       \
                 "gathered by rays, what is hidden is smooth, no matte is used, of a photo 8 bits " \
                 "are taken, and in photos of more than 4 megapixels edges of the depth map are "   \
-                "placed at a smaller size"                                                         \
+                "placed at a smaller size. The picture waits in a temporary file in TMPDIR or "    \
+                "/var/tmp. Where there is too little memory it is done by itself"                  \
     }
 
 /* Refuse options that cannot be met in strips, and leave out what was not asked for; an exit
  * code, and prints why. */
 int strips_check(const struct engine_settings *engine, struct depth_settings *depth, bool behind);
+
+/* Whether a photo may be rendered in strips though nobody asked for it: strips_check() would refuse
+ * nothing, and only what --low-memory says differs. */
+bool strips_suit(const struct engine_settings *engine, const struct depth_settings *depth,
+                 bool behind);
 
 /* Make packed disparities of the photo's size, which the caller frees, of those of its map; an
  * exit code, and prints why. The report is written where edges are placed. */

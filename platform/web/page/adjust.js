@@ -1,10 +1,11 @@
 // The sliders for focus, blur, highlights, the band in focus and the tilt of its plane.
 import { $, announce, make, slider } from './dom.js';
-import { change, listen, model, reset, settings, tiltLine } from './model.js';
+import { change, listen, model, reset, settings, tilted } from './model.js';
 import { NAMES } from './settings.js';
+import { STEEPEST, turnOf } from './tilt.js';
 import { say } from './words.js';
 
-const WIDEST_BAND = 0.5, STEEPEST = 45; // disparities to either side, degrees
+const WIDEST_BAND = 0.5; // disparities to either side
 
 /** A number as people write it: two figures, and no more. */
 const short = (value) => (value < 9.95 ? Number(value.toFixed(1)) : Math.round(value));
@@ -68,12 +69,14 @@ const SLIDERS = {
     },
     tilt: {
         part: (s) => ((s[NAMES.tilt] ?? 0) / STEEPEST + 1) / 2,
-        value(p) {
-            const tilt = Math.round((2 * p - 1) * STEEPEST);
-            return tilt ? { [NAMES.tilt]: tilt, ...tiltLine(model.mark) }
-                : { [NAMES.tilt]: undefined, [NAMES.tiltLine]: undefined };
-        },
+        value: (p) => tilted(Math.round((2 * p - 1) * STEEPEST)),
         text: (s) => say('tiltAt', { n: s[NAMES.tilt] ?? 0 }),
+    },
+    turn: {
+        shown: () => Boolean(settings()[NAMES.tilt]),
+        part: (s) => turnOf(s[NAMES.tiltLine]) / 180 + 0.5,
+        value: (p) => tilted(settings()[NAMES.tilt], Math.round(180 * p - 90)),
+        text: (s) => say('tiltAt', { n: turnOf(s[NAMES.tiltLine]) }),
     },
 };
 

@@ -95,7 +95,7 @@ function drawCards() {
     const now = JSON.stringify([photo.session, depth, own]);
 
     clearTimeout(timer);
-    if (model.tab !== 'look' || now === drawn)
+    if (model.tab !== 'look' || now === drawn || photo.live)
         return;
     timer = setTimeout(() => {
         drawn = now;

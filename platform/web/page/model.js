@@ -1,6 +1,7 @@
 // The page knows this: the photo that is open, and how it is to look. Parts of the page change it
 // by these functions and listen to it; none of them calls another.
 import { NAMES, over, without } from './settings.js';
+import { lineThrough, turnOf } from './tilt.js';
 
 export const model = {
     photo: null, // as the server told it: session, name, width, height, depth, limits, presets...
@@ -15,7 +16,7 @@ export const model = {
 
 const listeners = [];
 
-/** Call `heard` with what changed: photo, settings, depth, view, tab, compare. */
+/** Call `heard` with what changed: photo, settings, depth, draft, view, tab, compare. */
 export function listen(heard) {
     listeners.push(heard);
 }
@@ -49,19 +50,21 @@ export function change(some) {
     tell('settings');
 }
 
-/** The line about which a tilted plane of focus turns: level, through what was tapped. */
-export function tiltLine(mark) {
-    const { width, height } = model.photo;
-    const y = mark && Math.round(mark.y * (height - 1));
-
-    return { [NAMES.tiltLine]: mark ? [0, y, width - 1, y] : undefined };
+/** Settings of a plane of focus that is tilted by some degrees about a line through what was
+ * tapped, which is turned from level. */
+export function tilted(degrees, turn = turnOf(settings()[NAMES.tiltLine]), mark = model.mark) {
+    // The other way about a line that points the other way is the same.
+    if (Math.abs(turn) > 90)
+        return tilted(-degrees, turn - 180 * Math.sign(turn), mark);
+    return { [NAMES.tilt]: degrees || undefined,
+        [NAMES.tiltLine]: degrees ? lineThrough(model.photo, mark, turn) : undefined };
 }
 
 /** Focus on what was tapped. */
 export function focusOn(focus, x, y) {
-    const tilted = settings()[NAMES.tilt] ? tiltLine({ x, y }) : {};
+    const { [NAMES.tilt]: tilt } = settings();
 
-    change({ focus, ...tilted });
+    change({ focus, ...(tilt ? tilted(tilt, undefined, { x, y }) : {}) });
     model.mark = { x, y };
     tell('mark');
 }
@@ -88,6 +91,12 @@ export function depthChanged() {
     model.depth++;
     model.photo.depth = true;
     tell('depth');
+}
+
+/** A stroke that is not finished has changed the depth. */
+export function draftChanged() {
+    model.depth++;
+    tell('draft');
 }
 
 export function setView(view) {

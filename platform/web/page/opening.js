@@ -14,18 +14,20 @@ let opening = false;
 
 export function showScreen(screen) {
     document.body.dataset.screen = screen;
-    $('name').textContent = screen === 'open' ? say('title') : model.photo.name;
+    $('name').textContent = screen === 'open' ? say('title')
+        : model.photo.live ? say('live') : model.photo.name;
     $('opening').hidden = screen !== 'open';
     $('editing').hidden = screen === 'open';
     for (const id of ['views', 'compare', 'save'])
         $(id).hidden = screen === 'open';
+    $('capture').hidden = screen === 'open' || !model.photo.live;
     $('open').hidden = screen === 'open';
     $('back').hidden = !model.photo;
 }
 
 /** True when it was opened; if not, the line says why. */
 async function open(what, look = null, own = {}) {
-    const name = what.name ?? what.file.name;
+    const name = what.live ? say('live') : what.name ?? what.file.name;
 
     if (opening)
         return false;
@@ -39,7 +41,7 @@ async function open(what, look = null, own = {}) {
     document.body.classList.add('waiting');
     try {
         const photo = what.file ? await server.uploadPhoto(what.file)
-            : await server.openPhoto(what.name);
+            : what.live ? await server.openLive() : await server.openPhoto(what.name);
         if (model.photo)
             server.close(model.photo.session);
         source = what;
@@ -54,12 +56,13 @@ async function open(what, look = null, own = {}) {
 }
 
 function show(photo, look, own) {
-    document.title = say('titleOf', { name: photo.name });
+    document.title = say('titleOf', { name: photo.live ? say('live') : photo.name });
     model.photo = photo;
     showScreen('edit');
     openPhoto(photo, look, own);
     setTab(photo.depth ? 'adjust' : 'paint');
-    announce(say(photo.depth ? 'opened' : 'openedFlat', { name: photo.name }));
+    announce(say(photo.live ? 'openedLive' : photo.depth ? 'opened' : 'openedFlat',
+        { name: photo.name }));
     if (document.activeElement !== document.body)
         $('stage').focus({ preventScroll: true });
 }
@@ -69,6 +72,10 @@ function show(photo, look, own) {
 async function openAgain() {
     if (!source || opening)
         return;
+    if (source.live) {
+        await open(source, model.look?.name, model.own);
+        return;
+    }
     const strokes = strokesMade(), { tab } = model;
     if (await open(source, model.look?.name, model.own)) {
         setTab(tab);
@@ -76,6 +83,9 @@ async function openAgain() {
         announce(say('openedAgain', { name: model.photo.name }));
     }
 }
+
+export const openFile = (file) => open({ file });
+export const openLiveAgain = () => open({ live: true });
 
 function card({ name, depth }) {
     const image = make('img', { alt: '', width: 160, height: 120 });
@@ -135,6 +145,7 @@ async function list() {
     listed = await server.listPhotos();
     const cards = listed.photos.map(card);
 
+    $('live').hidden = !listed.live;
     $('folder').hidden = !listed.folder;
     $('folder-empty').hidden = cards.length > 0;
     $('photos').replaceChildren(...cards.map(({ item }) => item));
@@ -192,6 +203,8 @@ export async function startOpening() {
         const name = link.photo ?? listed.open;
         if (cards.some((one) => one.name === name) || name === listed.open && name)
             await open({ name }, link.look, link.photo ? link.changes : {});
+        else if (listed.live && (!listed.folder || link.photo === 'live'))
+            await open({ live: true }, link.look, link.changes);
         fetchThumbnails(cards);
     } catch (error) {
         announceError(error);

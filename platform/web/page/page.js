@@ -2,6 +2,7 @@
 // model.js; words.js has all text, server.js all questions to the server.
 import { startAdjust } from './adjust.js';
 import { $ } from './dom.js';
+import { startLive } from './live.js';
 import { startLooks } from './looks.js';
 import { listen, model, setTab } from './model.js';
 import { startOpening } from './opening.js';
@@ -44,4 +45,5 @@ startLooks();
 startPainting();
 startRack();
 startSaving();
+startLive();
 startOpening();

@@ -1,6 +1,7 @@
-// Depth by a finger: the ground first, then objects over it. Each stroke is seen under the finger,
-// goes to the server when the finger is lifted, and can be taken back.
+// Depth by a finger: the ground first, then objects over it. Each stroke is seen under the finger
+// with what it selects, and can be taken back.
 import { $, announce, announceError, make, radios, slider } from './dom.js';
+import { Drafts } from './drafts.js';
 import { depthChanged, listen, model } from './model.js';
 import { listStrokes, redo, stroke, undo } from './server.js';
 import { setBrush, setBusy, theStage, thePictures } from './viewer.js';
@@ -15,6 +16,7 @@ const tool = { kind: 'object', radius: 20, from: 0.8, to: 0.2 };
 let done = [], undone = []; // strokes: { kind, what }, as the person and the server call them
 let path = null; // points of the stroke that is being made
 let queue = Promise.resolve(); // strokes go one after another
+const drafts = new Drafts();
 let chooseTool = () => {}, rows = {};
 
 /** A stroke in the words of the server: pixels of the photo. */
@@ -56,9 +58,10 @@ function send(made) {
 
     later(async () => {
         try {
+            await drafts.end();
             await thePictures().pauseFor(() => stroke(photo.session, what));
         } finally {
-            theStage().set({ path: null });
+            theStage().set({ path: null, selection: null });
         }
         if (photo !== model.photo)
             return;
@@ -150,8 +153,15 @@ function pick(kind) {
 }
 
 function showPath() {
-    theStage().set({ path: path && { points: path.points, radius: tool.radius,
+    theStage().set({ selection: path && theStage().selection, path: path && { points: path.points, radius: tool.radius,
         line: LINES.includes(path.kind) } });
+}
+
+/** A stroke so far goes to the server once those before it are done. */
+function sendDraft() {
+    const { photo } = model;
+
+    queue.then(() => path && drafts.send(photo, inPixels(path)));
 }
 
 const brush = {
@@ -170,6 +180,7 @@ const brush = {
         else if (Math.hypot(here.x - last.x, here.y - last.y) >= APART)
             path.points.push(at);
         showPath();
+        sendDraft();
     },
     end() {
         if (path)
@@ -177,6 +188,8 @@ const brush = {
         path = null;
     },
     cancel() {
+        if (path)
+            later(() => drafts.drop());
         path = null;
         showPath();
     },
@@ -200,7 +213,7 @@ function readStrokes() {
 
     done = [];
     undone = [];
-    $('tab-paint').hidden = photo.features ? !photo.features.includes('paint') : false;
+    $('tab-paint').hidden = Boolean(photo.live);
     pick(photo.depth ? 'object' : 'ground');
     showList();
     if ($('tab-paint').hidden)

@@ -63,7 +63,7 @@ export class Pictures {
 
     /** Until something of what is wanted now is seen. */
     seen() {
-        return this.shown.key === key(this.wanted) ? Promise.resolve()
+        return !this.wanted || this.shown.key === key(this.wanted) ? Promise.resolve()
             : new Promise((done) => this.waiting.push(done));
     }
 
@@ -76,6 +76,7 @@ export class Pictures {
 
     /** A picture like the last one may be another now, after an error or on a new session. */
     forget() {
+        this.wanted = null;
         this.shown = { key: '', size: 0 };
         this.before = { session: '', size: 0 };
     }
@@ -128,7 +129,7 @@ export class Pictures {
             this.give(job, error);
         }
         this.under = null;
-        if (this.shown.key === key(this.wanted))
+        if (!this.wanted || this.shown.key === key(this.wanted))
             this.waiting.splice(0).forEach((done) => done());
         this.go();
     }
@@ -146,7 +147,7 @@ export class Pictures {
     take(job, bitmap) {
         if (job.what === 'look') {
             job.done(bitmap);
-        } else if (job.session !== this.wanted.session) {
+        } else if (job.session !== this.wanted?.session) {
             bitmap.close();
         } else if (job.what === 'before') {
             this.before = { session: job.session, size: job.size || Infinity };

@@ -17,7 +17,10 @@ export function saveFile({ blob, name }) {
     announce(say('saved', { name }));
 }
 
+/** What the open menu covers in part cannot be hit. */
 function open(yes) {
+    for (const part of $('editing').children)
+        part.inert = yes;
     $('save-menu').hidden = !yes;
     $('save').setAttribute('aria-expanded', yes);
 }

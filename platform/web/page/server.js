@@ -71,6 +71,11 @@ export async function uploadPhoto(file) {
     return (await ask('POST', 'upload', { name: file.name }, file)).json();
 }
 
+/** The session of the camera, which others may look at, too. */
+export async function openLive() {
+    return (await ask('POST', 'live')).json();
+}
+
 /** A session that is left, even when the page is being closed. */
 export function close(session) {
     fetch(address('close', { session }), { method: 'POST', keepalive: true }).catch(() => {});
@@ -95,8 +100,23 @@ export async function picture(session, settings, { kind, size, quick, signal }) 
     return createImageBitmap(await response.blob());
 }
 
+/** A frame of the camera that is newer than one, if it comes: { bitmap, number }. */
+export async function frame(session, settings, { kind, size, after }) {
+    const query = { session, kind, size, after };
+    const response = await ask('POST', 'frame', query, json(settings));
+
+    return { bitmap: await createImageBitmap(await response.blob()),
+        number: Number(response.headers.get('Refocus-Frame')) };
+}
+
 export async function stroke(session, what) {
     return (await ask('POST', 'stroke', { session }, json(what))).json();
+}
+
+/** A stroke that is not finished, {} for none any more: { selection }, which is null or { width,
+ * height, runs } with the first pixel and the length of each run. */
+export async function draft(session, what) {
+    return (await ask('POST', 'draft', { session }, json(what))).json();
 }
 
 export async function undo(session) {
@@ -121,5 +141,7 @@ async function file(path, query, body) {
 }
 
 export const save = (session, as, settings) => file('save', { session, as }, settings);
+/** The frame of the camera, in focus everywhere, with its depth. */
+export const capture = (session, settings) => save(session, 'jpeg', settings);
 export const pull = (session, as, settings, keys) =>
     file('pull', { session, as, size: 0 }, { ...settings, keys });

@@ -16,7 +16,9 @@ export class Stage {
         this.divider = null; // from 0 to 1 of the stage, or null
         this.mark = null; // where the focus was set
         this.cursor = null; // of the keyboard
+        this.line = null; // about which the focus tilts: [X, Y, X, Y], pixels of the photo
         this.path = null; // { points, radius, line }: a stroke under the finger
+        this.selection = null; // a picture of what it selects, over that of the photo
         this.brush = null; // { x, y, radius } on the stage: where a stroke would go
         new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
     }
@@ -42,7 +44,8 @@ export class Stage {
         this.before?.close();
         this.photo = photo;
         this.scale = 0;
-        this.after = this.before = this.divider = this.mark = this.cursor = this.path = null;
+        this.after = this.before = this.divider = this.mark = this.cursor = this.path =
+            this.selection = null;
         this.resize();
         this.fit();
     }
@@ -144,8 +147,11 @@ export class Stage {
         this.paintPicture(this.after, 0, this.width);
         if (this.divider !== null)
             this.paintPicture(this.before, 0, this.divider * this.width);
+        this.paintPicture(this.selection, 0, this.width);
         if (this.path)
             this.paintPath(this.path);
+        if (this.line)
+            this.paintLine(this.line);
         if (this.mark)
             this.paintMark(this.toStage(this.mark));
         if (this.cursor)
@@ -208,6 +214,17 @@ export class Stage {
         });
     }
 
+    paintLine([x0, y0, x1, y1]) {
+        const place = (x, y) => this.toStage({ x: (x + 0.5) / this.photo.width,
+            y: (y + 0.5) / this.photo.height });
+        const from = place(x0, y0), to = place(x1, y1);
+
+        this.twice((c) => {
+            c.moveTo(from.x, from.y);
+            c.lineTo(to.x, to.y);
+        });
+    }
+
     paintPath({ points, radius, line }) {
         const c = this.context;
         const places = points.map((point) => this.toStage(point));
@@ -223,7 +240,7 @@ export class Stage {
             return;
         }
         c.lineCap = c.lineJoin = 'round';
-        c.strokeStyle = '#ff7a1a99';
+        c.strokeStyle = this.selection ? '#ff7a1a33' : '#ff7a1a99';
         c.lineWidth = 2 * radius;
         c.beginPath();
         trace();

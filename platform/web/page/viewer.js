@@ -2,10 +2,13 @@
 // these by keys. While depth is painted, fingers belong to the brush.
 import { $, announce, announceError, radios } from './dom.js';
 import { listenTo } from './gestures.js';
-import { focusOn, listen, model, setComparing, settings, setView } from './model.js';
+import { change, focusOn, listen, model, setComparing, settings, setView, tilted }
+    from './model.js';
 import { Pictures } from './pictures.js';
 import { focusAt } from './server.js';
+import { NAMES } from './settings.js';
 import { Stage } from './stage.js';
+import { STEEPEST, turnOf } from './tilt.js';
 import { say } from './words.js';
 
 const VIEWS = { picture: 'viewPicture', depth: 'viewDepth', blur: 'viewBlur',
@@ -26,7 +29,7 @@ export function showMoment(some) {
  * hover, key. */
 export function setBrush(some) {
     brush = some;
-    stage.set({ brush: null, path: null });
+    stage.set({ brush: null, path: null, selection: null });
     $('stage-help').textContent = say(brush ? 'stagePaintHelp' : 'stageHelp');
 }
 
@@ -35,8 +38,8 @@ export const theStage = () => stage;
 export const thePictures = () => pictures;
 
 function ask() {
-    if (!model.photo)
-        return;
+    if (!model.photo || model.photo.live)
+        return; // live.js shows frames
     const kind = model.view === 'picture' || moment ? undefined : model.view;
     pictures.want({ session: model.photo.session, depth: model.depth, kind,
         settings: moment ?? settings(), size: stage.sizeSeen(), before: model.comparing });
@@ -108,6 +111,16 @@ function zoomTwice(place) {
         stage.fit();
 }
 
+let tiltedFrom = null; // the tilt when two fingers began
+/** What two fingers change of it; the line about which it turns is seen. */
+function tilting(changed) {
+    const now = settings();
+
+    tiltedFrom ??= { tilt: now[NAMES.tilt] ?? 0, turn: turnOf(now[NAMES.tiltLine]) };
+    change(changed(tiltedFrom));
+    stage.set({ line: settings()[NAMES.tiltLine] ?? null });
+}
+
 const fingers = {
     atOnce: () => brush !== null,
     tap: (place) => (brush ? undefined : focus(place)),
@@ -134,6 +147,17 @@ const fingers = {
         stage.zoomBy(factor, place.x, place.y);
     },
     hover: (place) => brush?.hover(place),
+    // All of the photo is seen, so that there is nothing to pan to.
+    tilts: () => !brush && stage.fitted(),
+    turns: () => !brush && Boolean(settings()[NAMES.tilt]),
+    tilt: (y) => tilting((from) => tilted(
+        Math.min(Math.max(Math.round(from.tilt - 2 * STEEPEST * y / stage.height), -STEEPEST),
+            STEEPEST), from.turn)),
+    turn: (degrees) => tilting((from) => tilted(from.tilt, from.turn + Math.round(degrees))),
+    tiltEnd() {
+        stage.set({ line: null });
+        tiltedFrom = null;
+    },
 };
 
 /** The cross that arrow keys move; the picture follows it out of sight. */
@@ -167,7 +191,7 @@ function stageKey(event) {
         '-': () => stage.zoomBy(0.8, middle.x, middle.y),
         0: () => stage.fit(),
         1: () => stage.zoomTo(stage.fullScale(), middle.x, middle.y),
-        b: () => setComparing(!model.comparing),
+        b: () => model.photo.live || setComparing(!model.comparing),
         Escape: () => {
             brush?.cancel();
             stage.set({ cursor: null });

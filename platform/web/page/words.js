@@ -12,6 +12,10 @@ const words = {
     folder: 'In this folder',
     folderEmpty: 'There are no photos in this folder.',
     back: 'Back to the photo',
+    live: 'Live view',
+    capture: 'Capture',
+    capturing: 'Capturing…',
+    openedLive: 'Live: tap what should be sharp.',
     withDepth: 'depth',
     withoutDepth: 'no depth',
     photoWith: '{name}, with depth',
@@ -27,7 +31,7 @@ const words = {
 
     // the picture
     stage: 'Photo',
-    stageHelp: 'Arrow keys move a cross, Enter focuses there. Plus and minus zoom, 0 fits, ' +
+    stageHelp: 'Tap to focus, pinch to zoom; two fingers up or down tilt what is in focus. Arrow keys move a cross, Enter focuses there. Plus and minus zoom, 0 fits, ' +
         '1 shows full size, B shows before and after.',
     stagePaintHelp: 'Arrow keys move a cross, Enter puts the brush down and lifts it. Plus and ' +
         'minus zoom, 0 fits, 1 shows full size.',
@@ -79,6 +83,7 @@ const words = {
     deep: 'deep',
     tilt: 'Tilt',
     tiltAt: '{n}°',
+    turn: 'Turn of the tilt',
     reset: 'Reset all',
     resetDone: 'All as it was when the photo was opened.',
 

@@ -1,113 +1,54 @@
 /* fuzz_core.c: any parameters and any picture through the public API. Whatever comes in, the
  * status is a documented one, nothing outside the result is written, and rendering twice gives
- * the same bytes. */
-#include <stdint.h>
-#include <stdlib.h>
+ * the same bytes.
+ * Most pictures are small, with one thread and one scene (draw.h). */
 #include <string.h>
 #include <refocus/refocus.h>
 
-enum { MAX_SIDE = 48, GUARD = 64 };
+#include "apertures.h"
+#include "blocks.h"
+#include "draw.h"
 
-/* Rest of the input; it reads as 0 for ever after its end. */
-struct input {
-    const uint8_t *data;
-    size_t size;
-};
+enum { SMALL_SIDE = 12, MAX_SIDE = 48, GUARD = 64 };
 
-static uint32_t take(struct input *in, int bytes)
+/* The parts of an input that are drawn. */
+static struct choice {
+    int most_side; /* MAX_SIDE for one input of 16; blur is up to a quarter of it */
+    int threads;   /* for one of 16 there are as many as the input says */
+    int again;     /* for one of 8 there is a second scene, and each render is done twice */
+    int few;       /* for one of 32 the aperture is any, which takes as long to make as many of
+                    * these pictures; for the others one of a few */
+} choice;
+
+/* A side of a picture, or of a region. */
+static int32_t take_side(struct input *in, int wild, int32_t least)
 {
-    uint32_t value = 0;
+    const int32_t side = take_in(in, wild, least, MAX_SIDE);
 
-    while (bytes-- > 0 && in->size > 0) {
-        value = value << 8 | *in->data++;
-        in->size--;
-    }
-    return value;
+    return wild || side <= choice.most_side ? side : side % (choice.most_side + 1 - least) + least;
 }
 
-static float take_float(struct input *in)
-{
-    const uint32_t bits = take(in, 4);
-    float value;
-
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-/* A value in its range mostly; of all 32 bits when `wild`. */
-static int32_t take_in(struct input *in, int wild, int32_t low, int32_t high)
-{
-    if (wild)
-        return (int32_t)take(in, 4);
-    return low + (int32_t)(take(in, 2) % (uint32_t)(high - low + 1));
-}
-
-static float take_fraction(struct input *in, int wild, float high)
-{
-    return wild ? take_float(in) : high * (float)take(in, 2) / 65535;
-}
-
-/* Not one of the documented ones: end the program, that is what a fuzzer looks for. */
-static void check(int condition)
-{
-    if (!condition)
-        abort();
-}
-
+/* Repeats the input's rest, which is not taken. */
 static void take_pixels(struct input *in, uint8_t *to, size_t size)
 {
-    for (size_t i = 0; i < size; i++)
-        to[i] = in->size > 0 ? in->data[i % in->size] : (uint8_t)(i * 37);
+    size_t n = in->size < size ? in->size : size;
+
+    if (n > 0) {
+        memcpy(to, in->data, n);
+    } else {
+        n = size < 256 ? size : 256;
+        for (size_t i = 0; i < n; i++)
+            to[i] = (uint8_t)(i * 37);
+    }
+    for (size_t more; n < size; n += more) {
+        more = n < size - n ? n : size - n;
+        memcpy(to + n, to, more);
+    }
 }
 
-static struct refocus_aperture_params take_opening(struct input *in, int wild)
+static void check_untouched(const uint8_t *at, size_t size)
 {
-    struct refocus_aperture_params p = refocus_aperture_params_default();
-
-    p.figure = (uint32_t)take_in(in, wild, 0, REFOCUS_FIGURE_COUNT - 1);
-    p.blades = take_in(in, wild, 2, 16);
-    if (p.blades == 2)
-        p.blades = 0;
-    p.rotation_deg = (double)take_fraction(in, wild, 360);
-    p.curvature = p.figure ? 0 : (double)take_fraction(in, wild, 1);
-    p.opening = p.figure ? 0 : (double)take_fraction(in, wild, 1);
-    p.squeeze = 0.5 + (double)take_fraction(in, wild, 1.5f);
-    p.hole = (double)take_fraction(in, wild, 0.9f);
-    p.edge_behind = 1 - (double)take_fraction(in, wild, 2);
-    p.edge_before = take(in, 1) & 1 ? p.edge_behind : -p.edge_behind;
-    return p;
-}
-
-static struct refocus_aperture *take_aperture(struct input *in, int wild)
-{
-    struct refocus_aperture *aperture = NULL;
-    uint8_t mask[16];
-    int status = REFOCUS_OK;
-
-    switch (take(in, 1) % 5) {
-    case 1:
-        status = refocus_aperture_create_disc(&aperture);
-        break;
-    case 2: {
-        const int blades = take_in(in, wild, 3, 16);
-        status = refocus_aperture_create_polygon(&aperture, blades,
-                                                 (double)take_fraction(in, wild, 360));
-        break;
-    }
-    case 3:
-        for (int i = 0; i < 16; i++)
-            mask[i] = (uint8_t)take(in, 1);
-        status = refocus_aperture_create_mask(&aperture, mask, 4, 4, 4);
-        break;
-    case 4: {
-        const struct refocus_aperture_params params = take_opening(in, wild);
-        status = refocus_aperture_create(&aperture, &params);
-        break;
-    }
-    }
-    check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT);
-    check(status == REFOCUS_OK || !aperture);
-    return aperture;
+    check(size == 0 || (at[0] == 0xa5 && memcmp(at, at + 1, size - 1) == 0));
 }
 
 /* Sets the parameters that single methods look at. */
@@ -186,8 +127,8 @@ static struct refocus_settings take_lens(struct input *in, int wild, float most)
     p.render.prefilter = (uint8_t)take_in(in, wild, 0, 1);
     p.render.region_x = take_in(in, wild, 0, 20);
     p.render.region_y = take_in(in, wild, 0, 20);
-    p.render.region_width = take_in(in, wild, 0, MAX_SIDE);
-    p.render.region_height = take_in(in, wild, 0, MAX_SIDE);
+    p.render.region_width = take_side(in, wild, 0);
+    p.render.region_height = take_side(in, wild, 0);
     return p;
 }
 
@@ -212,8 +153,8 @@ static int render(struct refocus_renderer *renderer, struct refocus_settings *p,
     check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT || status == REFOCUS_ERR_STATE ||
           status == REFOCUS_ERR_UNSUPPORTED);
     const size_t written = status == REFOCUS_OK ? refocus_image_bytes(format, w, h) : 0;
-    for (size_t i = 0; i < capacity; i++)
-        check((i >= GUARD && i < GUARD + written) || out[i] == 0xa5);
+    check_untouched(out, GUARD);
+    check_untouched(out + GUARD + written, capacity - GUARD - written);
     return status;
 }
 
@@ -224,11 +165,12 @@ static const struct refocus_disparity *take_matte(struct input *in, int any,
     static uint16_t deep[MAX_SIDE * MAX_SIDE];
     static struct refocus_disparity matte;
     uint8_t *const samples = (uint8_t *)deep;
-    const int width = any ? take_in(in, 0, 1, MAX_SIDE) : photo->width;
-    const int height = any ? take_in(in, 0, 1, MAX_SIDE) : photo->height;
+    const int width = any ? take_side(in, 0, 1) : photo->width;
+    const int height = any ? take_side(in, 0, 1) : photo->height;
+    const size_t bytes = (size_t)(width * height) * (any ? 2 : 1);
 
-    take_pixels(in, samples, sizeof deep);
-    for (size_t i = 0; i < sizeof deep; i++) /* much is sure, as in true mattes */
+    take_pixels(in, samples, bytes);
+    for (size_t i = 0; i < bytes; i++) /* much is sure, as in true mattes */
         samples[i] = samples[i] < 100 ? 0 : samples[i] > 150 ? 255 : samples[i];
     matte = any ? refocus_disparity16(deep, width, height, 2 * (ptrdiff_t)width)
                 : refocus_disparity8(samples, width, height, width);
@@ -238,17 +180,17 @@ static const struct refocus_disparity *take_matte(struct input *in, int any,
 /* `deep`: photos have more than 8 bits, and may be rendered into any format. */
 static void use(struct input *in, struct refocus_renderer *renderer, float most, int wild, int deep)
 {
-    enum { CAPACITY = 16 * MAX_SIDE * MAX_SIDE + 2 * GUARD };
-    static uint8_t photo[16 * MAX_SIDE * MAX_SIDE], out[2][CAPACITY];
+    static uint8_t photo[16 * MAX_SIDE * MAX_SIDE];
+    static uint8_t out[2][16 * MAX_SIDE * MAX_SIDE + 2 * GUARD];
     static uint16_t disparity[MAX_SIDE * MAX_SIDE], view[MAX_SIDE * MAX_SIDE];
     static uint16_t farther[MAX_SIDE * MAX_SIDE];
-    const int width = take_in(in, 0, 1, MAX_SIDE), height = take_in(in, 0, 1, MAX_SIDE);
+    const int width = take_side(in, 0, 1), height = take_side(in, 0, 1);
     const uint32_t kind = take(in, 1), out_format = 1 + take(in, 1) % (deep ? 16 : 8);
     const uint32_t format =
         deep ? 9 + kind % 8
              : 1 + kind % 8; /* bits 3 and 4: matrix and range; 5: edges; 6, 7: matte */
     const int bits = take(in, 1) & 1 ? 16 : 8;
-    const int dw = take_in(in, 0, 1, MAX_SIDE), dh = take_in(in, 0, 1, MAX_SIDE);
+    const int dw = take_side(in, 0, 1), dh = take_side(in, 0, 1);
     const uint32_t shape = take(in, 1); /* bit 1: there is something behind; bit 2: texture */
     const int same = (int)shape & 1;
     struct refocus_image image = refocus_image_planar(format, photo, width, height);
@@ -258,7 +200,10 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     struct refocus_scene scene = refocus_scene_default(&image, &map);
     struct refocus_disparity behind = map;
     struct refocus_settings lens = take_lens(in, wild, most);
-    struct refocus_aperture *aperture = take_aperture(in, wild);
+    const struct refocus_aperture *aperture = take_aperture(in, wild, choice.few);
+    const size_t capacity =
+        2 * GUARD +
+        16 * (size_t)(choice.most_side < MAX_SIDE ? SMALL_SIDE * SMALL_SIDE : MAX_SIDE * MAX_SIDE);
     int status;
 
     image.matrix = kind >> 3 & 1;
@@ -278,9 +223,9 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
         take_controls(in, wild, &map, &lens);
     else if (!wild && lens.render.method != REFOCUS_METHOD_DIFFUSION)
         lens.field.shape = REFOCUS_FIELD_LENS;
-    take_pixels(in, photo, sizeof photo);
-    take_pixels(in, (uint8_t *)disparity, sizeof disparity);
-    for (int i = 0; i < MAX_SIDE * MAX_SIDE; i++)
+    take_pixels(in, photo, (size_t)refocus_image_bytes(format, width, height));
+    take_pixels(in, (uint8_t *)disparity, (size_t)map.height * (size_t)map.stride);
+    for (int i = 0; i < (map.width * map.height * bits + 15) / 16; i++)
         farther[i] = disparity[i] / 2;
     behind.samples = farther;
     scene.depth_edges = (kind >> 5 & 1) * (1 + (kind & 1));
@@ -292,33 +237,37 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
     check(status == REFOCUS_OK || status == REFOCUS_ERR_SIZE || status == REFOCUS_ERR_UNSUPPORTED ||
           (shape & 2 && status == REFOCUS_ERR_ARGUMENT));
     lens.render.aperture = aperture;
-    status = render(renderer, &lens, width, height, out_format, out[0], CAPACITY);
+    status = render(renderer, &lens, width, height, out_format, out[0], capacity);
     if (status == REFOCUS_OK) {
         check(refocus_get_view(renderer, REFOCUS_VIEW_BLUR, view, 2 * width) == 0);
-        check(render(renderer, &lens, width, height, out_format, out[1], CAPACITY) == 0);
-        check(memcmp(out[0], out[1], CAPACITY) == 0);
     }
-    refocus_aperture_destroy(&aperture);
+    if (status == REFOCUS_OK && choice.again) {
+        check(render(renderer, &lens, width, height, out_format, out[1], capacity) == 0);
+        check(memcmp(out[0], out[1], capacity) == 0);
+    }
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+static void render_input(struct input *in)
 {
-    struct input in = {data, size};
-    const uint32_t flags = take(&in, 1);
+    const uint32_t flags = take(in, 1);
     const int wild_limits = flags & 1, wild = flags >> 1 & 1;
+    const int32_t width = take_side(in, wild_limits, 1);
+    const int32_t height = take_side(in, wild_limits, 1);
     struct refocus_renderer_params limits = refocus_renderer_params_default(
-        take_in(&in, wild_limits, 1, MAX_SIDE), take_in(&in, wild_limits, 1, MAX_SIDE),
-        take_fraction(&in, wild_limits, 12));
+        width, height, take_fraction(in, wild_limits, (float)choice.most_side / 4));
     struct refocus_renderer *renderer;
     int status;
 
-    limits.threads = take_in(&in, wild_limits, 1, 3);
+    limits.threads = take_in(in, wild_limits, 1, 3);
+    if (!wild_limits && !choice.threads)
+        limits.threads = 1;
     limits.papers = refocus_papers();
     limits.depth_edges = REFOCUS_DEPTH_EDGES_STEADY;
-    limits.methods = wild_limits ? take(&in, 4) : REFOCUS_METHODS_ALL;
+    limits.methods = wild_limits ? take(in, 4) : REFOCUS_METHODS_ALL;
     limits.max_memory = 64 << 20;
+    limits.allocator = keeping_allocator();
     limits.thin = flags >> 2 & 1;
     limits.behind = flags >> 3 & 1;
     limits.textured = flags >> 4 & 1;
@@ -328,8 +277,20 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     check(status == REFOCUS_OK || status == REFOCUS_ERR_ARGUMENT || status == REFOCUS_ERR_SIZE ||
           status == REFOCUS_ERR_THREAD);
     check((status == REFOCUS_ERR_ARGUMENT) == (refocus_renderer_memory(&limits) == 0));
-    for (int i = 0; i < 2 && renderer; i++)
-        use(&in, renderer, limits.max_blur_radius, wild, flags >> 5 & 1);
+    for (int i = 0; i < 1 + choice.again && renderer; i++)
+        use(in, renderer, limits.max_blur_radius, wild, flags >> 5 & 1);
     refocus_renderer_destroy(&renderer);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    const uint32_t drawn = draw(&data, &size);
+    struct input in = {data, size};
+
+    choice.most_side = drawn >> 28 ? SMALL_SIDE : MAX_SIDE;
+    choice.threads = !(drawn >> 24 & 15);
+    choice.again = !(drawn >> 21 & 7);
+    choice.few = (drawn >> 16 & 31) != 0;
+    render_input(&in);
     return 0;
 }

@@ -72,11 +72,20 @@ def seeds_of_edges():
     }
 
 
+def chosen(data):
+    """Behind two bytes for which draw.h gives pictures as large as they are said to be, as many threads,
+    and all that is done twice."""
+    first = 0
+    while (first + sum(data)) * 2654435769 >> 21 & 2047:
+        first += 1
+    return struct.pack(">H", first) + data
+
+
 def write(name, seeds):
     folder = CORPUS / name
     folder.mkdir(parents=True, exist_ok=True)
     for seed, data in seeds.items():
-        (folder / seed).write_bytes(data)
+        (folder / seed).write_bytes(chosen(data))
 
 
 def main():

@@ -1,6 +1,7 @@
 /* make_corpus.c: writes the seeds: make_corpus tests/fuzz/file/corpus. Run it after a change of
  * make.c; it needs a build with all formats. */
 #include "make_formats.h"
+#include "kept.h"
 #include "samples.h"
 
 #include <stdio.h>
@@ -200,6 +201,55 @@ static void seed_trailer(void)
     }
 }
 
+/* A result that holds its original and depth in one packet of XMP. */
+static void write_editable(const char *path, const struct refocus_photo *photo)
+{
+    uint8_t pixels[3 * 16 * 16] = {0};
+    const uint16_t samples[6] = {1, 2, 3, 4, 5, 6};
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, 16, 16, 48);
+    struct refocus_depth_write depth = refocus_depth_write_default();
+    struct refocus_editable editable = refocus_editable_default();
+    struct refocus_write_options options = refocus_write_options_default();
+    struct refocus_reason reason;
+
+    depth.disparity = samples;
+    depth.width = 3;
+    depth.height = 2;
+    depth.stride = 6;
+    editable.depth = &depth;
+    options.keep = photo;
+    options.editable = &editable;
+    if (refocus_image_write(path, &image, &options, &reason) != REFOCUS_OK) {
+        fprintf(stderr, "%s: %s\n", path, reason.text);
+        exit(1);
+    }
+}
+
+static void seed_editable_heic(void)
+{
+    struct bytes jpeg = make_jpeg(16, 16, false, false);
+    struct refocus_photo *photo = NULL, *result = NULL;
+    struct refocus_blob heic = {NULL, 0};
+    char path[1024];
+
+    snprintf(path, sizeof path, "%s/photo/editable.heic", root);
+    if (refocus_photo_read_memory(&photo, jpeg.data, jpeg.size, NULL, NULL) != REFOCUS_OK) {
+        exit(1);
+    }
+    write_editable(path, photo);
+    if (refocus_file_read(path, UINT64_MAX, &heic, NULL) != REFOCUS_OK ||
+        refocus_photo_read(&result, path, NULL, NULL) != REFOCUS_OK) {
+        exit(1);
+    }
+    seed("heif_boxes", "editable", heic.data, heic.size);
+    seed("xmp", "editable", rf_kept_of(result)->bytes.data, rf_kept_of(result)->bytes.size);
+    free(heic.data);
+    refocus_photo_free(&result);
+    refocus_photo_free(&photo);
+    bytes_free(&jpeg);
+}
+
 int main(int count, char **arguments)
 {
     if (count != 2) {
@@ -217,6 +267,7 @@ int main(int count, char **arguments)
     seed_dynamic();
     seed_formats();
     seed_trailer();
+    seed_editable_heic();
     seed_text("number", "decimal", " -12.5e-3 ");
     seed_text("number", "long", "123456789012345678901234567890.000000000000000000001");
     seed_text("number", "base64", "QUJD RA==");

@@ -370,7 +370,7 @@ static void a_lens_is_slow_sticks_and_errs(void **state)
     source =
         started(LENS_SCRIPT "lens-speed 0.5;lens-stop 2.5;lens-error 0.25", REFOCUS_SOURCE_FAST);
     assert_status(refocus_source_get_lens(source, &lens, &reason), REFOCUS_OK);
-    assert_int_equal(lens.modes, 7);
+    assert_int_equal(lens.modes, 15);
     assert_true(lens.dioptres && lens.least == 0 && lens.greatest == 4 && isnan(lens.position));
     assert_int_equal(look(source, &position), 0);
     assert_true(position == 0.25);
@@ -396,6 +396,16 @@ static void a_lens_is_slow_sticks_and_errs(void **state)
     for (int i = 0; i < 8; i++)
         look(source, &position);
     assert_true(position == 2 + 0.25); /* the middle is the subject */
+    assert_status(refocus_source_set_focus(source, REFOCUS_SOURCE_FOCUS_FIXED, 0, &reason),
+                  REFOCUS_OK);
+    look(source, &position);
+    assert_status(refocus_source_set_focus(source, REFOCUS_SOURCE_FOCUS_OFF, 9, &reason),
+                  REFOCUS_OK);
+    assert_int_equal(look(source, &position), 1);
+    assert_true(position == 1.5 + 0.25); /* the lens stops on its way, also when told twice */
+    assert_status(refocus_source_restart(source, NULL, &reason), REFOCUS_OK);
+    look(source, &position);
+    assert_true(position == 1.5 + 0.25);
     assert_status(refocus_source_lock_exposure(source, 1, &reason), REFOCUS_OK);
     refocus_source_close(&source);
 }

@@ -10,10 +10,11 @@
 
 static const int32_t one_channel[] = {0, 3000, -1000, 3000, 1000, 16, 32};
 
-/* A photo of four quarters, red, green / blue, white, and a map of grey quarters. */
-static struct bytes with_part(struct bytes part, bool indexed, int orientation)
+/* A photo of four quarters, red, green / blue, white, so many times as wide and as high as a map of
+ * grey quarters. */
+static struct bytes times_part(int times, struct bytes part, bool indexed, int orientation)
 {
-    struct bytes photo = make_jpeg(64, 32, false, false);
+    struct bytes photo = make_jpeg(32 * times, 16 * times, false, false);
 
     if (orientation > 1) {
         jpeg_insert_exif(&photo, make_exif(true, orientation));
@@ -23,6 +24,11 @@ static struct bytes with_part(struct bytes part, bool indexed, int orientation)
     }
     bytes_join(&photo, part);
     return photo;
+}
+
+static struct bytes with_part(struct bytes part, bool indexed, int orientation)
+{
+    return times_part(2, part, indexed, orientation);
 }
 
 static struct bytes xmp_part(const char *elements)
@@ -112,6 +118,8 @@ static void light_of_maps(void **state)
                       indexed, 1),
             -1, 4, 2, 0, 0.01);
         check_light(with_part(iso_part(1, one_channel), indexed, 1), -1, 3, 1, 0.016, 0.032);
+        /* a quarter as wide and high as the photo, grey */
+        check_light(times_part(4, iso_part(1, one_channel), indexed, 1), -1, 3, 1, 0.016, 0.032);
     }
 }
 

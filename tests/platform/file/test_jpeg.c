@@ -1,4 +1,7 @@
 /* test_jpeg.c: JPEG photos: orientation, EXIF, ICC. */
+#include <stdlib.h>
+#include <turbojpeg.h>
+
 #include "check.h"
 #include "original.h"
 
@@ -193,19 +196,103 @@ static void original_says_how_it_lies(void **state)
     }
 }
 
+enum { HALF_W = 33, HALF_H = 17 }; /* odd: the last samples of colour are of fewer pixels */
+
+/* Pixels as a JPEG with colour of half the size, at the best quality. */
+static struct bytes with_half_colour(const uint8_t *rgb)
+{
+    struct bytes jpeg = {NULL, 0};
+    unsigned char *data = NULL;
+    unsigned long size = 0;
+    tjhandle encoder = tjInitCompress();
+
+    assert_non_null(encoder);
+    assert_int_equal(tjCompress2(encoder, rgb, HALF_W, 0, HALF_H, TJPF_RGB, &data, &size,
+                                 TJSAMP_420, 100, TJFLAG_ACCURATEDCT),
+                     0);
+    tjDestroy(encoder);
+    bytes_add(&jpeg, data, size);
+    tjFree(data);
+    return jpeg;
+}
+
+/* As TurboJPEG enlarges the colour, by interpolation. */
+static void interpolated(uint8_t *rgb, struct bytes jpeg)
+{
+    tjhandle decoder = tjInitDecompress();
+
+    assert_non_null(decoder);
+    assert_int_equal(tjDecompress2(decoder, jpeg.data, (unsigned long)jpeg.size, rgb, HALF_W, 0,
+                                   HALF_H, TJPF_RGB, TJFLAG_ACCURATEDCT),
+                     0);
+    tjDestroy(decoder);
+}
+
+static long difference_of(const uint8_t *a, const uint8_t *b, int *most)
+{
+    long sum = 0;
+
+    *most = 0;
+    for (int i = 0; i < 3 * HALF_W * HALF_H; i++) {
+        const int d = abs(a[i] - b[i]);
+
+        *most = d > *most ? d : *most;
+        sum += d * d;
+    }
+    return sum;
+}
+
+/* An edge between samples of colour is sharp where luma has it, in columns and in rows: less than a
+ * quarter of the squared error that interpolation leaves. Where colour alone changes, it is
+ * interpolated as TurboJPEG does it, but for rounding. */
+static void colour_follows_luma(void **state)
+{
+    static const uint8_t bright[3] = {210, 90, 60}, dark[3] = {30, 60, 110};
+    uint8_t rgb[3 * HALF_W * HALF_H], plain[sizeof rgb];
+
+    (void)state;
+    for (int kind = 0; kind < 3; kind++) {
+        struct refocus_photo *photo;
+        struct bytes jpeg;
+        int most, most_plain;
+
+        for (int i = 0; i < HALF_W * HALF_H; i++) {
+            const bool here = kind == 1 ? i / HALF_W < 7 : i % HALF_W < 15;
+
+            memcpy(rgb + 3 * i, here ? bright : dark, 3);
+        }
+        for (int i = 0; kind == 2 && i < HALF_W * HALF_H; i++) /* luma of 90 on either side */
+            memcpy(rgb + 3 * i,
+                   i % HALF_W < 15 ? (uint8_t[]){150, 73, 27} : (uint8_t[]){30, 106, 168}, 3);
+        jpeg = with_half_colour(rgb);
+        interpolated(plain, jpeg);
+        photo = read_photo(jpeg, REFOCUS_OK);
+        assert_int_equal(photo->image->width, HALF_W);
+        assert_int_equal(photo->image->stride[0], 3 * HALF_W);
+        if (kind < 2) {
+            const long left = difference_of(plain, rgb, &most_plain);
+
+            assert_true(left > 50000);
+            assert_true(4 * difference_of(photo->image->plane[0], rgb, &most) < left);
+            assert_true(2 * most < most_plain);
+        } else {
+            difference_of(photo->image->plane[0], plain, &most);
+            assert_in_range(most, 0, 4);
+        }
+        refocus_photo_free(&photo);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
 #ifdef RF_HAVE_PNG
         cmocka_unit_test(orientation_of_png),
 #endif
-        cmocka_unit_test(icc_in_chunks),
-        cmocka_unit_test(icc_of_nothing),
-        cmocka_unit_test(exif_facts),
-        cmocka_unit_test(exif_without_sense),
-        cmocka_unit_test(bytes_too_many),
-        cmocka_unit_test(grey_jpeg_is_depth),
-        cmocka_unit_test(original_says_how_it_lies),
+        cmocka_unit_test(icc_in_chunks),       cmocka_unit_test(icc_of_nothing),
+        cmocka_unit_test(exif_facts),          cmocka_unit_test(exif_without_sense),
+        cmocka_unit_test(bytes_too_many),      cmocka_unit_test(grey_jpeg_is_depth),
+        cmocka_unit_test(colour_follows_luma), cmocka_unit_test(original_says_how_it_lies),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,6 +4,7 @@
 #include "png_chunks.h"
 #include "read.h"
 
+#include <math.h>
 #include <unistd.h>
 
 /* A PNG with chunks between its header and its pixels; the packet is freed. */
@@ -252,12 +253,94 @@ static void sides(void **state)
     }
 }
 
+static int write_editable(const char *name, const struct refocus_photo *photo,
+                          const struct refocus_editable *editable)
+{
+    struct refocus_write_options options = refocus_write_options_default();
+    struct refocus_reason reason;
+    char path[64];
+    int status;
+
+    options.keep = photo;
+    options.editable = editable;
+    snprintf(path, sizeof path, "/tmp/refocus-keep-%ld.%s", (long)getpid(), name);
+    status = refocus_image_write(path, photo ? photo->image : NULL, &options, &reason);
+    check_status(status, status, reason.text, __FILE__, __LINE__);
+    assert_int_equal(access(path, F_OK) == 0, status == REFOCUS_OK);
+    unlink(path);
+    return status;
+}
+
+/* One thing of an editable picture is wrong at a time: an error, and no file. */
+static void editables_refused(void **state)
+{
+    static uint16_t samples[8 * 4];
+    struct refocus_depth_write depth = refocus_depth_write_default();
+    struct refocus_editable good = refocus_editable_default(), bad;
+    struct refocus_photo *photo = read_photo(make_png(8, 4, 2, 8), REFOCUS_OK);
+    double *const lens[] = {&bad.focus_disparity, &bad.max_blur_radius, &bad.simulated_f_number};
+
+    (void)state;
+    depth.disparity = samples;
+    depth.width = 8;
+    depth.height = 4;
+    depth.stride = 16;
+    good.depth = &depth;
+    good.matte = samples;
+    good.matte_width = 8;
+    good.matte_height = 4;
+    good.matte_stride = 16;
+    assert_int_equal(write_editable("jpg", photo, &good), REFOCUS_OK);
+    assert_int_equal(write_editable("png", photo, &good), REFOCUS_ERR_UNSUPPORTED);
+    for (int i = 0; i < 6; i++) {
+        bad = good;
+        *lens[i % 3] = i < 3 ? NAN : -INFINITY;
+        assert_int_equal(write_editable("jpg", photo, &bad), REFOCUS_ERR_ARGUMENT);
+    }
+    for (int i = 0; i < 8; i++) {
+        bad = good;
+        bad.matte_width = i == 0 ? 0 : i == 1 ? 9 : i == 2 ? REFOCUS_MAX_SIDE + 1 : 8;
+        bad.matte_height = i == 3 ? 0 : i == 4 ? -4 : 4;
+        bad.matte_stride = i == 5 ? 17 : i == 6 ? 0 : i == 7 ? PTRDIFF_MIN : 16;
+        assert_int_equal(write_editable("jpg", photo, &bad), REFOCUS_ERR_ARGUMENT);
+    }
+    for (int i = 0; i < 3; i++) {
+        bad = good;
+        bad.struct_size = i == 0 ? 4 : sizeof bad;
+        bad.depth = i == 1 ? NULL : &depth;
+        depth.struct_size = i == 2 ? 4 : sizeof depth;
+        assert_int_equal(write_editable("jpg", photo, &bad), REFOCUS_ERR_ARGUMENT);
+    }
+    depth.struct_size = sizeof depth;
+    for (int i = 0; i < 9; i++) {
+        const struct refocus_depth_write whole = depth;
+
+        depth.disparity = i == 0 ? NULL : samples;
+        depth.width = i == 1 ? 0 : 8;
+        depth.height = i == 2 ? 0 : 4;
+        depth.stride = i == 3 ? 15 : 16;
+        depth.focus_x = i == 4 ? 1.1 : whole.focus_x;
+        depth.near_m = i == 5 ? INFINITY : whole.near_m;
+        depth.far_m = i == 6 ? NAN : whole.far_m;
+        depth.focus_distance = i == 7 ? NAN : whole.focus_distance;
+        depth.blur_at_infinity = i == 8 ? NAN : whole.blur_at_infinity;
+        assert_int_equal(write_editable("jpg", photo, &good), REFOCUS_ERR_ARGUMENT);
+        depth = whole;
+    }
+    assert_int_equal(write_editable("jpg", photo, &good), REFOCUS_OK);
+    refocus_photo_free(&photo);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(chunks),       cmocka_unit_test(nothing_is_made_up),
-        cmocka_unit_test(sides),        cmocka_unit_test(all_of_a_depth),
-        cmocka_unit_test(transparency), cmocka_unit_test(depth_beside_an_original),
+        cmocka_unit_test(chunks),
+        cmocka_unit_test(nothing_is_made_up),
+        cmocka_unit_test(sides),
+        cmocka_unit_test(all_of_a_depth),
+        cmocka_unit_test(transparency),
+        cmocka_unit_test(depth_beside_an_original),
+        cmocka_unit_test(editables_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

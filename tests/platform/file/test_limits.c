@@ -28,20 +28,21 @@ static int read_within(struct bytes file, struct refocus_read_limits limits)
         assert_int_equal(read_within(file, within), REFOCUS_ERR_SIZE);                             \
     } while (0)
 
-static struct bytes grey(void)
+static struct bytes grey(bool tall)
 {
-    const char text[] = "P5\n4 3\n255\n............";
+    const char text[] = "P5\n4 3\n255\n............", upright[] = "P5\n3 4\n255\n............";
 
-    return bytes_copy(text, sizeof text - 1);
+    return bytes_copy(tall ? upright : text, sizeof text - 1);
 }
 
 static void pictures(void **state)
 {
     (void)state;
-    NEEDS(grey(), max_side, 4);
-    NEEDS(grey(), max_pixels, 12);
-    NEEDS(grey(), max_bytes, 36);
-    NEEDS(grey(), max_memory, 23 + 12 + 36); /* file, samples, RGB */
+    NEEDS(grey(false), max_side, 4);
+    NEEDS(grey(true), max_side, 4);
+    NEEDS(grey(false), max_pixels, 12);
+    NEEDS(grey(false), max_bytes, 36);
+    NEEDS(grey(false), max_memory, 23 + 12 + 36); /* file, samples, RGB */
 }
 
 /* A side beyond the default, with so few pixels that nothing else forbids it. */

@@ -213,12 +213,15 @@ static int write_one(const char *path, long fail)
 static void writers(void **state)
 {
     static const char *const endings[] = {
-        ".ppm", ".pgm", ".pfm",
+        ".ppm",  ".pgm", ".pfm",
 #ifdef RF_HAVE_PNG
         ".png",
 #endif
 #ifdef RF_HAVE_JPEG
         ".jpg",
+#endif
+#ifdef RF_HAVE_HEIC
+        ".heic",
 #endif
     };
 
@@ -228,6 +231,9 @@ static void writers(void **state)
         long total;
 
         snprintf(path, sizeof path, "/tmp/refocus-memory-%ld%s", (long)getpid(), endings[i]);
+        if (strcmp(endings[i], ".heic") == 0 && write_one(path, 0) == REFOCUS_ERR_UNSUPPORTED) {
+            continue; /* libheif has no encoder here */
+        }
         assert_int_equal(write_one(path, 0), REFOCUS_OK);
         total = failing.calls;
         assert_int_equal(unlink(path), 0);
@@ -306,7 +312,7 @@ static int write_kept(const char *path, const struct refocus_photo *photo, long 
     depth.stride = 6;
     editable.depth = &depth;
     options.keep = photo;
-    if (strstr(path, ".jpg") && photo->info->original_used == 0) {
+    if (!strstr(path, ".png") && photo->info->original_used == 0) {
         options.editable = &editable; /* the photo and depth go into the file */
     }
     options.light = strstr(path, ".jpg") ? &light : NULL; /* a gain map lies behind it */
@@ -315,7 +321,8 @@ static int write_kept(const char *path, const struct refocus_photo *photo, long 
     status = refocus_image_write(path, &image, &options, NULL);
     failing.fail_at = 0;
     /* The C library gets the memory of files in memory, which is not counted until it is freed. */
-    if (failing.live > 0 || failing.live < -streams || (!fail && failing.live != -streams)) {
+    if (failing.live > 0 || failing.live < -streams ||
+        (status == REFOCUS_OK && failing.live != -streams)) {
         fail_msg("%s: allocation %ld keeps %ld", path, fail, failing.live);
     }
     return status;
@@ -340,10 +347,17 @@ static void become(struct refocus_photo *photo, const char *container)
 }
 
 /* The photo's packets lose depth and keep other properties, in an extended packet too; one without
- * an original becomes editable. `streams` JPEGs are written in memory on the way to a JPEG. */
+ * an original becomes editable. `streams` pictures are written in memory on the way to a JPEG, the
+ * gain map among them, which a HEIC does not have. */
 static void keepers_of(bool has_original, const char *container, int streams)
 {
-    static const char *const endings[] = {".jpg", ".png"};
+    static const char *const endings[] = {
+        ".jpg",
+        ".png",
+#ifdef RF_HAVE_HEIC
+        ".heic",
+#endif
+    };
     struct gdepth gdepth = {.format = "RangeInverse",
                             .extra = "xmlns:q=\"q:\" q:a=\"1\"",
                             .depth = make_png(30, 20, 0, 16)};
@@ -356,13 +370,18 @@ static void keepers_of(bool has_original, const char *container, int streams)
     if (container) {
         become(photo, container);
     }
-    for (int i = 0; i < 2; i++) {
-        const int in_memory = i == 0 ? streams : 0;
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+        const int in_memory = i == 0 ? streams : i == 2 ? streams - 1 : 0;
         char path[64];
         long total;
+        int status;
 
         snprintf(path, sizeof path, "/tmp/refocus-memory-%ld%s", (long)getpid(), endings[i]);
-        assert_int_equal(write_kept(path, photo, 0, in_memory), REFOCUS_OK);
+        status = write_kept(path, photo, 0, in_memory);
+        if (i == 2 && status == REFOCUS_ERR_UNSUPPORTED) {
+            continue; /* libheif has no encoder here */
+        }
+        assert_int_equal(status, REFOCUS_OK);
         total = failing.calls;
         assert_true(total > 4);
         assert_int_equal(unlink(path), 0);

@@ -1,5 +1,6 @@
-/* test_plain.c: formats without metadata of depth: PNM, PFM, PNG; and the words for depth units. */
+/* test_plain.c: formats without metadata of depth: PNM and PFM; and the words for depth units. */
 #include "check.h"
+#include "formats.h"
 #include "make_formats.h"
 
 #include <locale.h>
@@ -292,172 +293,6 @@ static void limits_are_kept(void **state)
     bytes_free(&file);
 }
 
-#ifdef RF_HAVE_PNG
-static void png_kinds(void **state)
-{
-    static const int kinds[][2] = {{0, 8}, {0, 16}, {2, 8}, {2, 16}, {3, 8},
-                                   {4, 8}, {4, 16}, {6, 8}, {6, 16}};
-
-    (void)state;
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-        const int type = kinds[i][0], bits = kinds[i][1];
-        struct refocus_photo *photo = read_photo(make_png(7, 5, type, bits), REFOCUS_OK);
-
-        assert_string_equal(photo->info->container, "PNG");
-        assert_int_equal(photo->info->stored_bits, bits);
-        assert_int_equal(photo->image->width, 7);
-        assert_true(!photo->deep->plane[0] == (bits == 8));
-        for (int y = 0; y < 5; y++) {
-            for (int x = 0; x < 7; x++) {
-                for (int c = 0; c < 3; c++) {
-                    const unsigned max = bits == 16 ? 65535 : 255;
-                    const unsigned v = pattern(x, y, type & 2 && type != 3 ? c : 0, max);
-                    const int code = pixel_at(photo->image, x, y)[c];
-                    uint16_t all;
-
-                    if (bits == 16) { /* dithered: one of the two beside it */
-                        assert_true(fabs(code - v * 255.0 / max) < 1);
-                        memcpy(&all,
-                               photo->deep->plane[0] + y * photo->deep->stride[0] + 2 * (3 * x + c),
-                               2);
-                        assert_int_equal(all, v);
-                    } else {
-                        assert_int_equal(code, (v * 255 + max / 2) / max);
-                    }
-                }
-            }
-        }
-        refocus_photo_free(&photo);
-    }
-}
-
-enum { DITHER_WIDE = 128, DITHER_HIGH = 64 };
-
-/* 16 bits of a gradient that climbs a code from left to right, and grey on its right. */
-static unsigned shallow(int x, int y, int channel)
-{
-    const int across = x < 96 ? x : 2 * (x - 96);
-
-    return (unsigned)(25700 + 3 * across + (x < 96 ? 31 * channel : 0) + y % 2);
-}
-
-/* Means over 8 x 8 pixels are kept, wherever they lie; white, black and the codes that 8
- * bits have stay what they are; grey stays grey; and twice is the same. */
-static void more_than_8_bits_are_dithered(void **state)
-{
-    static uint8_t samples[DITHER_WIDE * DITHER_HIGH * 6];
-    struct refocus_photo *photo, *again;
-    int rounded = 0;
-
-    (void)state;
-    for (int i = 0; i < DITHER_WIDE * DITHER_HIGH * 3; i++) {
-        const unsigned v = shallow(i / 3 % DITHER_WIDE, i / 3 / DITHER_WIDE, i % 3);
-
-        samples[2 * i] = (uint8_t)(v >> 8);
-        samples[2 * i + 1] = (uint8_t)v;
-    }
-    photo = read_photo(make_png_raw(DITHER_WIDE, DITHER_HIGH, 2, 16, samples, NULL), REFOCUS_OK);
-    again = read_photo(make_png_raw(DITHER_WIDE, DITHER_HIGH, 2, 16, samples, NULL), REFOCUS_OK);
-    assert_memory_equal(photo->image->plane[0], again->image->plane[0], sizeof samples / 2);
-    refocus_photo_free(&again);
-    for (int top = 0; top <= DITHER_HIGH - 8; top += 3) {
-        for (int left = 0; left <= DITHER_WIDE - 8; left++) {
-            for (int c = 0; c < 3; c++) {
-                double code = 0, wanted = 0, nearest = 0;
-
-                for (int i = 0; i < 64; i++) {
-                    const int x = left + i % 8, y = top + i / 8;
-                    const double v = shallow(x, y, c) / 257.0;
-
-                    code += pixel_at(photo->image, x, y)[c] / 64.0;
-                    wanted += v / 64.0;
-                    nearest += floor(v + 0.5) / 64.0;
-                    assert_true(fabs(pixel_at(photo->image, x, y)[c] - v) < 1);
-                }
-                assert_true(fabs(code - wanted) < 0.06);
-                rounded += fabs(nearest - wanted) > 0.4;
-            }
-        }
-    }
-    assert_true(rounded > 100); /* a place where codes rounded to nearest are far off */
-    for (int x = 96; x < DITHER_WIDE; x++) {
-        const uint8_t *const pixel = pixel_at(photo->image, x, 5);
-
-        assert_true(pixel[0] == pixel[1] && pixel[1] == pixel[2]);
-    }
-    refocus_photo_free(&photo);
-    for (int code = 0; code < 256; code++) {
-        memset(samples, code, sizeof samples); /* 257 code */
-        photo = read_photo(make_png_raw(9, 9, 0, 16, samples, NULL), REFOCUS_OK);
-        for (int i = 0; i < 9 * 9; i++) {
-            assert_int_equal(pixel_at(photo->image, i % 9, i / 9)[0], code);
-        }
-        refocus_photo_free(&photo);
-    }
-}
-
-static void png_small_samples(void **state)
-{
-    /* 5 pixels of 2 bits: 0 1 2 3 0 */
-    struct refocus_photo *photo =
-        read_photo(make_png_raw(5, 1, 0, 2, (const uint8_t *)"\x1b\x00", NULL), REFOCUS_OK);
-
-    (void)state;
-    assert_int_equal(pixel_at(photo->image, 1, 0)[0], 85);
-    assert_int_equal(pixel_at(photo->image, 3, 0)[0], 255);
-    refocus_photo_free(&photo);
-}
-
-static void png_depth(void **state)
-{
-    struct refocus_photo *photo = read_depth(make_png(6, 4, 0, 16), "5000/m", REFOCUS_OK);
-    uint8_t grey_rgb[2 * 3 * 2];
-
-    (void)state;
-    assert_int_equal(photo->depth->sample, REFOCUS_SAMPLE_U16);
-    assert_int_equal(sample_at(photo->depth, 5, 3), pattern(5, 3, 0, 65535));
-    assert_near(photo->depth->metres_per_unit, 1 / 5000.0);
-    refocus_photo_free(&photo);
-    read_depth(make_png(6, 4, 2, 8), NULL, REFOCUS_ERR_NO_DEPTH);
-    for (int i = 0; i < 12; i++) {
-        grey_rgb[i] = (uint8_t)(i / 3 * 20);
-    }
-    photo = read_depth(make_png_raw(2, 2, 2, 8, grey_rgb, NULL), NULL, REFOCUS_OK);
-    assert_int_equal(sample_at(photo->depth, 1, 1), 60);
-    assert_true(photo->depth->value_near == 255);
-    refocus_photo_free(&photo);
-    grey_rgb[11] ^= 1;
-    read_depth(make_png_raw(2, 2, 2, 8, grey_rgb, NULL), NULL, REFOCUS_ERR_NO_DEPTH);
-}
-
-/* Only the header's size is changed, its checksum mended. */
-static struct bytes png_of_size(uint64_t width, uint64_t height)
-{
-    struct bytes png = {NULL, 0}, header = {NULL, 0};
-
-    bytes_add(&png, "\x89PNG\r\n\x1a\n", 8);
-    bytes_number(&header, width, 4, true);
-    bytes_number(&header, height, 4, true);
-    bytes_add(&header, "\10\2\0\0\0", 5);
-    png_chunk(&png, "IHDR", header.data, header.size);
-    png_chunk(&png, "IDAT", "x", 1);
-    png_chunk(&png, "IEND", "", 0);
-    bytes_free(&header);
-    return png;
-}
-
-static void png_absurd(void **state)
-{
-    (void)state;
-    read_photo(png_of_size(0x7fffffff, 0x7fffffff), REFOCUS_ERR_SIZE);
-    read_photo(png_of_size(65535, 65535), REFOCUS_ERR_SIZE);
-    read_photo(png_of_size(65536, 1), REFOCUS_ERR_SIZE);
-    read_photo(png_of_size(0x80000000u, 1), REFOCUS_ERR_FORMAT);
-    read_photo(png_of_size(0, 1), REFOCUS_ERR_FORMAT);
-    read_photo(png_of_size(8, 8), REFOCUS_ERR_FORMAT);
-}
-#endif
-
 static void numbers_ignore_the_locale(void **state)
 {
     (void)state;
@@ -469,10 +304,37 @@ static void numbers_ignore_the_locale(void **state)
     setlocale(LC_NUMERIC, "C");
 }
 
+/* "one, two or three", each as it is listed. */
+static void endings_in_words(void **state)
+{
+    (void)state;
+    for (int depth = 0; depth < 2; depth++) {
+        char words[192], expected[192] = "";
+        int count = 0;
+
+        while (refocus_file_ending(depth, count)) {
+            count++;
+        }
+        for (int i = 0; i < count; i++) {
+            strcat(expected, i == 0 ? "" : i == count - 1 ? " or " : ", ");
+            strcat(expected, refocus_file_ending(depth, i));
+        }
+        assert_true(count > 1);
+        rf_list_endings(words, sizeof words, depth);
+        assert_string_equal(words, expected);
+    }
+}
+
 static void formats_are_named(void **state)
 {
     (void)state;
     assert_non_null(strstr(refocus_file_formats(), "PFM"));
+    for (int depth = 0; depth < 2; depth++) {
+        assert_non_null(refocus_file_ending(depth, 0));
+        assert_non_null(refocus_file_ending(depth, 1));
+        assert_string_not_equal(refocus_file_ending(depth, 0), refocus_file_ending(depth, 1));
+        assert_null(refocus_file_ending(depth, -1));
+    }
 #ifdef RF_HAVE_PNG
     assert_non_null(strstr(refocus_file_formats(), "PNG"));
 #else
@@ -569,14 +431,8 @@ int main(void)
         cmocka_unit_test(range_overrules),
         cmocka_unit_test(unknown_content),
         cmocka_unit_test(limits_are_kept),
-#ifdef RF_HAVE_PNG
-        cmocka_unit_test(png_kinds),
-        cmocka_unit_test(more_than_8_bits_are_dithered),
-        cmocka_unit_test(png_small_samples),
-        cmocka_unit_test(png_depth),
-        cmocka_unit_test(png_absurd),
-#endif
         cmocka_unit_test(numbers_ignore_the_locale),
+        cmocka_unit_test(endings_in_words),
         cmocka_unit_test(formats_are_named),
         cmocka_unit_test(modules_are_missed_in_words),
 #ifdef RF_HAVE_JPEG

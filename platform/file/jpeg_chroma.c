@@ -1,0 +1,215 @@
+/* jpeg_chroma.c: colour that a JPEG stores at half of its size is brought to the size of luma. */
+#include "jpeg_chroma.h"
+
+#include <string.h>
+
+enum {
+    VARIANCE = 64 << 12, /* in the units of variances below, Q4 and 256 of them */
+    SLOPE_ONE = 1 << 10,
+};
+
+/* Sums over three rows, weights 1 2 1, with a column more on either side. */
+struct columns {
+    int32_t *y, *yy, *c[2], *yc[2];
+};
+
+/* Rows between two of samples, 4 times them. */
+struct between {
+    int32_t *y, *c[2], *slope[2];
+};
+
+struct chroma {
+    int width, height, columns, rows;
+    const uint8_t *luma, *in[2];
+    uint16_t *means;   /* luma over 2 x 2 pixels, Q2 */
+    int16_t *slope[2]; /* Q10: below 8, as chroma deviates by 128 and 128 s / (s^2 + 64) is */
+    struct columns column;
+    struct between between;
+};
+
+enum { PLANES = 3, ROWS = 6 + 5 };
+
+uint64_t rf_jpeg_chroma_bytes(int32_t width, int32_t height)
+{
+    const uint64_t columns = ((uint64_t)width + 1) / 2, rows = ((uint64_t)height + 1) / 2;
+
+    return (columns + 2) * ROWS * sizeof(int32_t) + columns * rows * PLANES * sizeof(uint16_t);
+}
+
+static void lay_out(struct chroma *s, void *work)
+{
+    const size_t n = (size_t)s->columns + 2, samples = (size_t)s->columns * (size_t)s->rows;
+    int32_t *at = work;
+    int32_t **row[ROWS] = {&s->column.y,         &s->column.yy,       &s->column.c[0],
+                           &s->column.c[1],      &s->column.yc[0],    &s->column.yc[1],
+                           &s->between.y,        &s->between.c[0],    &s->between.c[1],
+                           &s->between.slope[0], &s->between.slope[1]};
+
+    for (int i = 0; i < ROWS; i++, at += n)
+        *row[i] = at;
+    s->means = (uint16_t *)at;
+    s->slope[0] = (int16_t *)(s->means + samples);
+    s->slope[1] = s->slope[0] + samples;
+}
+
+static size_t row_at(const struct chroma *s, int row)
+{
+    const int last = s->rows - 1;
+
+    return (size_t)(row < 0 ? 0 : row > last ? last : row) * (size_t)s->columns;
+}
+
+/* Sums of luma over 2 x 2 pixels; the last ones of odd sides count twice. */
+static void reduce(const struct chroma *s)
+{
+    for (int j = 0; j < s->rows; j++) {
+        const uint8_t *restrict up = s->luma + (size_t)(2 * j) * (size_t)(2 * s->columns);
+        const uint8_t *restrict down = 2 * j + 1 < s->height ? up + 2 * s->columns : up;
+        uint16_t *restrict out = s->means + row_at(s, j);
+        const int pairs = s->width / 2;
+
+        for (int i = 0; i < pairs; i++)
+            out[i] = (uint16_t)(up[2 * i] + up[2 * i + 1] + down[2 * i] + down[2 * i + 1]);
+        if (pairs < s->columns)
+            out[pairs] = (uint16_t)(2 * (up[2 * pairs] + down[2 * pairs]));
+    }
+}
+
+static void pad(int32_t *row, int n)
+{
+    row[0] = row[1];
+    row[n + 1] = row[n];
+}
+
+static void add_rows(const struct chroma *s, int j)
+{
+    const int n = s->columns;
+    int32_t *restrict y = s->column.y, *restrict yy = s->column.yy;
+
+    memset(y, 0, ((size_t)n + 2) * 6 * sizeof *y); /* all of struct columns */
+    for (int v = -1; v <= 1; v++) {
+        const uint16_t *restrict means = s->means + row_at(s, j + v);
+        const int weight = v ? 1 : 2;
+
+        for (int i = 0; i < n; i++) {
+            y[i + 1] += weight * means[i];
+            yy[i + 1] += weight * means[i] * means[i];
+        }
+        for (int k = 0; k < 2; k++) {
+            const uint8_t *restrict in = s->in[k] + row_at(s, j + v);
+            int32_t *restrict c = s->column.c[k], *restrict yc = s->column.yc[k];
+
+            for (int i = 0; i < n; i++) {
+                c[i + 1] += weight * (in[i] - 128);
+                yc[i + 1] += weight * means[i] * (in[i] - 128);
+            }
+        }
+    }
+    pad(y, n);
+    pad(yy, n);
+    for (int k = 0; k < 2; k++) {
+        pad(s->column.c[k], n);
+        pad(s->column.yc[k], n);
+    }
+}
+
+static inline int32_t three(const int32_t *p)
+{
+    return p[-1] + 2 * p[0] + p[1];
+}
+
+/* Slopes of a row of samples. The largest sum is 16 x 16 x 1020^2 < 2^28. */
+static void slopes(const struct chroma *s, int j)
+{
+    add_rows(s, j);
+    for (int k = 0; k < 2; k++) {
+        const int32_t *restrict y = s->column.y + 1, *restrict yy = s->column.yy + 1;
+        const int32_t *restrict c = s->column.c[k] + 1, *restrict yc = s->column.yc[k] + 1;
+        int16_t *restrict out = s->slope[k] + row_at(s, j);
+
+        for (int i = 0; i < s->columns; i++) {
+            const int32_t mean = three(y + i);
+            const int32_t variance = 16 * three(yy + i) - mean * mean;
+            const int32_t both = 16 * three(yc + i) - mean * three(c + i);
+
+            /* Covariances are of Q2 and variances of Q4. */
+            out[i] = (int16_t)((float)both * (4.0F * SLOPE_ONE) / (float)(variance + VARIANCE));
+        }
+    }
+}
+
+/* Sets what lies between two rows of samples: 3 of the nearer one and 1 of the other. */
+static void blend_rows(const struct chroma *s, int near, int far)
+{
+    const size_t p = row_at(s, near), q = row_at(s, far);
+    const int n = s->columns;
+    int32_t *restrict y = s->between.y;
+
+    for (int i = 0; i < n; i++)
+        y[i + 1] = 3 * s->means[p + (size_t)i] + s->means[q + (size_t)i];
+    pad(y, n);
+    for (int k = 0; k < 2; k++) {
+        const uint8_t *restrict in = s->in[k];
+        const int16_t *restrict slope = s->slope[k];
+        int32_t *restrict c = s->between.c[k], *restrict a = s->between.slope[k];
+
+        for (int i = 0; i < n; i++) {
+            c[i + 1] = 3 * (in[p + (size_t)i] - 128) + in[q + (size_t)i] - 128;
+            a[i + 1] = 3 * slope[p + (size_t)i] + slope[q + (size_t)i];
+        }
+        pad(c, n);
+        pad(a, n);
+    }
+}
+
+static inline uint8_t code_of(int v)
+{
+    return (uint8_t)(v < 0 ? 0 : v > 255 ? 255 : v);
+}
+
+/* Chroma of a pixel in Q6: between samples `near` and `far`. `over` is how far its luma is above
+ * the mean, Q6. The slope is Q10 once its sixteenth is taken, below 2^13, and `over` below 2^14. */
+static inline int chroma_at(const int32_t *c, const int32_t *slope, int near, int far, int over)
+{
+    const int value = 3 * c[near] + c[far], a = (3 * slope[near] + slope[far]) >> 4;
+    const int q6 = (value * 4096 + a * over + 512) >> 10;
+
+    return q6 < -8192 ? -8192 : q6 > 8191 ? 8191 : q6;
+}
+
+/* The equations of JFIF, Q16; chroma is Q6, so that products are below 2^30. */
+static inline void pixel(const struct between *b, uint8_t *out, int y, int near, int far)
+{
+    const int over = 64 * y - (3 * b->y[near] + b->y[far]);
+    const int cb = chroma_at(b->c[0], b->slope[0], near, far, over);
+    const int cr = chroma_at(b->c[1], b->slope[1], near, far, over);
+    const int half = 1 << 21;
+
+    out[0] = code_of(y + ((91881 * cr + half) >> 22));
+    out[1] = code_of(y - ((22554 * cb + 46802 * cr + half) >> 22));
+    out[2] = code_of(y + ((116130 * cb + half) >> 22));
+}
+
+void rf_jpeg_chroma(struct rf_raster *raster, const struct rf_jpeg_planes *planes, void *work)
+{
+    const int w = raster->width, h = raster->height;
+    struct chroma s = {.width = w,
+                       .height = h,
+                       .columns = (w + 1) / 2,
+                       .rows = (h + 1) / 2,
+                       .luma = planes->y,
+                       .in = {planes->chroma[0], planes->chroma[1]}};
+
+    lay_out(&s, work);
+    reduce(&s);
+    for (int j = 0; j < s.rows; j++)
+        slopes(&s, j);
+    for (int y = 0; y < h; y++) {
+        const uint8_t *in = planes->y + (size_t)y * (size_t)(2 * s.columns);
+        uint8_t *out = raster->pixels + (size_t)y * rf_raster_stride(raster);
+
+        blend_rows(&s, y / 2, y & 1 ? y / 2 + 1 : y / 2 - 1);
+        for (int x = 0; x < w; x++, out += 3) /* samples are one later in padded rows */
+            pixel(&s.between, out, in[x], x / 2 + 1, x & 1 ? x / 2 + 2 : x / 2);
+    }
+}

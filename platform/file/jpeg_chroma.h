@@ -1,0 +1,39 @@
+/* jpeg_chroma.h: colour that a JPEG stores at half of its size is brought to the size of luma. */
+#ifndef RF_FILE_JPEG_CHROMA_H
+#define RF_FILE_JPEG_CHROMA_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "raster.h"
+
+/* Planes of Y, Cb and Cr, full range, the latter two of (width + 1) / 2 by (height + 1) / 2
+ * samples, each the mean of four pixels. Rows are packed; those of Y have twice as many samples,
+ * the last of which is beyond an odd width. */
+struct rf_jpeg_planes {
+    const uint8_t *y, *chroma[2];
+};
+
+/* Bytes that rf_jpeg_chroma() works in. */
+uint64_t rf_jpeg_chroma_bytes(int32_t width, int32_t height);
+
+/*
+ * Writes the pixels of a raster, R, G, B. With Y' the means of Y over the squares of a sample, the
+ * slope of each chroma along luma is
+ *
+ *     a = cov(Y', C) / (var(Y') + 64)        over 3 x 3 samples, weights 1 2 1
+ *
+ * (the guided filter of He et al. 2010, its bound on variance a deviation of 8 codes), and a pixel
+ * has
+ *
+ *     C + a (Y - Y')
+ *
+ * with C, a and Y' between samples by the weights 9 3 3 1 that decoders interpolate by. So colour
+ * changes where luma does, and is interpolated where luma is flat. Each sum is exact; the one
+ * division is of single precision.
+ *
+ * `work` is aligned to 8 bytes.
+ */
+void rf_jpeg_chroma(struct rf_raster *raster, const struct rf_jpeg_planes *planes, void *work);
+
+#endif

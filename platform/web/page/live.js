@@ -1,0 +1,76 @@
+// The live view of a camera: the newest frame with the settings of the controls, one question at a
+// time, so that a slow way to the server shows fewer frames and no older ones; and its capture,
+// which is opened as a photo.
+import { $, announce, announceError } from './dom.js';
+import { listen, model, settings } from './model.js';
+import { capture, frame } from './server.js';
+import { openFile, openLiveAgain } from './opening.js';
+import { theStage } from './viewer.js';
+import { say } from './words.js';
+
+const PAUSE_MS = 500; // after an error that may pass
+
+let running = false;
+
+/** An error that a while may mend: too much is asked, or the server cannot be reached. */
+const passes = (error) => error.status === 503 || error.status === 0 || error.status === 409;
+
+async function run() {
+    const { photo } = model;
+    let after = 0;
+
+    running = true;
+    while (model.photo === photo) {
+        if (document.hidden || document.body.dataset.screen === 'open') {
+            await new Promise((done) => setTimeout(done, PAUSE_MS));
+            continue;
+        }
+        try {
+            const { bitmap, number } = await frame(photo.session, settings(),
+                { kind: model.view, size: theStage().sizeSeen(), after });
+            after = number;
+            if (model.photo === photo)
+                theStage().setPicture('after', bitmap);
+            else
+                bitmap.close();
+        } catch (error) {
+            if (error.status === 410)
+                break; // the session is opened again by others
+            announceError(error);
+            if (!passes(error))
+                break;
+            await new Promise((done) => setTimeout(done, PAUSE_MS));
+        }
+    }
+    running = false;
+    if (model.photo?.live && model.photo !== photo)
+        run();
+}
+
+async function take() {
+    const { photo } = model;
+
+    $('capture').disabled = true;
+    announce(say('capturing'));
+    try {
+        const { blob } = await capture(photo.session, settings());
+        const time = new Date().toISOString().slice(0, 19).replaceAll(':', '-');
+        await openFile(new File([blob], `live-${time}.jpg`, { type: 'image/jpeg' }));
+    } catch (error) {
+        announceError(error);
+    }
+    $('capture').disabled = false;
+}
+
+export function startLive() {
+    $('capture').addEventListener('click', take);
+    $('live').addEventListener('click', openLiveAgain);
+    listen((cause) => {
+        if (cause !== 'photo')
+            return;
+        $('tab-pull').hidden = Boolean(model.photo.live);
+        document.body.classList.toggle('live', Boolean(model.photo.live));
+        if (model.photo.live && !running)
+            run();
+    });
+}

@@ -1,0 +1,159 @@
+/* model.c: costs of depths between frames, by how their sharpness compares, for stacks of nine
+ * frames and fewer.
+ *
+ * A surface at a distance of x steps from the focus of a frame has a mean square of sharpness there
+ * of
+ *
+ *     1 / (1 + rho x^2)
+ *
+ * times that in focus: blur grows in proportion to x, and rho is its square a step on, against the
+ * finest detail of the texture. A depth costs the share of the sharpness that is in other frames
+ * than this says. Of 2, the exponent of texture whose spectrum falls as 1 / f^2, of 1.5, that of
+ * edges, and of 1, the last was best on path-traced scenes: windows hold surfaces of several
+ * depths.
+ *
+ * Three frames and more tell rho from depth: of six, each a third of the last, the one that fits
+ * best counts. The ratio of neighbours is at most 1 + rho, so the first is that of the greatest
+ * ratios in the photo. Two frames do not tell: rho is then the same everywhere, and where nothing
+ * is in focus in either, depth is stretched to the ends.
+ */
+#include "focus_stack/focus_stack.h"
+
+#include <math.h>
+
+enum {
+    NOISE = 1600, /* as in costs.c, in quarters of a squared code */
+    APART = 13,   /* samples from one that is looked at to the next */
+    BINS = 128,   /* for ratios, four to an octave */
+    LEAST_RATIO = 4,
+    ONE = 4096, /* a share of all */
+    MOST = 85,  /* cost of a square, so that three fit a byte */
+};
+
+int rf_stack_sub(int frames)
+{
+    static const int sub[RF_STACK_FEW + 1] = {1, 1, 12, 6, 5, 3, 3, 2, 2, 2};
+
+    return frames <= RF_STACK_FEW ? sub[frames] : 1;
+}
+
+static uint32_t square(uint16_t sharpness)
+{
+    const uint32_t v = sharpness >> 3;
+
+    return v * v;
+}
+
+static int bin_of(uint64_t more, uint64_t less)
+{
+    const uint64_t ratio = 4 * more / less;
+    int octave = 0;
+
+    while (ratio >> octave >= 8)
+        octave++;
+    return 4 * octave + (int)(ratio >> octave & 3);
+}
+
+/* The ratio of the sharpness of neighbours that one in so many samples with texture exceeds. */
+static double ratio_of(const struct refocus_stack *s, uint32_t one_in)
+{
+    const size_t samples = (size_t)s->columns * (size_t)s->rows;
+    uint32_t count[BINS] = {0}, all = 0, beyond = 0;
+    int bin = BINS;
+
+    for (size_t i = 0; i < samples; i += APART)
+        for (int k = 0; k + 1 < s->count; k++) {
+            const uint64_t a = square(s->frame[k].sharpness[i]);
+            const uint64_t b = square(s->frame[k + 1].sharpness[i]);
+
+            if (a < 4 * NOISE && b < 4 * NOISE)
+                continue;
+            count[bin_of((a > b ? a : b) + NOISE / 4, (a > b ? b : a) + NOISE / 4)]++;
+            all++;
+        }
+    while (bin > 0 && beyond * one_in <= all)
+        beyond += count[--bin];
+
+    const double ratio = ldexp(1 + (bin & 3) / 4.0, bin / 4);
+
+    return ratio > LEAST_RATIO ? ratio : LEAST_RATIO;
+}
+
+/* The shares of a depth that lies at a position. */
+static void share_out(const struct refocus_stack *s, int16_t (*share)[RF_STACK_FEW_DEPTHS], int d,
+                      double at, double rho)
+{
+    const double first = s->frame[0].position;
+    const double step = (s->frame[s->count - 1].position - first) / (s->count - 1);
+    double sharp[RF_STACK_FEW], sum = 0;
+
+    for (int k = 0; k < s->count; k++) {
+        const double x = (at - s->frame[k].position) / step;
+
+        sharp[k] = 1 / (1 + rho * x * x);
+        sum += sharp[k];
+    }
+    for (int k = 0; k < s->count; k++)
+        share[k][d] = (int16_t)(sharp[k] / sum * ONE + 0.5);
+}
+
+void rf_stack_model(struct refocus_stack *s)
+{
+    double rho = ratio_of(s, s->count > 2 ? 50 : 20) - 1;
+
+    s->models = s->count > 2 ? RF_STACK_MODELS : 1;
+    for (int m = 0; m < s->models; m++) {
+        for (int d = 0; d < s->depths; d++) {
+            const int k = rf_stack_clamp(d / s->sub, s->count - 2);
+            const double below = s->frame[k].position, above = s->frame[k + 1].position;
+
+            share_out(s, s->share[m], d, below + (above - below) * (d - k * s->sub) / s->sub, rho);
+        }
+        rho /= 3;
+    }
+}
+
+/* n, at least the number of depths, is known to the compiler. */
+static inline void add_costs(const struct refocus_stack *s, uint8_t *cost, const uint32_t *mean,
+                             int n)
+{
+    int16_t least[RF_STACK_FEW_DEPTHS], share[RF_STACK_FEW];
+    uint64_t sum = 0;
+
+    for (int k = 0; k < s->count; k++)
+        sum += mean[k];
+    for (int k = 0; k < s->count; k++)
+        share[k] = (int16_t)((uint64_t)mean[k] * ONE / (sum + 1));
+    for (int d = 0; d < n; d++)
+        least[d] = 2 * ONE;
+    for (int m = 0; m < s->models; m++) {
+        int16_t wrong[RF_STACK_FEW_DEPTHS] = {0};
+
+        for (int k = 0; k < s->count; k++) {
+            const int16_t *restrict model = s->share[m][k], here = share[k];
+
+            /* The difference of the larger and the smaller: lanes stay of 16 bits. */
+            for (int d = 0; d < n; d++) {
+                const int16_t more = here > model[d] ? here : model[d];
+                const int16_t less = here < model[d] ? here : model[d];
+
+                wrong[d] = (int16_t)(wrong[d] + more - less);
+            }
+        }
+        for (int d = 0; d < n; d++)
+            least[d] = wrong[d] < least[d] ? wrong[d] : least[d];
+    }
+
+    const int scale = (int)(MOST * sum / (sum + NOISE));
+
+    for (int d = 0; d < s->depths; d++)
+        cost[d] = (uint8_t)(cost[d] + scale * least[d] / (2 * ONE));
+}
+
+void rf_stack_model_costs(const struct refocus_stack *s, uint8_t *cost, const uint32_t *mean)
+{
+    if (s->depths <= 16)
+        add_costs(s, cost, mean, 16);
+    else
+        add_costs(s, cost, mean, RF_STACK_FEW_DEPTHS);
+}

@@ -1,0 +1,238 @@
+/* slabs.c: covers the blurs that can reach a tile by slabs. */
+#include "tiles/tiles.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "support/compare.h"
+#include "tiles/scale.h"
+
+enum {
+    HALF = 128,           /* 1/256 pixel, as all of these */
+    OVERLAP = 32,         /* a slab reaches so far into each of those beside it */
+    CLOSED = 2 * OVERLAP, /* so that the slab of what is sharp overlaps them as much in all */
+    WIDE = 16 * 256,      /* where slabs begin to be wider than a pixel */
+    MOST_SPREAD = 60416,  /* blurs within it hit no slab of up to 20 pixels modulo 2^16 */
+};
+
+/* The widest slab begins in the first bin of whole pixels. In bins of whole pixels; it is cut to
+ * them before it is widened by an eighth on each side. */
+enum { LARGEST = RF_PLAIN_RADIUS * 256, WIDEST = (2 * (LARGEST + HALF) - WIDE) / WIDE };
+static_assert(WIDEST * 256 * 5 / 4 <= 20 * 256, "no slab is wider than 20 pixels");
+static_assert(MOST_SPREAD + 20 * 256 <= UINT16_MAX + 1, "told apart modulo 2^16");
+
+static_assert(2 * RF_UNIT_RADIUS * 256 <= MOST_SPREAD && RF_UNIT_RADIUS << RF_MAX_UNIT < 1024 &&
+                  RF_FINE + 5 * RF_OCTAVE <= 127,
+              "blurs with a unit have few bins, and slabs of any width");
+
+/* Limits of a tile, beyond which more is merged. */
+enum {
+    NOISE_TIMES = 3, /* slabs of noise are so many times as wide as rf_bins has it: it overlaps by
+                        2.5 standard deviations, and nearly all of it lies within 7 */
+    NOISY_SLABS = 8, /* slabs of noise alone; then they grow, up to LARGEST_RATIO */
+    LARGEST_RATIO = 8,
+    MOST_SLABS = 32, /* slabs; then all are merged as if they were noise */
+};
+
+/* How slabs are merged. */
+struct merging {
+    int noise; /* so wide are slabs of noise at the most */
+    int ratio; /* the far side of one is at most 1 + ratio times as far out of focus as the near one
+                */
+    int widest; /* blurs within the tile hit no wider slab modulo 2^16, with what it overlaps */
+    bool all;   /* whatever the noise */
+};
+
+static bool has(const uint64_t word[RF_BINS / 64], int bin)
+{
+    return word[bin / 64] >> (bin % 64) & 1;
+}
+
+/* The first bin from `bin` on that is occupied, RF_BINS if none is. */
+static int next_bin(const struct rf_bins *bins, int bin)
+{
+    for (; bin < RF_BINS; bin = (bin / 64 + 1) * 64)
+        if (bins->word[bin / 64] >> bin % 64)
+            return bin + __builtin_ctzll(bins->word[bin / 64] >> bin % 64);
+    return RF_BINS;
+}
+
+/* Where blurs differ by less than 2^15, a range of any width is told from what lies outside modulo
+ * 2^16; else one slab is as much as can be. */
+static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struct rf_slab slab)
+{
+    const int k = plan->slabs++;
+
+    plan->slab[k] = slab;
+    plan->joined[k] =
+        k > 0 && scale.joins && slab.low <= plan->slab[k - 1].low + plan->slab[k - 1].width + 1;
+}
+
+/* Where a slab that begins with that bin ends, about as wide as one of blurs without a unit. */
+static int end_with_unit(struct rf_bin_scale scale, int bin)
+{
+    const int low = rf_edge_of(scale, bin), pixel = 256 >> scale.unit;
+    const int until = low + abs(low) / 8 - pixel;
+    int end = rf_bin_of(scale, until);
+
+    if (2 * until >
+        rf_edge_of(scale, end) + rf_edge_of(scale, end + 1)) /* the next edge is nearer to it */
+        end++;
+    return rf_larger(end, bin + 1);
+}
+
+/* Where a slab ends that begins with that bin; `wide` ones may be. */
+static int end_of(struct rf_bin_scale scale, int bin, bool wide)
+{
+    const int pixel = 256 >> scale.shift, low = rf_edge_of(scale, bin);
+    int end = bin + pixel;
+
+    if (bin >= scale.focus && bin < scale.focus + scale.focus_bins)
+        return scale.focus + scale.focus_bins;
+    if (scale.unit)
+        end = end_with_unit(scale, bin);
+    else if (wide && abs(low) >= WIDE)
+        end = bin + (int)((int64_t)pixel * (2 * abs(low) - WIDE) / WIDE);
+    else if (pixel > 1 && low > -3 * 256 && low < 3 * 256)
+        end = bin + pixel / 2;
+    return bin < scale.focus && end > scale.focus ? scale.focus : end;
+}
+
+/* Where a slab ends that begins with that bin and would end with `end`, if what follows is noise
+ * too. A gap as wide as that slab ends it. */
+static int end_of_noise(const struct rf_bins_in_reach *reach, struct rf_bin_scale scale,
+                        const struct merging *merging, int bin, int end)
+{
+    const int low = rf_edge_of(scale, bin), ratio = merging->ratio, most_gap = end - bin;
+    const int farthest = low < 0 ? -low / (1 + ratio) * ratio : low * ratio;
+    const int width = rf_smaller(rf_smaller(merging->noise, merging->widest), farthest);
+    int until = rf_smaller(rf_bin_of(scale, low + width), RF_BINS), gap = 0;
+
+    if (bin < scale.focus && until > scale.focus)
+        until = scale.focus;
+    for (int b = bin; b < until; b++) {
+        gap = has(reach->all.word, b) ? 0 : gap + 1;
+        if (!merging->all && (has(reach->sure, b) || gap >= most_gap))
+            return rf_larger(b, end);
+    }
+    return rf_larger(until, end);
+}
+
+/* Covers the occupied bins by slabs, nearest first. Slabs are a pixel wide, half of that where the
+ * blur is small and a pixel would show, and |s| / 8 less one pixel from 16 pixels on: there rays
+ * lie farther apart than half of that. Wide slabs end where those end that cover all bins from the
+ * nearest on, so that all tiles take the same blurs for one: what is in one slab does not occlude
+ * each other, and where tiles differed in that, their edges would show.
+ *
+ * The blurs below half a pixel are a slab of their own with offset 0, so that these pixels stay as
+ * they are. No slab before it may hold them, as its rays would bring light from beside them. Yet no
+ * ray may pass between two slabs where a surface crosses half a pixel of blur. So the sharp slab
+ * reaches into the nearer blurs by CLOSED, which the slabs before it leave out; and the slab after
+ * it reaches as far into the sharp blurs, for rays of pixels that are blurred. With 1/4 pixel
+ * surfaces of slope up to 1/4 have no gaps: a ray of a pixel of blur 0.60 that looks at its
+ * neighbour of blur 0.45 hits it. Without the overlap it would miss that, and itself at offset 0.
+ *
+ * Returns how many of the slabs are of noise.
+ */
+static int cover(const struct rf_bins_in_reach *reach, struct rf_bin_scale scale,
+                 const struct merging *merging, struct rf_tile_plan *plan)
+{
+    const struct rf_bins *const bins = &reach->all;
+    const int unit = scale.unit, half = HALF >> unit, closed = CLOSED >> unit;
+    const int focus_end = scale.focus + scale.focus_bins;
+    const bool wide = bins->most - bins->least < MOST_SPREAD;
+    int noisy = 0;
+    int cell = 0; /* the slab that `bin` is in, of those that cover all bins: where it begins */
+
+    plan->slabs = 0;
+    plan->reach = 0;
+    plan->least = INT16_MAX;
+    plan->sharp = true;
+    for (int bin = next_bin(bins, 0); bin < RF_BINS; bin = next_bin(bins, bin)) {
+        int end, last = bin, low, high, centre, overlap;
+        bool sure = false;
+
+        if (bin >= scale.focus && bin < focus_end) {
+            add_slab(
+                plan, scale,
+                (struct rf_slab){(int16_t)(-half - closed), (uint16_t)(2 * half + closed - 1), 0});
+            plan->least = 0;
+            bin = focus_end;
+            continue;
+        }
+        low = rf_edge_of(scale, bin);
+        while ((end = end_of(scale, cell, wide)) <= bin)
+            cell = end;
+        if (!unit && abs(low) < WIDE)
+            end = end_of(scale, bin, false);
+        if (merging->noise)
+            end = end_of_noise(reach, scale, merging, bin, end);
+        for (int b = bin; b < end && b < RF_BINS; b++) {
+            if (has(bins->word, b))
+                last = b;
+            sure = sure || has(reach->sure, b);
+        }
+        noisy += !sure;
+        high = rf_edge_of(scale, last + 1) - 1;
+        low = low < bins->least ? bins->least : low;
+        high = high > bins->most ? bins->most : high;
+        centre = low + (high - low + 1) / 2; /* exact for a single blur */
+        plan->sharp = false;
+        if (-low > plan->reach)
+            plan->reach = -low;
+        if (high > plan->reach)
+            plan->reach = high;
+        if (low > 0 && low < plan->least)
+            plan->least = low;
+        if (high < 0 && -high < plan->least)
+            plan->least = -high;
+        overlap = rf_larger(OVERLAP >> unit, (high - low) / 8);
+        low -= overlap;
+        high += overlap;
+        low = rf_larger(low, INT16_MIN);
+        high = rf_smaller(high, INT16_MAX);
+        if (centre < 0 && high >= -half)
+            high = -half - 1;
+        if (centre > 0 && low < half)
+            low = half - closed;
+        add_slab(plan, scale,
+                 (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre});
+        bin = last + 1;
+    }
+    plan->reach = rf_in_pixels(plan->reach, unit);
+    plan->least = rf_in_pixels(plan->least, unit);
+    return noisy;
+}
+
+/* Covers the occupied bins by as few slabs as a tile may have. */
+static void cover_bounded(const struct rf_bins_in_reach *reach, struct rf_bin_scale scale,
+                          struct rf_tile_plan *plan)
+{
+    const int spread = reach->all.most - reach->all.least;
+    struct merging merging = {.ratio = 1,
+                              .widest = (UINT16_MAX + 1 - spread) / 5 * 4 - 2 * OVERLAP};
+    const int noise = reach->noisy ? (int)(reach->noise / reach->noisy) : 0;
+    int noisy;
+
+    plan->noise = rf_in_pixels(noise, scale.unit);
+    merging.noise = rf_smaller(NOISE_TIMES * noise, INT16_MAX);
+    noisy = cover(reach, scale, &merging, plan);
+    while (noisy > NOISY_SLABS && merging.ratio < LARGEST_RATIO) {
+        merging.ratio *= 2;
+        noisy = cover(reach, scale, &merging, plan);
+    }
+    merging = (struct merging){INT16_MAX, 1, merging.widest, true};
+    for (; plan->slabs > MOST_SLABS && merging.ratio <= LARGEST_RATIO; merging.ratio *= 2)
+        cover(reach, scale, &merging, plan);
+}
+
+void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,
+                  const struct rf_reach *reach, int tx, int ty, struct rf_tile_plan *plan)
+{
+    const struct rf_bins_in_reach in_reach = rf_collect(view, bins, reach, tx, ty);
+
+    cover_bounded(&in_reach, reach->scale, plan);
+    plan->highlight = rf_in_pixels(in_reach.all.highlight, reach->scale.unit);
+    plan->undersampled = in_reach.all.undersampled > 0;
+    plan->brightest = in_reach.all.brightest;
+}

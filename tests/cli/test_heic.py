@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+"""HEIC is written: with EXIF, XMP and colour profile, and editable as a JPEG is.
+Usage: test_heic.py REFOCUS [unittest arguments]"""
+import base64
+import os
+import struct
+import unittest
+
+import pictures
+from case import Case, H, W
+from test_keep import (GDEPTH, HAS_JPEG, HAS_PNG, HAS_XMP, OTHERS, STANDARD, TITLE, VERSION, exif,
+                       extended, packet, segment)
+
+PROFILE = b'\0' * 12 + b'mntrRGB ' + bytes(16) + b'acsp' + bytes(88)
+
+
+@unittest.skipUnless('HEIC' in VERSION, 'needs libheif')
+class Heic(Case):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        pictures.ppm('photo.ppm', W, H, lambda x, y: (
+            60 + 2 * x + 40 * (x // 8 & 1), 60 + x + 40 * (x // 8 & 1), 40 * (x // 8 & 1) + 4 * y))
+        result = cls.run_it(cls, 'render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'try.heic')
+        if 'no encoder' in result.stderr:
+            raise unittest.SkipTest('libheif has no encoder of HEVC here')
+
+    def jpeg(self, *parts, name='in.jpg'):
+        self.succeeds('render', 'photo.ppm', '--depth', 'depth.pgm', '--blur', '0', '-o', name)
+        base = pictures.read_bytes(name)
+        with open(name, 'wb') as file:
+            file.write(base[:20] + b''.join(segment(*part) for part in parts) + base[20:])
+
+    def samples(self, photo, *options):
+        self.succeeds('render', photo, '-o', 'out.ppm', *options)
+        return pictures.read_pnm('out.ppm')
+
+    def map_of(self, photo, *options):
+        self.succeeds('depth', photo, '-o', 'map.png', *options)
+        return pictures.read_bytes('map.png')
+
+    def near(self, a, b, most):
+        """Mean difference of two pictures of one size, in codes."""
+        self.assertEqual(a[:2], b[:2])
+        mean = sum(abs(p - q) for p, q in zip(a[2], b[2])) / len(a[2])
+        self.assertLess(mean, most)
+
+    def test_the_picture(self):
+        """Within what the encoder loses, of any size; a better one has more bytes."""
+        sizes = []
+        for options in (), ('--resize', '31'), ('--resize', '7'):
+            depth = ('--depth', 'depth.pgm', '--blur', '3')
+            self.succeeds('render', 'photo.ppm', *depth, *options, '-o', 'out.heic',
+                          '--jpeg-quality', '95')
+            wanted = self.samples('photo.ppm', *depth, *options)
+            pictures.pgm('flat.pgm', *wanted[:2], lambda x, y: 9)
+            self.near(self.samples('out.heic', '--depth', 'flat.pgm', '--blur', '0'), wanted, 6)
+        for quality in '30', '95':
+            self.succeeds('render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.heic',
+                          '--jpeg-quality', quality)
+            sizes.append(os.path.getsize('out.heic'))
+        self.assertLess(sizes[0], sizes[1])
+        self.assertIn('HEIC', self.succeeds('info', 'out.heic'))
+
+    def test_nothing_is_left_of_what_failed(self):
+        self.fails(2, '--editable: it is for JPEG and HEIC; end the name of the output in .jpg or '
+                   '.heic', 'render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'x.png',
+                   '--editable')
+        with open('bad.jpg', 'wb') as file:
+            file.write(b'\xff\xd8\xff')
+        self.fails(1, 'bad.jpg: damaged JPEG: it ends in the middle of the picture; copy it again',
+                   'render', 'bad.jpg', '--depth', 'depth.pgm', '-o', 'x.heic')
+
+    @unittest.skipUnless(HAS_JPEG and HAS_XMP, 'needs TurboJPEG and expat')
+    def test_what_is_kept(self):
+        """EXIF made true, title and profile; a JPEG of it has them again."""
+        turned = (0xe1, b'Exif\0\0' + exif(8))
+        title = (0xe1, STANDARD + packet(TITLE))
+        self.jpeg(turned, title, (0xe2, b'ICC_PROFILE\0\1\1' + PROFILE), *OTHERS)
+        pictures.pgm('turned.pgm', H, W, lambda x, y: 255 if y >= W // 2 else 51)
+        for more in (), ('--no-editable',):
+            self.succeeds('render', 'in.jpg', '--depth', 'turned.pgm', '-o', 'out.heic', *more)
+            info = self.reports('info', 'out.heic')
+            self.assertEqual((info['picture'], info['stored'], info['orientation']),
+                             ([H, W], [H, W], 1))
+            bytes_ = pictures.read_bytes('out.heic')
+            self.assertIn('Gr&#252;n &lt;3'.encode(), bytes_)
+            self.assertIn(PROFILE, bytes_)
+            block = bytes_[bytes_.index(b'MM\0*'):]
+            self.assertEqual(struct.unpack('>H', block[18:20])[0], 1)
+            self.succeeds('render', 'out.heic', '--depth', 'turned.pgm', '-o', 'again.jpg')
+            again = pictures.read_bytes('again.jpg')
+            self.assertIn('Gr&#252;n &lt;3'.encode(), again)
+            self.assertIn(PROFILE, again)
+            self.assertEqual(b'HasExtendedXMP' in bytes_, False)
+        self.succeeds('render', 'in.jpg', '--depth', 'turned.pgm', '-o', 'out.heic', '--strip')
+        bytes_ = pictures.read_bytes('out.heic')
+        self.assertNotIn(b'MM\0*', bytes_)
+        self.assertNotIn(b'xmpmeta', bytes_)
+        self.assertIn(PROFILE, bytes_)
+
+    @unittest.skipUnless(HAS_JPEG and HAS_XMP and HAS_PNG, 'needs TurboJPEG, expat and libpng')
+    def test_editing_changes_nothing_but_the_picture(self):
+        """From JPEG over HEIC to JPEG: original and depth are those of the first photo, bit by
+        bit within a container; a change of container encodes the original once more."""
+        pictures.png('map.png', W, H, [bytes(4 * x for x in range(W))] * H, colour=0)
+        data = base64.b64encode(pictures.read_bytes('map.png'))
+        guid, chunks = extended(packet(GDEPTH + b' GDepth:Data="' + data + b'">'), 900)
+        head = GDEPTH + b' GDepth:Format="RangeInverse" GDepth:Near="0.5" GDepth:Far="4" ' \
+            b'GDepth:Units="m" GDepth:Mime="image/png" ' \
+            b'xmlns:xmpNote="http://ns.adobe.com/xmp/note/" xmpNote:HasExtendedXMP="' + guid + b'">'
+        for orientation in 1, 6:
+            self.jpeg((0xe1, b'Exif\0\0' + exif(orientation)),
+                      (0xe1, STANDARD + packet(TITLE, head)), *chunks)
+            depth, sharp = self.map_of('in.jpg'), self.samples('in.jpg', '--blur', '0')
+            self.succeeds('render', 'in.jpg', '-o', 'a.heic', '--blur', '4')
+            first = self.samples('a.heic', '--blur', '2')
+            self.near(self.samples('a.heic', '--blur', '0'), sharp, 1)
+            self.succeeds('render', 'a.heic', '-o', 'x.heic', '--blur', '5')
+            self.succeeds('render', 'x.heic', '-o', 'b.heic', '--blur', '1', '--focus', '0')
+            self.same(self.map_of('b.heic'), depth)
+            self.same(self.samples('b.heic', '--blur', '2'), first)
+            self.assertLess(os.path.getsize('b.heic'), 2 * os.path.getsize('a.heic'))
+            self.succeeds('render', 'b.heic', '-o', 'c.jpg', '--blur', '3')
+            self.same(self.map_of('c.jpg'), depth)
+            self.near(self.samples('c.jpg', '--blur', '2'), first, 1)
+            self.succeeds('render', 'c.jpg', '-o', 'd.jpg', '--blur', '2')
+            self.same(self.samples('d.jpg', '--blur', '2'), self.samples('c.jpg', '--blur', '2'))
+            self.succeeds('render', 'd.jpg', '-o', 'e.heic')
+            self.same(self.map_of('e.heic'), depth)
+            self.near(self.samples('e.heic', '--blur', '2'), first, 1)
+            for name, more in ('f.heic', ('--no-editable',)), ('f.png', ()), ('f.tif', ()):
+                if name != 'f.tif' or 'TIFF' in VERSION:
+                    self.succeeds('render', 'e.heic', '-o', name, *more)
+                    self.assertNotIn(b'GDepth', pictures.read_bytes(name))
+
+
+if __name__ == '__main__':
+    unittest.main()

@@ -1,0 +1,244 @@
+/* test_pictures.c: the source `file:`: depth as frames, pictures that come in time, change their
+ * size, are damaged or run out; and each allocation of sources and sinks of files fails once. */
+#include "check.h"
+
+#include <unistd.h>
+
+#include <refocus/platform/sink.h>
+
+#include "failing.h"
+
+static struct refocus_reason reason;
+
+static void write_file(const char *name, const char *head, const void *samples, size_t size)
+{
+    FILE *const file = fopen(name, "wb");
+
+    assert_non_null(file);
+    assert_true(fputs(head, file) >= 0);
+    assert_int_equal(fwrite(samples, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+}
+
+static const uint8_t samples[96] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+
+/* A PPM of 4 x 2, or of 2 x 4. */
+static void write_picture(int number, int tall)
+{
+    char name[32];
+
+    snprintf(name, sizeof name, "p-%d.ppm", number);
+    write_file(name, tall ? "P6 2 4 255\n" : "P6 4 2 255\n", samples, 24);
+}
+
+static void depth_of_codes(void **state)
+{
+    const struct refocus_frame *frame;
+    struct refocus_source *source;
+
+    (void)state;
+    write_file("depth8.pgm", "P5 4 2 255\n", samples, 8);
+    write_file("depth16.pgm", "P5 4 2 65535\n", samples, 16);
+    write_file("depth.pfm", "Pf 4 2 -1\n", samples, 32);
+    source = started("file:depth8.pgm", REFOCUS_SOURCE_FAST | REFOCUS_SOURCE_DEPTH);
+    assert_status(refocus_source_wait(source, 0, &frame, &reason), REFOCUS_OK);
+    assert_int_equal(frame->format, REFOCUS_FRAME_GREY);
+    assert_memory_equal(frame->plane[0], samples, 4);
+    assert_memory_equal(frame->plane[0] + frame->stride[0], samples + 4, 4);
+    assert_true(frame->flags & REFOCUS_FRAME_STILL);
+    refocus_source_release(source, frame);
+    refocus_source_close(&source);
+    source = started("file:depth16.pgm", REFOCUS_SOURCE_FAST | REFOCUS_SOURCE_DEPTH);
+    assert_status(refocus_source_wait(source, 0, &frame, &reason), REFOCUS_OK);
+    assert_int_equal(frame->format, REFOCUS_FRAME_Y16);
+    assert_int_equal(frame->width, 4);
+    assert_int_equal(frame->height, 2);
+    assert_int_equal(((const uint16_t *)(const void *)frame->plane[0])[1], 3 << 8 | 4);
+    refocus_source_close(&source);
+    assert_status(refocus_source_open(&source, "file:depth.pfm", &reason), REFOCUS_OK);
+    {
+        struct refocus_source_config config = refocus_source_config_default();
+
+        config.flags = REFOCUS_SOURCE_DEPTH;
+        assert_status(refocus_source_start(source, &config, NULL, &reason),
+                      REFOCUS_ERR_UNSUPPORTED);
+        assert_non_null(strstr(reason.text, "floats"));
+    }
+    refocus_source_close(&source);
+}
+
+/* A picture comes when it is due and no sooner, and its time is told. */
+static void pictures_in_time(void **state)
+{
+    struct refocus_source_config config = refocus_source_config_default();
+    struct refocus_source_mode mode = refocus_source_mode_default();
+    const struct refocus_frame *frame;
+    struct refocus_source *source;
+    int64_t first;
+
+    (void)state;
+    write_picture(1, 0);
+    write_picture(2, 0);
+    unlink("p-0.ppm");
+    unlink("p-3.ppm");
+    config.fps = 4;
+    assert_status(refocus_source_open(&source, "file:p-%d.ppm", &reason), REFOCUS_OK);
+    assert_status(refocus_source_get_mode(source, 0, &mode), REFOCUS_OK);
+    assert_int_equal(mode.format, REFOCUS_FRAME_RGB24);
+    assert_status(refocus_source_get_mode(source, 1, &mode), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_source_start(source, &config, &mode, &reason), REFOCUS_OK);
+    assert_true(mode.fps == 4);
+    assert_status(refocus_source_wait(source, 1000, &frame, &reason), REFOCUS_OK);
+    assert_true(frame->flags & REFOCUS_FRAME_MONOTONIC);
+    assert_false(frame->flags & (REFOCUS_FRAME_STILL | REFOCUS_FRAME_CHANGED));
+    first = frame->timestamp_ns;
+    refocus_source_release(source, frame);
+    assert_status(refocus_source_wait(source, 1, &frame, &reason), REFOCUS_ERR_TIMEOUT);
+    assert_status(refocus_source_wait(source, 1000, &frame, &reason), REFOCUS_OK);
+    assert_int_equal(frame->timestamp_ns - first, 250000000);
+    assert_int_equal(frame->sequence, 1);
+    refocus_source_release(source, frame);
+    assert_status(refocus_source_wait(source, 1000, &frame, &reason), REFOCUS_ERR_END);
+    assert_status(refocus_source_restart(source, NULL, &reason), REFOCUS_OK);
+    assert_status(refocus_source_wait(source, 1000, &frame, &reason), REFOCUS_OK);
+    assert_int_equal(frame->sequence, 0);
+    refocus_source_interrupt(source);
+    for (int i = 0; i < 2; i++)
+        assert_status(refocus_source_wait(source, 1000, &frame, &reason), REFOCUS_ERR_CANCELLED);
+    refocus_source_close(&source);
+}
+
+/* Sizes that change are told, damage is an error of its picture alone, the end is the beginning
+ * where that is asked for, and frames are out until they come back. */
+static void pictures_change(void **state)
+{
+    const struct refocus_frame *frame, *kept[32];
+    struct refocus_source *source;
+    int n = 0, status;
+
+    (void)state;
+    for (int i = 0; i < 4; i++)
+        write_picture(i, i == 2);
+    write_file("p-1.ppm", "P6 4 2 255\n", samples, 5);
+    unlink("p-4.ppm");
+    source = started("file:p-%d.ppm", REFOCUS_SOURCE_FAST | REFOCUS_SOURCE_LOOP);
+    for (int round = 0; round < 2; round++) {
+        assert_status(refocus_source_wait(source, 0, &frame, &reason), REFOCUS_OK);
+        assert_false(frame->flags & (REFOCUS_FRAME_CHANGED | REFOCUS_FRAME_MONOTONIC));
+        refocus_source_release(source, frame);
+        assert_status(refocus_source_wait(source, 0, &frame, &reason), REFOCUS_ERR_FORMAT);
+        assert_string_not_equal(reason.text, "");
+        write_picture(1, 0);
+        assert_status(refocus_source_wait(source, 0, &frame, &reason), REFOCUS_OK);
+        refocus_source_release(source, frame);
+        for (int i = 2; i < 4; i++) {
+            assert_status(refocus_source_wait(source, 0, &frame, &reason), REFOCUS_OK);
+            assert_true(frame->flags & REFOCUS_FRAME_CHANGED);
+            assert_int_equal(frame->height, i == 2 ? 4 : 2);
+            refocus_source_release(source, frame);
+        }
+        write_file("p-1.ppm", "P6 4 2 255\n", samples, 5);
+    }
+    write_picture(1, 0);
+    while ((status = refocus_source_wait(source, 0, &kept[n], &reason)) == REFOCUS_OK && n < 31)
+        n++;
+    assert_status(status, REFOCUS_ERR_STATE);
+    assert_true(n >= 2);
+    refocus_source_release(source, kept[0]);
+    assert_status(refocus_source_wait(source, 0, &frame, &reason), REFOCUS_OK);
+    refocus_source_stop(source);
+    for (int i = 0; i < 4; i++) { /* gone while it waits */
+        char name[32];
+
+        snprintf(name, sizeof name, "p-%d.ppm", i);
+        unlink(name);
+    }
+    assert_status(refocus_source_start(source, NULL, NULL, &reason), REFOCUS_ERR_IO);
+    refocus_source_close(&source);
+}
+
+/* Every allocation -------------------------------------------------------------------- */
+
+/* Opens, starts and takes two frames. */
+static int read_some(const char *name)
+{
+    struct refocus_source *source = NULL;
+    const struct refocus_frame *frame;
+    int status = refocus_source_open(&source, name, &reason);
+
+    assert_true(!source == (status != REFOCUS_OK));
+    if (status == REFOCUS_OK)
+        status = refocus_source_start(source, NULL, NULL, &reason);
+    for (int i = 0; i < 2 && status == REFOCUS_OK; i++) {
+        status = refocus_source_wait(source, 1000, &frame, &reason);
+        if (status == REFOCUS_OK)
+            refocus_source_release(source, frame);
+    }
+    refocus_source_close(&source);
+    return status;
+}
+
+static int write_some(const char *name)
+{
+    static uint8_t pixels[24];
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, 4, 2, 12);
+    struct refocus_sink *sink = NULL;
+    int status = refocus_sink_open(&sink, name, &reason), end;
+
+    assert_true(!sink == (status != REFOCUS_OK));
+    if (status == REFOCUS_OK)
+        status = refocus_sink_start(sink, 4, 2, 25, &reason);
+    for (int i = 0; i < 2 && status == REFOCUS_OK; i++)
+        status = refocus_sink_write(sink, &image, &reason);
+    end = refocus_sink_close(&sink, &reason);
+    return status == REFOCUS_OK ? end : status;
+}
+
+static void every_allocation(void **state)
+{
+    static const char *const names[] = {
+        "y4m:m.y4m",
+        "raw:m.rgb",
+        "m-%d.ppm",
+        "file:m-%d.ppm",
+        "raw:m.rgb,RGB24,4x2",
+        "y4m:m.y4m",
+        "replay::size 8x4;frames 3",
+        "replay::from y4m:m.y4m;frames 2",
+    };
+    enum { SINKS = 3 };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        int (*const act)(const char *) = i < SINKS ? write_some : read_some;
+        const int files = count_entries("fd");
+        long calls, live;
+
+        failing.fail_at = 0;
+        assert_status(act(names[i]), REFOCUS_OK); /* some is kept for good, from here on */
+        live = failing.live;
+        failing.calls = 0;
+        assert_status(act(names[i]), REFOCUS_OK);
+        assert_int_equal(failing.live, live);
+        calls = failing.calls;
+        assert_true(calls > 1);
+        for (long at = 1; at <= calls; at++) {
+            failing.calls = 0;
+            failing.fail_at = at;
+            assert_status(act(names[i]), REFOCUS_ERR_MEMORY);
+            failing.fail_at = 0;
+            assert_int_equal(failing.live, live);
+            assert_int_equal(count_entries("fd"), files);
+        }
+        assert_status(act(names[i]), REFOCUS_OK);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(depth_of_codes), cmocka_unit_test(pictures_in_time),
+        cmocka_unit_test(pictures_change), cmocka_unit_test(every_allocation)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

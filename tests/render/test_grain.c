@@ -1,0 +1,233 @@
+/* test_grain.c: the noise of a photo goes on into its blur, in strength and size. */
+#include "pictures.h"
+#include "things.h"
+
+enum { W = 144, H = 112 };
+
+static uint8_t out[3 * W * H];
+static const struct refocus_image image = {.struct_size = sizeof(struct refocus_image),
+                                           .format = REFOCUS_FORMAT_RGB8,
+                                           .width = W,
+                                           .height = H,
+                                           .plane = {out},
+                                           .stride = {3 * W}};
+
+static void about(const char *what, double is, double wanted, double part)
+{
+    if (!(fabs(is - wanted) <= part * fabs(wanted)))
+        fail_msg("%s is %g, should be %g", what, is, wanted);
+}
+
+/* Noise of the sharp half in the blurred one. */
+static double noise_of(int x0, int x1)
+{
+    double sum = 0, squares = 0;
+    int n = 0;
+
+    for (int y = 4; y < H - 4; y++) {
+        for (int x = x0; x < x1; x++, n++) {
+            const double v = out[3 * (y * W + x) + 1];
+
+            sum += v;
+            squares += v * v;
+        }
+    }
+    return sqrt(squares / n - sum / n * (sum / n));
+}
+
+/* A photo of this noise at 120, smoothed by (a, 1, a) each way, the nearer half of it in focus. */
+static void draw_noise(struct picture *p, double sigma, double a)
+{
+    static double white[(H + 2) * (W + 2)];
+    uint32_t seed = 5;
+
+    for (int i = 0; i < (H + 2) * (W + 2); i++) {
+        white[i] = 0;
+        for (int k = 0; k < 12; k++)
+            white[i] += ((int)(noise(&seed) % 1001) - 500) / 1000.0; /* 12 of variance 1/12 */
+    }
+    for (int i = 0; i < W * H; i++) {
+        const double *at = white + (i / W + 1) * (W + 2) + i % W + 1;
+        double v = 0;
+
+        for (int y = -1; y <= 1; y++)
+            for (int x = -1; x <= 1; x++)
+                v += at[y * (W + 2) + x] * (x ? a : 1) * (y ? a : 1);
+        memset(p->rgb + 3 * i, (int)floor(120.5 + sigma * v / (1 + 2 * a * a)), 3);
+        p->disparity[i] = i % W < W / 2 ? 60000 : 10000;
+    }
+}
+
+/* Correlation of the blurred half with itself, a pixel on. */
+static double correlation(void)
+{
+    double with = 0, own = 0, mean = 0;
+    int n = 0;
+
+    for (int y = 4; y < H - 4; y++)
+        for (int x = W / 2 + 20; x < W; x++, n++)
+            mean += out[3 * (y * W + x)];
+    mean /= n;
+    for (int y = 4; y < H - 4; y++) {
+        for (int x = W / 2 + 20; x < W - 1; x++) {
+            const double v = out[3 * (y * W + x)] - mean;
+
+            with += v * (out[3 * (y * W + x + 1)] - mean);
+            own += v * v;
+        }
+    }
+    return with / own;
+}
+
+/* Grain is of the strength and the size of the photo's, and there is none where no noise is. */
+static void grain_size(void **state)
+{
+    static const double sigmas[] = {2.5, 6, 0.6}, sides[] = {0, 0.2, 0.4};
+    struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 20);
+
+    (void)state;
+    params.render.prefilter = 0;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
+            const double a = sides[k];
+            struct refocus_renderer *renderer;
+            static uint8_t without[3 * W * H];
+
+            draw_noise(&p, sigmas[i], a);
+            renderer = prepared(&p, 20, 2);
+            params.look.grain = 0;
+            assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+            memcpy(without, out, sizeof out);
+            params.look.grain = 1;
+            assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+            if (i == 2) {
+                assert_memory_equal(without, out, sizeof out);
+            } else {
+                about("grain", noise_of(W / 2 + 20, W), sigmas[i], 0.15);
+                about("size", 1 + correlation(), 1 + 2 * a / (1 + 2 * a * a), 0.25);
+            }
+            refocus_renderer_destroy(&renderer);
+            picture_free(&p);
+        }
+    }
+}
+
+/* Texture of one brightness is no noise where others are smooth. */
+static void texture_is_no_grain(void **state)
+{
+    static uint8_t without[3 * W * H];
+    struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
+    struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 20);
+    struct refocus_renderer *renderer;
+
+    (void)state;
+    draw_noise(&p, 6, 0.2);
+    for (int y = 0; y < H / 2; y++)
+        memset(p.rgb + 3 * y * W, 60 + 20 * (y / (H / 8)), 3 * W);
+    renderer = prepared(&p, 20, 2);
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+    memcpy(without, out, sizeof out);
+    params.look.grain = 1;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+    assert_memory_equal(without, out, sizeof out);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+/* Texture is no noise where it fills all brightnesses either, as leaves do: it is finer here and
+ * coarser there. The same photo with the noise of its smoothest blocks everywhere has grain. */
+static void uneven_texture_is_no_grain(void **state)
+{
+    static const double strengths[] = {2.5, 7, 10, 12, 12, 10, 9, 11};
+    static uint8_t without[3 * W * H], drawn[3 * W * H];
+    struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 20);
+
+    (void)state;
+    for (int even = 0; even < 2; even++) {
+        struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
+        struct refocus_renderer *renderer;
+
+        for (int k = even ? 0 : 7; k >= 0; k--) {
+            draw_noise(&p, strengths[k], 0.2);
+            for (int i = 0; i < W * H; i++)
+                if (even || (i % W / 8 + 3 * (i / W / 8)) % 8 == k)
+                    memcpy(drawn + 3 * i, p.rgb + 3 * i, 3);
+        }
+        memcpy(p.rgb, drawn, sizeof drawn);
+        renderer = prepared(&p, 20, 2);
+        params.look.grain = 0;
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+        memcpy(without, out, sizeof out);
+        params.look.grain = 1;
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+        assert_int_equal(memcmp(without, out, sizeof out) != 0, even);
+        refocus_renderer_destroy(&renderer);
+        picture_free(&p);
+    }
+}
+
+static void grain(void **state)
+{
+    static uint8_t first[3 * W * H];
+    struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
+    struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 20);
+    struct refocus_renderer *renderer;
+    uint32_t seed = 5;
+
+    (void)state;
+    for (int i = 0; i < W * H; i++) {
+        int v = 120;
+
+        for (int k = 0; k < 12; k++)
+            v += (int)(noise(&seed) % 5) - 2; /* 12 of variance 2: about 4.9 */
+        memset(p.rgb + 3 * i, v, 3);
+        p.disparity[i] = i % W < W / 2 ? 60000 : 10000;
+    }
+    renderer = prepared(&p, 20, 2);
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+    assert_true(noise_of(W / 2 + 20, W) < 1.5);
+    params.look.grain_seed = 1;
+    for (int amount = 1; amount <= 2; amount++) {
+        params.look.grain = (float)amount;
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+        about("grain", noise_of(W / 2 + 20, W), 4.9 * amount, 0.12);
+        for (int y = 0; y < H; y++) /* a sharp pixel has its own grain */
+            assert_memory_equal(out + 3 * y * W, p.rgb + 3 * y * W, 3 * (W / 2 - 16));
+    }
+    memcpy(first, out, sizeof out);
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+    assert_memory_equal(first, out, sizeof out);
+    params.look.grain_seed = 2;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+    assert_true(memcmp(first, out, sizeof out) != 0);
+    /* a method that renders the frame as a whole: grain is in each of its tiles */
+    params.render.method = REFOCUS_METHOD_SCATTER;
+    params.look.grain = 0;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+    memcpy(first, out, sizeof out);
+    params.look.grain = 2;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+    for (int y = 0; y < H; y += 16)
+        for (int x = W - 48; x < W; x += 16) {
+            int changed = 0;
+
+            for (int i = 0; i < 256; i++) {
+                const int at = 3 * ((y + i / 16) * W + x + i % 16);
+
+                changed += out[at] != first[at];
+            }
+            assert_in_range(changed, 128, 256);
+        }
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(grain), cmocka_unit_test(grain_size),
+                                       cmocka_unit_test(texture_is_no_grain),
+                                       cmocka_unit_test(uneven_texture_is_no_grain)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
