@@ -46,9 +46,10 @@ class Lines(unittest.TestCase):
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         return done.returncode, done.stdout
 
-    def gegl(self, *words):
-        """What it says, but for its own remarks on what its command does not free."""
-        status, text = self.run_words(['gegl', *words])
+    def gegl(self, *words, **environment):
+        """What it says, but for its own remarks on what its command does not free: how many those are
+        depends on when its threads end."""
+        status, text = self.run_words(['gegl', *words], **environment)
         self.assertEqual(status, 0, text)
         return ''.join(line + '\n' for line in text.splitlines()
                        if line and 'gegl_tile_cache_destroy' not in line and 'EEEEeEeek' not in line)
@@ -74,13 +75,9 @@ class Lines(unittest.TestCase):
 
     def test_two_copies(self):
         """A build beside the one that is installed: the first on the path is used, and nothing warns."""
-        status, once = self.run_words(['gegl', '--info', OWN])
-        self.assertEqual(status, 0, once)
-        status, twice = self.run_words(['gegl', '--info', OWN],
-                                       GEGL_PATH=f'{PLUGINS}:{PLUGINS}:{GEGL_PLUGINS}')
-        self.assertEqual(status, 0, twice)
-        self.assertNotIn('RefocusLensBlur', twice)
-        self.assertEqual(len(twice.splitlines()), len(once.splitlines()), twice)
+        once = self.gegl('--info', OWN)
+        twice = self.gegl('--info', OWN, GEGL_PATH=f'{PLUGINS}:{PLUGINS}:{GEGL_PLUGINS}')
+        self.assertEqual(twice, once)
 
     @unittest.skipUnless(COMMAND, 'a build without the command')
     def test_same_as_the_command(self):
