@@ -49,6 +49,7 @@ struct refocus_stack_params {
                                that they are added in; 0 = the one in the middle of the focus */
     uint32_t align;       /**< enum refocus_stack_align */
     uint32_t order;       /**< enum refocus_stack_order; frames with positions go by those */
+    int32_t threads;      /**< 1 to 64, of refocus_stack_finish(); 0 = one for each processor */
 };
 
 static inline struct refocus_stack_params
@@ -112,8 +113,8 @@ static inline struct refocus_stack_result refocus_stack_result_default(void)
  * Make an empty stack. It takes all its memory here: for each frame 3 bytes a pixel and 2 a
  * sample of the map that the work is done at, which has at most 3 million samples; 3 more a sample
  * for each depth, 13 to 17 with nine frames and fewer, their number rounded up to 16 or 24, else
- * one for each frame, rounded up to 16, 24 or 32; some 10 a sample and 3 a pixel. Nine frames of 2
- * megapixels take 290 MB, of 12 megapixels 700 MB.
+ * one for each frame, rounded up to 16, 24 or 32; some 10 a sample and 3 a pixel; for each thread
+ * 12 a frame and sample of a row. Nine frames of 2 megapixels take 290 MB, of 12 megapixels 700 MB.
  *
  * @param stack  receives it, or NULL on an error
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY, REFOCUS_ERR_SIZE (it would need
@@ -173,7 +174,7 @@ REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refo
  * A sample is sure where the least sharp frame has less than half of the E_k of the sharpest: noise
  * is alike in all. Each sample takes the depth of most of the sure ones around it, on its side of
  * the photo's edges. So what is flat, clipped or grainy takes the depth of what is around it.
- * Integer arithmetic: the same bytes on every processor.
+ * Integer arithmetic: the same bytes on every processor and with any number of threads.
  *
  * Windows of sharpness take the silhouette of a surface for part of what is behind. So where depths
  * that are a quarter of all apart lie within 8 samples (not with two frames), edges of the frame
@@ -191,7 +192,8 @@ REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refo
  * A stack is finished once: what aligns its frames overwrites them.
  *
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_STATE (fewer than two frames, no reference
- *         yet, or finished before), REFOCUS_ERR_UNSUPPORTED; on an error nothing is written
+ *         yet, or finished before), REFOCUS_ERR_THREAD, REFOCUS_ERR_UNSUPPORTED; on an error
+ *         nothing is written, and the stack is as it was
  */
 REFOCUS_API int refocus_stack_finish(struct refocus_stack *stack,
                                      struct refocus_stack_result *result);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 enum {
+    BAND = 64, /* rows that a worker takes at a time */
     SQUARES = 3,
     /* Squares of sharpness, in quarters of a squared code: */
     NOISE = 1600, /* 20 codes of second differences: texture that noise hides */
@@ -62,22 +63,22 @@ static uint32_t square(uint16_t sharpness)
     return v * v;
 }
 
-static uint32_t *columns_of(const struct refocus_stack *s, int i, int k)
+static uint32_t *columns_of(const struct refocus_stack *s, int worker, int i, int k)
 {
-    return s->column + (size_t)(i * s->count + k) * (size_t)s->columns;
+    return s->column + (size_t)((worker * SQUARES + i) * s->most + k) * (size_t)s->columns;
 }
 
-/* The sums of columns move from row y - 1 to row y. */
-static void add_row(struct refocus_stack *s, int y)
+/* The sums of columns move from row y - 1 to row y, or are begun there. */
+static void add_row(const struct refocus_stack *s, int worker, int y, bool begin)
 {
     for (int i = 0; i < SQUARES; i++)
         for (int k = 0; k < s->count; k++) {
             const uint16_t *in = s->frame[k].sharpness;
             const size_t w = (size_t)s->columns;
-            uint32_t *restrict sum = columns_of(s, i, k);
-            const int first = y ? y + reach[i] : -reach[i];
+            uint32_t *restrict sum = columns_of(s, worker, i, k);
+            const int first = begin ? y - reach[i] : y + reach[i];
 
-            if (!y)
+            if (begin)
                 memset(sum, 0, w * sizeof *sum);
             for (int v = first; v <= y + reach[i]; v++) {
                 const uint16_t *restrict row = in + (size_t)rf_stack_clamp(v, s->rows - 1) * w;
@@ -85,7 +86,7 @@ static void add_row(struct refocus_stack *s, int y)
                 for (size_t x = 0; x < w; x++)
                     sum[x] += square(row[x]);
             }
-            if (y) {
+            if (!begin) {
                 const uint16_t *restrict row =
                     in + (size_t)rf_stack_clamp(y - reach[i] - 1, s->rows - 1) * w;
 
@@ -120,7 +121,7 @@ static uint8_t sure_of(const struct refocus_stack *s, const uint32_t *mean)
     return (uint8_t)rf_stack_clamp(255 * (UNSURE - ratio) / (UNSURE - SURE), 255);
 }
 
-static void cost_row(struct refocus_stack *s, int y)
+static void cost_row(struct refocus_stack *s, int worker, int y)
 {
     const int w = s->columns, n = s->labels;
     uint8_t *cost = s->cost + (size_t)y * (size_t)w * (size_t)n;
@@ -136,10 +137,10 @@ static void cost_row(struct refocus_stack *s, int y)
 
         for (int k = 0; k < s->count; k++)
             for (int x = -r - 1; x < r; x++)
-                sum[k] += columns_of(s, i, k)[rf_stack_clamp(x, w - 1)];
+                sum[k] += columns_of(s, worker, i, k)[rf_stack_clamp(x, w - 1)];
         for (int x = 0; x < w; x++) {
             for (int k = 0; k < s->count; k++) {
-                const uint32_t *column = columns_of(s, i, k);
+                const uint32_t *column = columns_of(s, worker, i, k);
 
                 sum[k] += column[rf_stack_clamp(x + r, w - 1)];
                 sum[k] -= column[rf_stack_clamp(x - r - 1, w - 1)];
@@ -189,16 +190,24 @@ static void guide_row(struct refocus_stack *s, int y)
     }
 }
 
+static void cost_band(void *context, int band, int worker)
+{
+    struct refocus_stack *const s = context;
+    const int begin = band * BAND, end = begin + BAND < s->rows ? begin + BAND : s->rows;
+
+    for (int y = begin; y < end; y++) {
+        add_row(s, worker, y, y == begin);
+        cost_row(s, worker, y);
+        rf_stack_leave_out(s, y);
+        guide_row(s, y);
+    }
+}
+
 void rf_stack_costs(struct refocus_stack *s)
 {
     for (int k = 0; k < s->count; k++)
         move(s, &s->frame[k]);
     if (s->sub > 1)
         rf_stack_model(s);
-    for (int y = 0; y < s->rows; y++) {
-        add_row(s, y);
-        cost_row(s, y);
-        rf_stack_leave_out(s, y);
-        guide_row(s, y);
-    }
+    rf_pool_run(s->pool, cost_band, s, (s->rows + BAND - 1) / BAND);
 }

@@ -2,12 +2,15 @@
 #ifndef RF_FOCUS_STACK_H
 #define RF_FOCUS_STACK_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
 #include <refocus/stack.h>
+
+#include "support/pool.h"
 
 enum {
     RF_STACK_MOST_SAMPLES = 3 << 20, /* at the most, in the maps that the work is done on */
@@ -52,11 +55,13 @@ struct refocus_stack {
     int still; /* the reference in the order of positions, once the stack is finished */
     bool finished, without_positions;
     uint32_t align, order;
-    double alike;   /* the least correlation of neighbours once they are aligned */
-    int64_t moving; /* samples where something moves */
-    int sub;        /* depths from a frame to the next: 1 where steps are fine */
-    int depths;     /* told apart in all: (count - 1) sub + 1 */
-    int labels;     /* depths of `most` frames, rounded up so that costs of a sample fill vectors */
+    double alike;      /* the least correlation of neighbours once they are aligned */
+    atomic_int moving; /* samples where something moves */
+    int threads;
+    struct rf_pool *pool; /* while the stack is finished */
+    int sub;              /* depths from a frame to the next: 1 where steps are fine */
+    int depths;           /* told apart in all: (count - 1) sub + 1 */
+    int labels; /* depths of `most` frames, rounded up so that costs of a sample fill vectors */
     struct rf_stack_frame frame[REFOCUS_STACK_MOST_FRAMES]; /* in the order of their positions */
 
     uint8_t *luma;    /* one frame's, of the photo's size */
@@ -66,10 +71,10 @@ struct refocus_stack {
     uint8_t *cost;    /* `labels` of a sample */
     int16_t *sum;     /* aggregated, `labels` of a sample */
     int16_t *path;    /* costs along three directions that reach the last row, and the next */
-    uint32_t *column; /* sums of a column, for each square and frame */
+    uint32_t *column; /* sums of a column, for each worker, square and frame */
     uint16_t *depth;  /* a sample each, Q8 frames */
     uint8_t *sure;
-    uint16_t *depth_row; /* one row of the photo */
+    uint16_t *depth_row; /* one row of the photo for each worker */
     uint8_t *sure_row;
     struct rf_transfer *transfer;
     int models;

@@ -270,6 +270,7 @@ void rf_stack_leave_out(struct refocus_stack *s, int y)
 {
     const int middle = (s->reduced - 1) / 2;
     const uint8_t *moving[REFOCUS_STACK_MOST_FRAMES];
+    int all = 0;
 
     for (int k = 0; k < s->count; k++)
         moving[k] = rf_stack_moving_row(s, k, y * s->reduced + middle);
@@ -287,6 +288,7 @@ void rf_stack_leave_out(struct refocus_stack *s, int y)
             }
         if (any)
             s->sure[i] = 0;
-        s->moving += any;
+        all += any;
     }
+    atomic_fetch_add_explicit(&s->moving, all, memory_order_relaxed);
 }

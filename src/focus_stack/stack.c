@@ -45,11 +45,12 @@ static void lay_out(struct refocus_stack *s, struct rf_arena *arena)
     s->cost = rf_arena_take(arena, samples * labels, 1);
     s->sum = rf_arena_take(arena, samples * labels, 2);
     s->path = rf_arena_take(arena, (uint64_t)s->columns * PATHS * (labels + BESIDE), 2);
-    s->column = rf_arena_take(arena, (uint64_t)s->columns * SQUARES * (uint64_t)s->most, 4);
+    s->column = rf_arena_take(arena, (uint64_t)s->columns * SQUARES * (uint64_t)s->most,
+                              4 * (uint64_t)s->threads);
     s->depth = rf_arena_take(arena, samples, 2);
     s->sure = rf_arena_take(arena, samples, 1);
-    s->depth_row = rf_arena_take(arena, (uint64_t)s->width, 2);
-    s->sure_row = rf_arena_take(arena, (uint64_t)s->width, 1);
+    s->depth_row = rf_arena_take(arena, (uint64_t)s->width, 2 * (uint64_t)s->threads);
+    s->sure_row = rf_arena_take(arena, (uint64_t)s->width, (uint64_t)s->threads);
     s->transfer = rf_arena_take(arena, 1, sizeof *s->transfer);
 }
 
@@ -58,8 +59,8 @@ static bool good(const struct refocus_stack_params *p)
     return p->width >= LEAST_SIDE && p->width <= REFOCUS_MAX_SIDE && p->height >= LEAST_SIDE &&
            p->height <= REFOCUS_MAX_SIDE && p->frames >= REFOCUS_STACK_LEAST_FRAMES &&
            p->frames <= REFOCUS_STACK_MOST_FRAMES && p->reference >= 0 &&
-           p->reference <= p->frames && p->align < REFOCUS_STACK_ALIGN_COUNT &&
-           p->order < REFOCUS_STACK_ORDER_COUNT;
+           p->reference <= p->frames && p->threads >= 0 && p->threads <= RF_MAX_THREADS &&
+           p->align < REFOCUS_STACK_ALIGN_COUNT && p->order < REFOCUS_STACK_ORDER_COUNT;
 }
 
 /* The least whole number by which both sides are divided to leave at most so many samples. */
@@ -80,6 +81,7 @@ static void size(struct refocus_stack *s, const struct refocus_stack_params *p)
     s->reference = p->reference;
     s->align = p->align;
     s->order = p->order;
+    s->threads = rf_thread_count(p->threads);
     s->sub = rf_stack_sub(p->frames);
     const int depths = (p->frames - 1) * s->sub + 1;
     s->labels = depths <= 24 ? (depths + 7) / 8 * 8 : REFOCUS_STACK_MOST_FRAMES;
@@ -207,28 +209,45 @@ uint16_t rf_stack_disparity(const struct refocus_stack *s, int depth)
     return (uint16_t)(d > 0 ? d < 65535 ? d : 65535 : 0);
 }
 
+struct rows {
+    struct refocus_stack *stack;
+    const struct refocus_stack_result *result;
+    atomic_llong measured; /* pixels */
+};
+
+static void write_row(void *context, int y, int worker)
+{
+    struct rows *const rows = context;
+    const struct refocus_stack *s = rows->stack;
+    const struct refocus_stack_result *r = rows->result;
+    uint16_t *const depth = s->depth_row + (ptrdiff_t)worker * s->width;
+    uint8_t *const sure = s->sure_row + (ptrdiff_t)worker * s->width;
+    int measured = 0;
+
+    rf_stack_depth_row(s, depth, sure, y);
+    if (r->photo)
+        rf_stack_compose_row(s, r->photo + y * r->photo_stride, depth, y);
+    if (r->confidence)
+        memcpy(r->confidence + y * r->confidence_stride, sure, (size_t)s->width);
+    for (int x = 0; x < s->width; x++)
+        measured += sure[x] >= MEASURED;
+    atomic_fetch_add_explicit(&rows->measured, measured, memory_order_relaxed);
+    if (r->disparity) {
+        uint16_t *out = (uint16_t *)(void *)((char *)r->disparity + y * r->disparity_stride);
+
+        for (int x = 0; x < s->width; x++)
+            out[x] = rf_stack_disparity(s, depth[x]);
+    }
+}
+
 static void write_rows(struct refocus_stack *s, struct refocus_stack_result *r)
 {
-    int64_t measured = 0;
+    struct rows rows = {.stack = s, .result = r};
 
-    for (int y = 0; y < s->height; y++) {
-        rf_stack_depth_row(s, s->depth_row, s->sure_row, y);
-        if (r->photo)
-            rf_stack_compose_row(s, r->photo + y * r->photo_stride, s->depth_row, y);
-        if (r->confidence)
-            memcpy(r->confidence + y * r->confidence_stride, s->sure_row, (size_t)s->width);
-        for (int x = 0; x < s->width; x++)
-            measured += s->sure_row[x] >= MEASURED;
-        if (r->disparity) {
-            uint16_t *out = (uint16_t *)(void *)((char *)r->disparity + y * r->disparity_stride);
-
-            for (int x = 0; x < s->width; x++)
-                out[x] = rf_stack_disparity(s, s->depth_row[x]);
-        }
-    }
+    rf_pool_run(s->pool, write_row, &rows, s->height);
     if (r->photo)
         rf_stack_decontaminate(s, &(struct rf_stack_photo){r->photo, r->photo_stride});
-    r->measured = (float)((double)measured / ((double)s->width * s->height));
+    r->measured = (float)((double)rows.measured / ((double)s->width * s->height));
 }
 
 /* Whether the sharpness of a sample has two peaks, and less than half of them between. */
@@ -279,10 +298,46 @@ static bool good_result(const struct refocus_stack *s, const struct refocus_stac
            !r->reserved && !r->reserved_too;
 }
 
+static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
+{
+    s->finished = true;
+    own->order_margin = 1;
+    if (s->order == REFOCUS_STACK_ORDER_FOUND && s->without_positions)
+        own->order_margin = rf_stack_find_order(s);
+    s->still = reference_of(s);
+    own->reference = s->frame[s->still].added;
+    memset(own->order, 0, sizeof own->order);
+    for (int k = 0; k < s->count; k++)
+        own->order[k] = (uint8_t)s->frame[k].added;
+    rf_stack_align(s, s->still);
+    own->alike = (float)s->alike;
+    rf_stack_find_moving(s);
+    s->sub = rf_stack_sub(s->count);
+    if ((s->count - 1) * s->sub >= s->labels) /* more frames were announced than came */
+        s->sub = 1;
+    s->depths = (s->count - 1) * s->sub + 1;
+    rf_stack_costs(s);
+    own->disorder = disorder_of(s);
+    rf_stack_aggregate(s);
+    rf_stack_choose(s);
+    rf_stack_fill(s);
+    if (s->count > 2)
+        rf_stack_silhouettes(s);
+    write_rows(s, own);
+    own->moving = (float)((double)s->moving / ((double)s->columns * s->rows));
+    own->moved = 0;
+    for (int k = 0; k < s->count; k++) {
+        const double reach = rf_similarity_reach(&s->frame[k].from_reference, s->width, s->height);
+
+        own->moved = reach > own->moved ? (float)reach : own->moved;
+    }
+}
+
 int refocus_stack_finish(struct refocus_stack *s, struct refocus_stack_result *result)
 {
     const size_t first = REFOCUS_SIZE_TO(struct refocus_stack_result, moved);
     struct refocus_stack_result own;
+    struct rf_pool pool;
     int status;
 
     if (!s)
@@ -294,36 +349,11 @@ int refocus_stack_finish(struct refocus_stack *s, struct refocus_stack_result *r
         return REFOCUS_ERR_ARGUMENT;
     if (s->count < REFOCUS_STACK_LEAST_FRAMES || s->finished || reference_of(s) < 0)
         return REFOCUS_ERR_STATE;
-    s->finished = true;
-    own.order_margin = 1;
-    if (s->order == REFOCUS_STACK_ORDER_FOUND && s->without_positions)
-        own.order_margin = rf_stack_find_order(s);
-    s->still = reference_of(s);
-    own.reference = s->frame[s->still].added;
-    memset(own.order, 0, sizeof own.order);
-    for (int k = 0; k < s->count; k++)
-        own.order[k] = (uint8_t)s->frame[k].added;
-    rf_stack_align(s, s->still);
-    own.alike = (float)s->alike;
-    rf_stack_find_moving(s);
-    s->sub = rf_stack_sub(s->count);
-    if ((s->count - 1) * s->sub >= s->labels) /* more frames were announced than came */
-        s->sub = 1;
-    s->depths = (s->count - 1) * s->sub + 1;
-    rf_stack_costs(s);
-    own.disorder = disorder_of(s);
-    rf_stack_aggregate(s);
-    rf_stack_choose(s);
-    rf_stack_fill(s);
-    if (s->count > 2)
-        rf_stack_silhouettes(s);
-    write_rows(s, &own);
-    own.moving = (float)((double)s->moving / ((double)s->columns * s->rows));
-    own.moved = 0;
-    for (int k = 0; k < s->count; k++) {
-        const double reach = rf_similarity_reach(&s->frame[k].from_reference, s->width, s->height);
-
-        own.moved = reach > own.moved ? (float)reach : own.moved;
-    }
+    status = rf_pool_start(&pool, s->threads, NULL, NULL);
+    if (status)
+        return status;
+    s->pool = &pool;
+    finish(s, &own);
+    rf_pool_end(&pool);
     return refocus_struct_write(result, first, &own, sizeof own);
 }

@@ -27,6 +27,7 @@ struct scene {
 
 static int frames = FRAMES; /* so many are drawn */
 static uint32_t order_by;   /* enum refocus_stack_order */
+static int32_t threads;     /* 0: one for each processor */
 static const double *focus; /* where each frame is focused; NULL: its number */
 static uint8_t frame[MOST][3 * PIXELS], photo[3 * PIXELS], confidence[PIXELS];
 static uint16_t disparity[PIXELS];
@@ -129,6 +130,7 @@ static inline struct refocus_stack_result run(const int *order, const double *po
 
     params.align = align;
     params.order = order_by;
+    params.threads = threads;
     result.photo = photo;
     result.photo_stride = 3 * W;
     result.disparity = disparity;

@@ -105,9 +105,35 @@ static int place_edges(void)
     return refocus_depth_edges(&photo, &map, &params, out, 2 * SIDE, &report);
 }
 
+static int finish_stack(void)
+{
+    const struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, SIDE, SIDE, 3 * SIDE);
+    struct refocus_stack_params params = refocus_stack_params_default(SIDE, SIDE, 2);
+    struct refocus_stack_result result = refocus_stack_result_default();
+    struct refocus_stack *stack = NULL;
+    int status;
+
+    params.threads = THREADS;
+    assert_int_equal(refocus_stack_create(&stack, &params), REFOCUS_OK);
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(refocus_stack_add(stack, &photo, i), REFOCUS_OK);
+    status = refocus_stack_finish(stack, &result);
+    if (status != REFOCUS_OK) { /* it is as it was */
+        const int again = fail_at;
+
+        fail_at = 0;
+        assert_int_equal(refocus_stack_finish(stack, &result), REFOCUS_OK);
+        fail_at = again;
+        calls = again;
+    }
+    refocus_stack_destroy(&stack);
+    return status;
+}
+
 static void each_call(void **state)
 {
-    int (*const acts[])(void) = {create, upsample, place_edges};
+    int (*const acts[])(void) = {create, upsample, place_edges, finish_stack};
 
     (void)state;
     for (size_t i = 0; i < sizeof acts / sizeof *acts; i++) {
