@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""usage: test_readme.py REFOCUS  -- each refocus command that README.md shows, as it stands there.
+"""usage: test_readme.py REFOCUS  -- each refocus command that README.md and the page of the command
+(platform/cli/README.md) show, as it stands there.
 
 REFOCUS is of a build with everything in it, as examples/quickstart.sh makes it. Pictures of the
 names that the page uses are made in a folder of the test's own. A command succeeds, or lacks a
@@ -40,10 +41,20 @@ def code_lines(page):
     return [re.sub(r' +# .*', '', line) for line in block.splitlines()]
 
 
+def read(page):
+    with open(os.path.join(ROOT, page), encoding='utf-8') as file:
+        return file.read()
+
+
+def lines_shown():
+    """Lines of both pages, but for programs."""
+    pages = read('README.md') + read('platform/cli/README.md')
+    lines = code_lines(re.sub(r'(?s)```.*?```', '', pages))
+    return [line for line in lines if re.match(r'[\w./-]+ *', line)]
+
+
 def commands():
-    with open(os.path.join(ROOT, 'README.md'), encoding='utf-8') as file:
-        lines = code_lines(file.read())
-    return [line for line in lines if re.match(r'(build/platform/cli/)?refocus ', line)]
+    return [line for line in lines_shown() if re.match(r'(build/platform/cli/)?refocus ', line)]
 
 
 def texture(width, height, shift=0):
@@ -154,9 +165,7 @@ class Readme(unittest.TestCase):
                   r'gst-launch-1\.0 ': 'gstreamer/test_lines.py',
                   r'gegl ': 'gegl/test_lines.py',
                   r'pip install \./platform/python': 'python/wheel.sh'}
-        with open(os.path.join(ROOT, 'README.md'), encoding='utf-8') as file:
-            text = re.sub(r'(?s)```.*?```', '', file.read())
-        lines = [line for line in code_lines(text) if re.match(r'[\w./-]+ *', line)]
+        lines = lines_shown()
         for line in lines:
             if line in commands():
                 continue
@@ -167,8 +176,7 @@ class Readme(unittest.TestCase):
 
     def test_front(self):
         """The first paragraphs say what it is made of."""
-        with open(os.path.join(ROOT, 'README.md'), encoding='utf-8') as file:
-            page = ' '.join(file.read().split())
+        page = ' '.join(read('README.md').split())
         for words in ('fixed-point, NEON-friendly C core', 'depth-guided randomized intersection '
                       'search and Gaussian-weighted blending', 'libcamera and V4L2', 'OpenCV'):
             self.assertIn(words, page[:1500])
