@@ -14,11 +14,11 @@ struct bins {
     int noisy;
 };
 
-/* Returns the width of a bin, by the largest blur; 0: they are a pixel wide up to 31.5 pixels of
- * blur, then a sixteenth of the octave. */
+/* Returns the width of a bin, by the largest blur and what rounding may add to it; 0: they are a
+ * pixel wide up to 31.5 pixels of blur, then a sixteenth of the octave. */
 static double bin_width(const struct twin *t)
 {
-    const double largest = t->K * fmax(t->df, 1 - t->df);
+    const double largest = t->K * fmax(t->df, 1 - t->df) + t->unit / 256.0;
 
     return t->unit > 1 ? 0 : largest <= 31.5 ? 0.25 : largest <= 63.5 ? 0.5 : 1;
 }
