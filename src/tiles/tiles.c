@@ -78,8 +78,12 @@ static bool is_dense(const struct rf_bins *bins, struct rf_bin_scale scale, int 
     const int first = rf_bin_of(scale, low), last = rf_bin_of(scale, high);
     int found = 0;
 
-    for (int bin = first; bin <= last; bin++)
-        found += (int)(bins->word[bin / 64] >> bin % 64 & 1);
+    for (int k = first / 64; k <= last / 64; k++) {
+        const uint64_t from = k == first / 64 ? UINT64_MAX << first % 64 : UINT64_MAX;
+        const uint64_t to = k == last / 64 ? UINT64_MAX >> (63 - last % 64) : UINT64_MAX;
+
+        found += __builtin_popcountll(bins->word[k] & from & to);
+    }
     return 2 * found > last - first;
 }
 
