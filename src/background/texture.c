@@ -223,13 +223,26 @@ static void set_equations(const struct step *step, const struct window *w, const
     }
 }
 
-/* A residual in whole codes. Covariances of few pairs need not be those of any texture: where that
- * leaves the equations without a finite solution, nothing is predicted. */
-static int whole_residual(float residual)
+/* The residual of a channel in whole codes, by the weights of a lane: no more than the known ones
+ * that it is predicted from have. Covariances of few pairs need not be those of any texture: what
+ * the equations then make of them may be anything, or not finite, where nothing is predicted. */
+static int predicted(const struct rf_texture_scratch *s, const struct site *site, int c, int lane)
 {
-    const float whole = floorf(residual + 0.5f);
+    int least = 0, most = 0;
+    float sum = 0, whole;
 
-    return whole < -255 ? -255 : whole > 255 ? 255 : isnan(whole) ? 0 : (int)whole;
+    for (int k = 0; k < site->count; k++) {
+        const int known = s->residual[c][site->at[k]];
+
+        least = rf_smaller(least, known);
+        most = rf_larger(most, known);
+        sum += s->weight[k][lane] * (float)known;
+    }
+    whole = floorf(sum * (float)site->fade * (1.0f / 256) + 0.5f);
+    return isnan(whole)           ? 0
+           : whole < (float)least ? least
+           : whole > (float)most  ? most
+                                  : (int)whole;
 }
 
 /* Predicts the residuals of up to LANES sites and adds them to the light. */
@@ -248,12 +261,7 @@ static void predict(const struct step *step, const struct window *w, const struc
     for (int i = 0; i < sites; i++) {
         for (int c = 0; c < 3; c++) {
             uint16_t *light = fine->light.channel[c] + site[i].y * fine->light.stride + site[i].x;
-            float sum = 0;
-
-            for (int k = 0; k < site[i].count; k++)
-                sum += s->weight[k][i] * s->residual[c][site[i].at[k]];
-            sum *= (float)site[i].fade * (1.0f / 256);
-            *light = (uint16_t)changed(step, *light, whole_residual(sum));
+            *light = (uint16_t)changed(step, *light, predicted(s, &site[i], c, i));
         }
     }
 }
