@@ -1,5 +1,6 @@
 /* block_motion.c: finds where each block of a depth map was in the frame before. */
 #include "depth/temporal.h"
+#include "support/compare.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -16,21 +17,16 @@ struct block {
     int x, y, columns, rows;
 };
 
-static int clamp(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
-}
-
 static int cost(const struct block *b, struct rf_motion v)
 {
     int sum = v.x || v.y ? STANDING : 0;
 
     for (int y = b->y; y < b->y + b->rows; y++) {
         const long here = (long)y * b->width;
-        const long there = (long)clamp(y + v.y, b->height - 1) * b->width;
+        const long there = (long)rf_clamp(y + v.y, 0, b->height - 1) * b->width;
 
         for (int x = b->x; x < b->x + b->columns; x++) {
-            const long p = here + x, q = there + clamp(x + v.x, b->width - 1);
+            const long p = here + x, q = there + rf_clamp(x + v.x, 0, b->width - 1);
             const int apart = abs(b->now->disparity[p] - b->last->disparity[q]) >> 8;
 
             sum += abs(b->now->guide[p] - b->last->guide[q]) +

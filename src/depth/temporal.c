@@ -9,6 +9,7 @@
 #include "image/format.h"
 #include "image/read.h"
 #include "support/arena.h"
+#include "support/compare.h"
 
 enum {
     NEARLY = 3, /* codes of the guide that are not worth to look beside for less */
@@ -155,11 +156,6 @@ int refocus_temporal_rescale(struct refocus_temporal *f, double scale, double of
     return REFOCUS_OK;
 }
 
-static int clamp(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
-}
-
 /* Filters one sample as refocus_temporal_run() says. A block of which most
  * changes needs no majority of looks. */
 static void filter(struct refocus_temporal *f, size_t i, bool changes)
@@ -224,8 +220,8 @@ static struct rf_motion find_origin(const struct refocus_temporal *f, int x, int
     if (!f->guided || least <= NEARLY)
         return best;
     for (int k = 0; k < 9; k++) {
-        const int bx = clamp(tx + k % 3 - 1, f->width - 1),
-                  by = clamp(ty + k / 3 - 1, f->height - 1);
+        const int bx = rf_clamp(tx + k % 3 - 1, 0, f->width - 1),
+                  by = rf_clamp(ty + k / 3 - 1, 0, f->height - 1);
         const int apart = abs(here - guide[(size_t)by * (size_t)f->width + (size_t)bx]);
 
         if (apart < least) {

@@ -1,5 +1,6 @@
 /* upsample.c: brings a disparity map to the size of the photo: means, and the order of steps. */
 #include "depth/upsample.h"
+#include "support/compare.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -112,11 +113,6 @@ static struct rf_taps taps_at(int x, int size, int samples)
     return taps;
 }
 
-static int clamp(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
-}
-
 static void widen_row(void *context, int item, int worker)
 {
     const struct rf_upsampler *up = context;
@@ -149,8 +145,8 @@ static void settle_block(const struct rf_upsampler *up, const struct three *thre
         row[j] = three->row[j] + x;
         sure[j] = three->sure[j] + x;
         for (int i = -1; i <= n && !inside; i++) {
-            near_by[j][i + 1] = row[j][clamp(x + i, right) - x];
-            near_sure[j][i + 1] = sure[j][clamp(x + i, right) - x];
+            near_by[j][i + 1] = row[j][rf_clamp(x + i, 0, right) - x];
+            near_sure[j][i + 1] = sure[j][rf_clamp(x + i, 0, right) - x];
         }
         row[j] = inside ? row[j] : near_by[j] + 1;
         sure[j] = inside ? sure[j] : near_sure[j] + 1;
@@ -166,7 +162,7 @@ static void settle_row(const struct rf_upsampler *up, int y)
     struct three three = {.out = up->settled.at + kept * up->settled.stride};
 
     for (int j = 0; j < 3; j++) {
-        const ptrdiff_t v = clamp(y - 1 + j, up->photo->height - 1);
+        const ptrdiff_t v = rf_clamp(y - 1 + j, 0, up->photo->height - 1);
 
         three.row[j] = up->out.at + v * up->out.stride;
         three.sure[j] = up->sure.at + (v - up->first_row) * up->sure.stride;
@@ -299,9 +295,9 @@ static void fill_strip(struct rf_upsampler *up, struct rf_pool *pool, int begin,
 {
     const int bands = (up->rows + SPAN) / SPAN; /* rows + 1 in all */
     const int settled = end < bands ? end - 1 : bands, taken = end < bands ? end - 2 : bands;
-    const int last = clamp(end * SPAN - PAD + RF_TAPS - 1, up->rows - 1);
+    const int last = rf_clamp(end * SPAN - PAD + RF_TAPS - 1, 0, up->rows - 1);
 
-    up->first_wide = clamp(begin * SPAN - PAD, up->rows - 1);
+    up->first_wide = rf_clamp(begin * SPAN - PAD, 0, up->rows - 1);
     rf_pool_run(pool, widen_row, up, last - up->first_wide + 1);
     run_bands(up, pool, fill_band, begin, end);
     run_bands(up, pool, settle_border, begin ? begin - 1 : 0, settled);

@@ -5,21 +5,17 @@
 #include <string.h>
 
 #include "depth/dequantise.h"
+#include "support/compare.h"
 
 enum {
     PAD = RF_UPSAMPLE_PAD,
     QUARTER = 2, /* shift of colours: sums of three differences then fit */
 };
 
-static int clamp(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
-}
-
 /* The column or row, of `size`, that the i-th of `samples` lies on. */
 static int place(int i, int samples, int size)
 {
-    return (int)((2 * (int64_t)clamp(i, samples - 1) + 1) * size / (2 * (int64_t)samples));
+    return (int)((2 * (int64_t)rf_clamp(i, 0, samples - 1) + 1) * size / (2 * (int64_t)samples));
 }
 
 /* place() of 0, 1, 2 ... without divisions: `at` and `rest` / per. */

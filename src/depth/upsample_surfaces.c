@@ -3,6 +3,7 @@
 
 #include "depth/upsample.h"
 #include "image/format.h"
+#include "support/compare.h"
 
 enum {
     PAD = RF_UPSAMPLE_PAD,
@@ -135,11 +136,6 @@ static inline void put_rows(const struct patch *patch, const uint16_t *result,
     }
 }
 
-static int clamp(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
-}
-
 /* Elements of a row from x on; beyond the border those at the border. */
 static const uint8_t *take8(uint8_t spare[RF_TURNED], const uint8_t *row, int x, int columns)
 {
@@ -193,7 +189,7 @@ static void look_around(struct patch *patch, int first)
     ptrdiff_t of_colour[RF_AROUND], of_trust[RF_AROUND];
 
     for (int j = 0; j < RF_AROUND; j++) {
-        const int y = clamp(patch->row - 2 + j, up->rows - 1);
+        const int y = rf_clamp(patch->row - 2 + j, 0, up->rows - 1);
         const uint16_t *samples = up->coarse.at + y * up->coarse.stride;
 
         row[j] = inside ? samples + x : take16(spare[j], samples, x, up->columns);
@@ -345,7 +341,8 @@ void rf_upsample_rows(const struct rf_upsampler *up, int first, int y0, int y1, 
     patch->row = first;
     patch->bytes = refocus_format_bytes(up->photo->format);
     for (int i = 0; i < RF_TAPS; i++)
-        wide[i] = up->wide.at + (clamp(first + i, up->rows - 1) - up->first_wide) * up->wide.stride;
+        wide[i] =
+            up->wide.at + (rf_clamp(first + i, 0, up->rows - 1) - up->first_wide) * up->wide.stride;
     for (int y = y0; y < y1 && !rf_run_cancelled(up->run); y++) {
         up->kernels->blend4(up->out.at + y * up->out.stride, wide, up->down[y].share, width);
         memset(up->sure.at + (y - up->first_row) * up->sure.stride, 255, (size_t)width);

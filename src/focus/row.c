@@ -1,12 +1,8 @@
 /* row.c: computes the signed blur of a row from places and disparities. */
 #include "focus/focus.h"
+#include "support/compare.h"
 
 #include <stdlib.h>
-
-static int clamp(int v, int least, int most)
-{
-    return v < least ? least : v > most ? most : v;
-}
 
 /* How much a band leaves of a distance from its middle: nothing where it is sharp, then more and
  * more up to all of it. */
@@ -62,10 +58,10 @@ void rf_focus_row(const struct rf_focus_plan *plan, int16_t *blur, const uint16_
                   int y, int n)
 {
     for (int i = 0; i < n; i++) {
-        const int d = clamp(disparity[i], plan->least, plan->most);
+        const int d = rf_clamp(disparity[i], plan->least, plan->most);
         const int32_t e = plan->field.shape == REFOCUS_FIELD_LENS ? lens_at(plan, x + i, y, d)
                                                                   : rf_field_at(plan, x + i, y, d);
-        const uint32_t distance = (uint32_t)clamp(abs(e), 0, RF_ONE);
+        const uint32_t distance = (uint32_t)rf_clamp(abs(e), 0, RF_ONE);
         /* The kernel signed_blur computes this for a plain lens, with the same bits. */
         uint32_t s = (distance * plan->focus.radius + (1 << 15)) >> 16;
 

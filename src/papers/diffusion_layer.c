@@ -2,14 +2,10 @@
  * Kosloff & Barsky 2007, sections 7.1 and 7.2. */
 #include "papers/diffusion.h"
 #include "image/viewport.h"
+#include "support/compare.h"
 
 #include <math.h>
 #include <string.h>
-
-static int lesser(int a, int b)
-{
-    return a < b ? a : b;
-}
 
 static bool is_member(const struct rf_diffusion_layer *layer, int x, int y)
 {
@@ -52,12 +48,12 @@ static void number_rings(struct rf_diffusion_layer *layer)
         if (j % h > 0) {
             if (w > 2)
                 from_row_before(row + 1, before + 1, w - 2);
-            row[0] = (uint16_t)lesser(row[0], lesser(before[0], before[w > 1]) + 1);
-            row[w - 1] =
-                (uint16_t)lesser(row[w - 1], lesser(before[w - 1], before[w - 1 - (w > 1)]) + 1);
+            row[0] = (uint16_t)rf_smaller(row[0], rf_smaller(before[0], before[w > 1]) + 1);
+            row[w - 1] = (uint16_t)rf_smaller(
+                row[w - 1], rf_smaller(before[w - 1], before[w - 1 - (w > 1)]) + 1);
         }
         for (int x = up ? w - 1 : 0; x >= 0 && x < w; x += step)
-            row[x] = (uint16_t)(ring = lesser(row[x], ring + 1));
+            row[x] = (uint16_t)(ring = rf_smaller(row[x], ring + 1));
     }
 }
 
@@ -85,16 +81,16 @@ bool rf_layer_grow(struct rf_diffusion_layer *layer)
         for (int x = 0; x < w; x++) {
             if (layer->rings[(size_t)y * (size_t)w + (size_t)x] > layer->reach + 1)
                 continue;
-            span->x0 = lesser(span->x0, x);
+            span->x0 = rf_smaller(span->x0, x);
             span->x1 = x + 1;
         }
         if (span->x0 >= span->x1) {
             *span = (struct rf_span){0, 0};
             continue;
         }
-        box.x0 = lesser(box.x0, span->x0);
-        box.y0 = lesser(box.y0, y);
-        box.x1 = -lesser(-box.x1, -span->x1);
+        box.x0 = rf_smaller(box.x0, span->x0);
+        box.y0 = rf_smaller(box.y0, y);
+        box.x1 = -rf_smaller(-box.x1, -span->x1);
         box.y1 = y + 1;
     }
     layer->box = box;
@@ -113,8 +109,8 @@ void rf_layer_list_edge(struct rf_diffusion_layer *layer)
         if (t % 64 == 0 && rf_cancelled(layer->f->exec))
             return;
         *tile = (struct rf_edge_tile){.first = count};
-        for (int y = y0; y < lesser(y0 + RF_EDGE_TILE, h); y++) {
-            for (int x = x0; x < lesser(x0 + RF_EDGE_TILE, w); x++) {
+        for (int y = y0; y < rf_smaller(y0 + RF_EDGE_TILE, h); y++) {
+            for (int x = x0; x < rf_smaller(x0 + RF_EDGE_TILE, w); x++) {
                 if (!is_member(layer, x, y) ||
                     (is_member(layer, x - 1, y) && is_member(layer, x + 1, y) &&
                      is_member(layer, x, y - 1) && is_member(layer, x, y + 1)))
@@ -222,8 +218,8 @@ static bool is_outside(const struct rf_diffusion_layer *layer, int x, int y)
 void rf_layer_extrapolate_tile(const struct rf_diffusion_layer *layer, int tile)
 {
     const int tx = tile % layer->tiles_x, ty = tile / layer->tiles_x;
-    const int x0 = tx * RF_EDGE_TILE, x1 = lesser(x0 + RF_EDGE_TILE, layer->f->view->width);
-    const int y0 = ty * RF_EDGE_TILE, y1 = lesser(y0 + RF_EDGE_TILE, layer->f->view->height);
+    const int x0 = tx * RF_EDGE_TILE, x1 = rf_smaller(x0 + RF_EDGE_TILE, layer->f->view->width);
+    const int y0 = ty * RF_EDGE_TILE, y1 = rf_smaller(y0 + RF_EDGE_TILE, layer->f->view->height);
     struct sums node[NODES], sums;
     bool have_nodes = false;
 

@@ -7,6 +7,7 @@
  */
 #include "papers/blurriness.h"
 #include "papers/target.h"
+#include "support/compare.h"
 
 #include <assert.h>
 #include <math.h>
@@ -130,8 +131,8 @@ static void enlarged_row(const struct rf_target *b, int c, int y, int16_t *row, 
 
     if (b->shift == 0)
         row = out;
-    mix_rows(row, light + width * (size_t)rf_clamp(first, b->height - 1),
-             light + width * (size_t)rf_clamp(first + 1, b->height - 1),
+    mix_rows(row, light + width * (size_t)rf_clamp(first, 0, b->height - 1),
+             light + width * (size_t)rf_clamp(first + 1, 0, b->height - 1),
              (int16_t)(share << (14 - b->shift)), b->width);
     if (b->shift == 0)
         return;

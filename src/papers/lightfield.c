@@ -10,6 +10,7 @@
  * as the blur s of the pixel that was seen, which also tells its place, p + (u, v) s.
  */
 #include "papers/papers.h"
+#include "support/compare.h"
 
 #include <string.h>
 
@@ -45,16 +46,6 @@ static uint64_t work_bytes(const struct rf_limits *limits)
     return arena.used;
 }
 
-static int lesser(int a, int b)
-{
-    return a < b ? a : b;
-}
-
-static int greater(int a, int b)
-{
-    return a > b ? a : b;
-}
-
 /* Warps all pixels that can come to rows y0 .. y1 - 1 in the view of a ray. */
 static void warp(const struct rf_frame *f, const struct refocus_ray *ray, int y0, int y1,
                  struct band *band)
@@ -65,12 +56,12 @@ static void warp(const struct rf_frame *f, const struct refocus_ray *ray, int y0
 
     for (ptrdiff_t i = 0; i < (ptrdiff_t)(y1 - y0) * f->view->width; i++)
         band->seen[i] = HOLE;
-    for (int y = y0 + lesser(ya, yb); y < y1 + greater(ya, yb); y++) {
+    for (int y = y0 + rf_smaller(ya, yb); y < y1 + rf_larger(ya, yb); y++) {
         const int16_t *s = f->blur.at + y * f->view->stride;
 
         if (rf_cancelled(f->exec))
             return;
-        for (int x = lesser(xa, xb); x < f->view->width + greater(xa, xb); x++) {
+        for (int x = rf_smaller(xa, xb); x < f->view->width + rf_larger(xa, xb); x++) {
             const int px = x - rf_offset(ray->u, s[x]), py = y - rf_offset(ray->v, s[x]);
             int16_t *seen;
 
@@ -128,7 +119,7 @@ static void do_band(void *context, int item, int worker)
     struct rf_arena arena = {f->work->at + (size_t)worker * band_bytes(&limits), 0};
     const struct rf_ray_set *set = &f->ray_sets->set[f->ray_sets->preset];
     const int y0 = f->region.y0 + item * BAND;
-    const int y1 = lesser(y0 + BAND, f->region.y1);
+    const int y1 = rf_smaller(y0 + BAND, f->region.y1);
     struct band band;
 
     lay_out(&band, f->view->width, &arena);

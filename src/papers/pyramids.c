@@ -1,5 +1,6 @@
 /* pyramids.c: what lies outside of the centre of attention is read from two Gaussian pyramids. */
 #include "papers/pyramids.h"
+#include "support/compare.h"
 
 #include <math.h>
 
@@ -60,18 +61,13 @@ static void first_level_row(void *context, int y, int worker)
     }
 }
 
-static int clamp(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
-}
-
 /* Filters by (1 4 6 4 1) / 16 about in[2 x], ends extended; neighbours are `step` apart. */
 static float reduce(const float *in, int x, int n, size_t step)
 {
     const float *at[5];
 
     for (int i = 0; i < 5; i++)
-        at[i] = in + (size_t)clamp(2 * x + i - 2, n - 1) * step;
+        at[i] = in + (size_t)rf_clamp(2 * x + i - 2, 0, n - 1) * step;
     return (*at[0] + *at[4] + 4 * (*at[1] + *at[3]) + 6 * *at[2]) / 16;
 }
 
@@ -157,8 +153,9 @@ static void sample(const struct rf_pyramid_level *level, int i, int x, int y, do
 
     for (int dy = 0; dy < 2; dy++) {
         for (int dx = 0; dx < 2; dx++) {
-            const size_t at = (size_t)clamp(iy + dy, level->height - 1) * (size_t)level->width +
-                              (size_t)clamp(ix + dx, level->width - 1);
+            const size_t at =
+                (size_t)rf_clamp(iy + dy, 0, level->height - 1) * (size_t)level->width +
+                (size_t)rf_clamp(ix + dx, 0, level->width - 1);
             const double w = share * (dx ? ax : 1 - ax) * (dy ? ay : 1 - ay);
 
             for (int c = 0; c < CHANNELS; c++)

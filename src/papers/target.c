@@ -1,6 +1,7 @@
 /* target.c: makes the blurred pictures of the NVIDIA white paper, by means of blocks and a filter.
  */
 #include "papers/target.h"
+#include "support/compare.h"
 
 #include <assert.h>
 #include <string.h>
@@ -69,7 +70,7 @@ static void reduce(const struct rf_target_work *work, int c, int y, uint32_t *su
     for (int j = 0; j < side; j++)
         add_row(sum,
                 work->f->light.channel[c] +
-                    rf_clamp(y * side + j, work->f->view->height - 1) * work->f->view->stride,
+                    rf_clamp(y * side + j, 0, work->f->view->height - 1) * work->f->view->stride,
                 work->f->view->width);
     for (int x = work->f->view->width; x < whole; x++)
         sum[x] = sum[work->f->view->width - 1];
@@ -94,9 +95,9 @@ static void reduce_weighted(const struct rf_target_work *work, int y,
         double sum[RF_TARGET_CHANNELS] = {0, 0, 0, 0};
 
         for (int i = 0; i < side * side; i++) {
-            const ptrdiff_t at =
-                rf_clamp(y * side + i / side, work->f->view->height - 1) * work->f->view->stride +
-                rf_clamp(x * side + i % side, work->f->view->width - 1);
+            const ptrdiff_t at = rf_clamp(y * side + i / side, 0, work->f->view->height - 1) *
+                                     work->f->view->stride +
+                                 rf_clamp(x * side + i % side, 0, work->f->view->width - 1);
             const double w = rf_weight_of(work->f, work->f->light.channel, at);
 
             sum[3] += w;
@@ -157,8 +158,8 @@ static void down_row(void *context, int y, int worker)
 
         memcpy(sum, middle, width * sizeof *sum);
         for (int k = 1; k <= work->taps; k++)
-            add_tap(sum, middle, plane + (size_t)rf_clamp(y - k, t->height - 1) * width,
-                    plane + (size_t)rf_clamp(y + k, t->height - 1) * width, work->tap[k], n);
+            add_tap(sum, middle, plane + (size_t)rf_clamp(y - k, 0, t->height - 1) * width,
+                    plane + (size_t)rf_clamp(y + k, 0, t->height - 1) * width, work->tap[k], n);
         for (int x = 0; x < n && c < 3; x++)
             t->light[c][(size_t)y * width + (size_t)x] =
                 (int16_t)(4 * (work->f->weighted ? sum[x] / weight[x] : sum[x]) + 0.5f);

@@ -33,11 +33,6 @@ static inline float *rf_target_scratch(const struct rf_target_work *work, int wo
     return work->row + (size_t)worker * (size_t)work->row_length * RF_TARGET_ROWS;
 }
 
-static inline int rf_clamp(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
-}
-
 /* Sets size and light for a blur radius in pixels that is cut at REFOCUS_PLAIN_BLUR_RADIUS. */
 void rf_target_make(struct rf_target_work *work, struct rf_target *target, double radius);
 

@@ -12,6 +12,7 @@
  */
 #include "papers/papers.h"
 #include "papers/trace.h"
+#include "support/compare.h"
 
 #include <math.h>
 
@@ -48,11 +49,6 @@ static uint8_t encode(const struct rf_exact *exact, double light)
             low = middle + 1;
     }
     return (uint8_t)low;
-}
-
-static int clamp(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
 }
 
 /* Rounds half up; |x| < 2^30. */
@@ -148,8 +144,8 @@ static bool trace(const struct rf_frame *f, const struct rf_path *path, int x, i
 
     for (int i = 0; i < path->steps; i++) {
         const struct rf_step *step = &path->step[i];
-        const int tx = inside ? x + step->dx : clamp(x + step->dx, f->view->width - 1);
-        const int ty = inside ? y + step->dy : clamp(y + step->dy, f->view->height - 1);
+        const int tx = inside ? x + step->dx : rf_clamp(x + step->dx, 0, f->view->width - 1);
+        const int ty = inside ? y + step->dy : rf_clamp(y + step->dy, 0, f->view->height - 1);
         const uint16_t d = inside ? p[step->offset] : f->disparity.at[ty * f->view->stride + tx];
 
         if ((uint16_t)(d - step->low) <= step->width) {
@@ -168,8 +164,8 @@ static void mirror(const struct rf_frame *f, const struct rf_path *path, int x, 
     const double d = f->disparity.at[y * f->view->stride + x] / 65535.0;
     const double s = f->params->max_blur_radius * (f->params->focus_disparity - d);
 
-    *qx = clamp((int)floor(x - path->u * s + 0.5), f->view->width - 1);
-    *qy = clamp((int)floor(y - path->v * s + 0.5), f->view->height - 1);
+    *qx = rf_clamp((int)floor(x - path->u * s + 0.5), 0, f->view->width - 1);
+    *qy = rf_clamp((int)floor(y - path->v * s + 0.5), 0, f->view->height - 1);
 }
 
 void rf_path_add(const struct rf_frame *f, const struct rf_path *path, int x, int y, double weight,

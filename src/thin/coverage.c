@@ -191,11 +191,6 @@ void rf_coverage_splat(const struct rf_thin_pass *t)
     rf_pool_run(t->exec->pool, draw_band, (void *)t, rf_bands(t->view));
 }
 
-static int clamp(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
-}
-
 /* Cells around a tile; false: nothing is drawn there. */
 static bool get_cells(const struct rf_thin_pass *t, int tx, int ty,
                       int32_t part[RF_COVERAGE_CELLS][RF_COVERAGE_CELLS][4])
@@ -205,14 +200,15 @@ static bool get_cells(const struct rf_thin_pass *t, int tx, int ty,
     int any = 0;
 
     for (int j = 0; j < RF_COVERAGE_CELLS; j++) {
-        const int y = clamp(ty * CELLS + j - 1, down - 1);
+        const int y = rf_clamp(ty * CELLS + j - 1, 0, down - 1);
         int32_t(*const row)[4] = t->coverage->cell + (ptrdiff_t)y * t->coverage->stride;
 
         if (inside)
             memcpy(part[j], row[tx * CELLS - 1], sizeof part[j]);
         else
             for (int i = 0; i < RF_COVERAGE_CELLS; i++)
-                memcpy(part[j][i], row[clamp(tx * CELLS + i - 1, across - 1)], sizeof part[j][i]);
+                memcpy(part[j][i], row[rf_clamp(tx * CELLS + i - 1, 0, across - 1)],
+                       sizeof part[j][i]);
         for (int i = 0; i < RF_COVERAGE_CELLS; i++)
             any |= part[j][i][3];
     }

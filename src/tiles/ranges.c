@@ -1,6 +1,7 @@
 /* ranges.c: finds the least and the greatest blur of cells, and of the window that a shifted strip
  * lies in. */
 #include "tiles/ranges.h"
+#include "support/compare.h"
 
 enum {
     EACH = RF_TILE / RF_CELL,                  /* cells of a tile, across and down */
@@ -28,11 +29,6 @@ void rf_add_to_cell(const struct rf_cells *cells, int x, int y, int16_t blur)
 
     cells->least[at] = rf_lesser(blur, cells->least[at]);
     cells->most[at] = rf_greater(blur, cells->most[at]);
-}
-
-static int clamp(int v, int most)
-{
-    return v < 0 ? 0 : v > most ? most : v;
 }
 
 static void lesser_row(int16_t *restrict out, const int16_t *restrict a, const int16_t *restrict b,
@@ -99,7 +95,7 @@ void rf_range_rows(const struct rf_executor *exec, const struct rf_viewport *vie
         const int16_t *least[TALL_Y], *most[TALL_Y];
 
         for (int j = 0; j < TALL_Y; j++) {
-            const ptrdiff_t at = clamp(y + j, rows.last) * pass->cells.stride;
+            const ptrdiff_t at = rf_clamp(y + j, 0, rows.last) * pass->cells.stride;
 
             least[j] = pass->cells.least + at;
             most[j] = pass->cells.most + at;
@@ -130,9 +126,10 @@ void rf_force_foreground(const struct rf_viewport *view,
 {
     const int last_x = cells_x(view) - 1, last_y = view->tiles_y * EACH - 1;
 
-    for (int y = clamp(pixels.y0 / RF_CELL, last_y); y <= clamp(pixels.y1 / RF_CELL, last_y); y++)
-        for (int x = clamp(pixels.x0 / RF_CELL, last_x); x <= clamp(pixels.x1 / RF_CELL, last_x);
-             x++)
+    for (int y = rf_clamp(pixels.y0 / RF_CELL, 0, last_y);
+         y <= rf_clamp(pixels.y1 / RF_CELL, 0, last_y); y++)
+        for (int x = rf_clamp(pixels.x0 / RF_CELL, 0, last_x);
+             x <= rf_clamp(pixels.x1 / RF_CELL, 0, last_x); x++)
             foreground->most[y * foreground->stride + x] = INT16_MAX;
 }
 
@@ -146,7 +143,8 @@ void rf_mark_ranges_in_background(const struct rf_executor *exec, const struct r
         const int16_t *cell[TALL_Y];
 
         for (int j = 0; j < TALL_Y; j++)
-            cell[j] = pass->foreground.most + clamp(y + j, rows.last) * pass->foreground.stride;
+            cell[j] =
+                pass->foreground.most + rf_clamp(y + j, 0, rows.last) * pass->foreground.stride;
         if (pass->whole_tiles)
             join_strips(cell, joined_rows(scratch, &rows), rows.cells, greater_row);
         exec->kernels->mark_in_background(pass->range.at + y * pass->range.stride - rows.border,

@@ -105,7 +105,7 @@ static int separate(struct rf_thin *out, int most, struct rf_thin_batch *b,
 int RF_VEC(rf_find_thin)(struct rf_thin *out, const struct rf_thin_tile *tile, int most,
                          void *memory)
 {
-    const int rows = clamp(tile->below, 0, RF_TILE), columns = clamp(tile->right, 0, RF_TILE);
+    const int rows = rf_clamp(tile->below, 0, RF_TILE), columns = rf_clamp(tile->right, 0, RF_TILE);
     struct share *const share = memory;
     struct rf_thin_window *const w = &share->window;
     struct places places;

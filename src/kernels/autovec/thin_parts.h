@@ -9,6 +9,7 @@
 
 #include "kernels/lanes.h"
 #include "kernels/kernels.h"
+#include "support/compare.h"
 
 enum {
     JUMP = 65535 / 32, /* disparities this far apart are two surfaces */
@@ -32,11 +33,6 @@ enum {
     BATCH = 32,          /* pixels that are looked at together */
     WIDER = RF_TILE + 8, /* loops of 16 are unrolled, and then not vectorised */
 };
-
-static inline int clamp(int v, int least, int most)
-{
-    return v < least ? least : v > most ? most : v;
-}
 
 /* sum / by, rounded down, for quotients below 2^13 and by < 2^30. `real` is the sum in
  * single precision, so that its quotient is less than 1 off; then the low 32 bits of

@@ -7,8 +7,8 @@
  * little farther are looked at where that is simpler. */
 static bool has_jump(const struct rf_thin_tile *t)
 {
-    const int x0 = -clamp(t->left, 0, AROUND), x1 = clamp(t->right, 0, RF_TILE + AROUND);
-    const int y0 = -clamp(t->above, 0, AROUND), y1 = clamp(t->below, 0, RF_TILE + AROUND);
+    const int x0 = -rf_clamp(t->left, 0, AROUND), x1 = rf_clamp(t->right, 0, RF_TILE + AROUND);
+    const int y0 = -rf_clamp(t->above, 0, AROUND), y1 = rf_clamp(t->below, 0, RF_TILE + AROUND);
     enum { TWICE = 2 * RF_TILE };
     uint16_t least[TWICE], most[TWICE], low = 65535, high = 0;
 
@@ -43,8 +43,9 @@ struct part {
 
 static struct part part_of(const struct rf_thin_tile *t)
 {
-    return (struct part){clamp(MARGIN - t->left, 0, MARGIN), clamp(MARGIN + t->right, 0, ROW),
-                         clamp(MARGIN - t->above, 0, MARGIN), clamp(MARGIN + t->below, 0, SPAN)};
+    return (struct part){rf_clamp(MARGIN - t->left, 0, MARGIN), rf_clamp(MARGIN + t->right, 0, ROW),
+                         rf_clamp(MARGIN - t->above, 0, MARGIN),
+                         rf_clamp(MARGIN + t->below, 0, SPAN)};
 }
 
 static void fill(uint16_t *row, uint16_t with, int first, int end)
