@@ -25,12 +25,12 @@ static int tiles_away(int number, bool chroma)
 static_assert(65535 * RF_SMOOTH_THIRD <= INT32_MAX && 65535 * RF_SMOOTH_THIRD >> 16 == 10922,
               "the whole share, Q15");
 
-void rf_prefilter_bounds(int above[RF_PREFILTER_STEPS], int rays, int largest, int unit)
+void rf_prefilter_bounds(int above[RF_PREFILTER_STEPS], int steps, int rays, int largest, int unit)
 {
     for (int i = 0; i < RF_PREFILTER_STEPS; i++) {
         const double gap = 1.5 * (1 << i);
         const double s = 256 * gap * sqrt(rays / 3.14159265358979) / (1 << unit);
-        const bool there = rays != REFOCUS_RAYS_FULL && (unit > 0 || i < RF_PLAIN_STEPS);
+        const bool there = rays != REFOCUS_RAYS_FULL && i < steps;
 
         above[i] = there && s < largest ? (int)s : INT16_MAX;
     }

@@ -1,8 +1,8 @@
 /* prefilter.h: smooths light where rays lie so far apart that they would miss pixels.
  *
  * Rays of a set of N hit the picture |s| sqrt(pi / N) pixels apart. Step 0 closes gaps from 1.5
- * pixels on; steps 1 and 2 close those twice and four times as wide, steps 3 to 6, where blurs may
- * exceed 127 pixels, those 8 to 64 times as wide. Each step goes, where |s| is
+ * pixels on; steps 1 to 6 close those twice to 64 times as wide; steps 3 and 4 are there where
+ * blurs may exceed 54 pixels, steps 5 and 6 where they may exceed 127. Each step goes, where |s| is
  * above above[step], over three rows and then three columns, 2^step pixels apart: a third of the
  * way to those pixels whose blur is within an eighth of its own (one pixel to two, of blurs in
  * units one unit to two) of that of the middle one. Light is left as it is elsewhere.
@@ -17,7 +17,14 @@
 #include "support/executor.h"
 #include "tiles/bins.h"
 
-enum { RF_PREFILTER_STEPS = 7, RF_PLAIN_STEPS = 3 /* steps for blurs of unit 0 */ };
+enum { RF_PREFILTER_STEPS = 7 };
+
+/* The most steps of a frame with blurs up to that radius, which its margins have to hold. 64 rays
+ * lie 12 pixels apart from 54 pixels of blur on, and 28 at 127. */
+static inline int rf_prefilter_most_steps(float max_blur_radius)
+{
+    return max_blur_radius > RF_PLAIN_RADIUS ? RF_PREFILTER_STEPS : max_blur_radius > 54 ? 5 : 3;
+}
 
 /* Chroma of a photo of Y, U and V: distances are in its samples, so it has bounds of its own. */
 struct rf_prefilter_chroma {
@@ -47,9 +54,8 @@ struct rf_prefilter {
 
 /* Sets the |s|, as it is stored, from which on the rays of a preset lie 1.5, 3, 6 and so on
  * pixels apart: for 64 rays 6.8, 13.5, 27.1 to 433 pixels. Those that are not below `largest`,
- * stored alike, those of steps 3 to 6 where unit is 0, and those of the rays of every pixel
- * become INT16_MAX. */
-void rf_prefilter_bounds(int above[RF_PREFILTER_STEPS], int rays, int largest, int unit);
+ * stored alike, those beyond `steps`, and those of the rays of every pixel become INT16_MAX. */
+void rf_prefilter_bounds(int above[RF_PREFILTER_STEPS], int steps, int rays, int largest, int unit);
 
 /* The number of steps for blurs of up to `largest`: an odd one, as light is there and back between
  * two planes. */

@@ -175,17 +175,19 @@ static int up_to_tiles(int v)
 /*
  * Chooses the sides and margins of blocks. The mark of a pixel depends on pixels 2 K + 1 away. An
  * inpainted pixel depends, by way of levels below RF_KEPT, on known pixels 12 away, whose light
- * depends on 7 more; blur, where there are highlights, depends on 5 more. Where blurs have a unit,
- * light depends on 127, and the slabs of a tile on blocks of tiles that begin K + 1 away.
+ * depends on up to 127 more (rf_prefilter_most_steps()); blur, where there are highlights, depends
+ * on 5 more. Where blurs have a unit, the slabs of a tile depend on blocks of tiles that begin K +
+ * 1 away.
  */
 static void shape_blocks(struct rf_in_place *in_place, float max_blur_radius)
 {
-    enum { MARK_BLOCK = 128, FAR = (1 << RF_PREFILTER_STEPS) - (1 << RF_PLAIN_STEPS) };
-    const int pad = rf_padding_for(max_blur_radius), unit = rf_unit_of(max_blur_radius);
+    enum { MARK_BLOCK = 128 };
+    const int pad = rf_padding_for(max_blur_radius);
+    const int filtered = (1 << rf_prefilter_most_steps(max_blur_radius)) - 1;
 
     in_place->mark_block = MARK_BLOCK;
     in_place->mark_margin = up_to_tiles(2 * pad + 9);
-    in_place->margin = up_to_tiles(pad + (unit ? 28 + FAR : 28));
+    in_place->margin = up_to_tiles(pad + 21 + filtered);
     if (in_place->mark_margin < in_place->margin)
         in_place->mark_margin = in_place->margin;
     in_place->block = MARK_BLOCK + 2 * (in_place->mark_margin - in_place->margin);

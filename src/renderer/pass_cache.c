@@ -171,7 +171,7 @@ static int thin_margin(const struct rf_frame *f)
 /* How far the steps of the pre-filter look together, and some. */
 static int filter_margin(const struct rf_frame *f)
 {
-    return f->focus.unit ? 1 << RF_PREFILTER_STEPS : 1 << RF_PLAIN_STEPS;
+    return 1 << rf_prefilter_most_steps(f->params->max_blur_radius);
 }
 
 /* The part of the window where the mark and the smooth light are the same as for the whole photo.

@@ -277,9 +277,9 @@ static int render(struct refocus_renderer *r, const struct rf_log *log,
     /* The steps of live frames set in gradually; those of stills, which do not move, at once, as
      * highlights keep more of their light then. */
     f->prefilter_fades = params->rays <= RF_LIVE_RAYS;
-    rf_prefilter_bounds(f->prefilter_above, params->rays,
-                        params->prefilter && !rf_searches_subtracted(f) ? f->focus.radius : 0,
-                        f->focus.unit);
+    rf_prefilter_bounds(
+        f->prefilter_above, rf_prefilter_most_steps(params->max_blur_radius), params->rays,
+        params->prefilter && !rf_searches_subtracted(f) ? f->focus.radius : 0, f->focus.unit);
     r->blurred = false;
     r->last_plan = f->plan;
     rf_run_begin(r);

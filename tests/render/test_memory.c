@@ -164,7 +164,10 @@ static void formula(void **state)
 /* Returns the most memory that strip mode takes, by the text of render.h. */
 static double stated_in_place(int width, int height, float blur, int threads)
 {
-    const double p = ceil((double)blur) + 2, m = 16 * ceil((p + (blur > 127 ? 148 : 28)) / 16);
+    const double p = ceil((double)blur) + 2, m = 16 * ceil((p + (blur > 127  ? 148
+                                                                 : blur > 54 ? 52
+                                                                             : 28)) /
+                                                           16);
     const double n = fmax(16 * ceil((2 * p + 9) / 16), m);
     const double s = 144 + 2 * n - m + fmax(m, 2 * p);
 

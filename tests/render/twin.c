@@ -109,12 +109,14 @@ static void smooth(const struct twin *t, double *out, const double *in, int step
     }
 }
 
-/* Steps of 1, 2 and 4 pixels from where rays lie 1.5, 3 and 6 pixels apart, and so on to 64 where
- * blurs may exceed 127 pixels; two more each if that can be at all. */
+/* Steps of 1, 2 and 4 pixels from where rays lie 1.5, 3 and 6 pixels apart, and so on to 16 where
+ * blurs may exceed 54 pixels and to 64 where they may exceed 127; two more each if that can be at
+ * all. */
 void twin_prefilter(struct twin *t)
 {
     const double apart = sqrt(t->params->render.rays / 3.14159265358979);
-    const int most = t->unit > 1 ? 64 : 4;
+    const float K = t->params->render.max_blur_radius;
+    const int most = K > 127 ? 64 : K > 54 ? 16 : 4;
     double *between;
     int last = 1;
 
