@@ -126,7 +126,7 @@ one_set=()
 
 gcc_stage() {
     say 'gcc, release: all tests'
-    CC=gcc CXX=g++ build gcc --buildtype=release && run gcc
+    CC=$gcc CXX=$gxx build gcc --buildtype=release && run gcc
 }
 
 # As on threads of callers, which may have little: 64 KiB for main() and all threads.
@@ -164,7 +164,7 @@ quickstart_stage() {
     say 'quickstart, the commands of the README, and the core alone'
     for kind in '' --core; do
         if REFOCUS_BUILD=$builds/quickstart$kind REFOCUS_OUT=$builds/quickstart-out \
-                CC=gcc CXX=g++ "$top/examples/quickstart.sh" $kind >"$log" 2>&1; then
+                CC=$gcc CXX=$gxx "$top/examples/quickstart.sh" $kind >"$log" 2>&1; then
             passed=$((passed + 1))
         else
             fail "examples/quickstart.sh $kind" "$log"
@@ -189,7 +189,7 @@ clang_stage() {
 minimal_stage() {
     say 'every optional feature off: the core alone'
     suites=(processors headers file capture strokes fuzz)
-    CC=gcc CXX=g++ build minimal --buildtype=release -Dauto_features=disabled \
+    CC=$gcc CXX=$gxx build minimal --buildtype=release -Dauto_features=disabled \
         -Dtests=enabled || return
     run minimal
     same_bytes minimal
@@ -197,7 +197,7 @@ minimal_stage() {
 
 bare_stage() {
     say 'the command without cameras, windows and OpenCV: it works with what is left'
-    CC=gcc CXX=g++ build bare --buildtype=release -Dv4l2=disabled -Dlibcamera=disabled \
+    CC=$gcc CXX=$gxx build bare --buildtype=release -Dv4l2=disabled -Dlibcamera=disabled \
         -Dpipewire=disabled -Dsdl2=disabled -Dopencv=disabled -Dheic=disabled -Dtools=enabled || return
     run bare --suite cli --suite capture
 }
@@ -403,6 +403,13 @@ if [ "$mode" != one ] && command -v npm >/dev/null && mkdir -p "$builds/axe" &&
     export REFOCUS_AXE=$builds/axe/package/axe.min.js
 else
     echo '    axe-core is not there: the page is tested by its own checks alone'
+fi
+
+# Files that several of gcc's release builds compile alike are compiled once.
+gcc=gcc gxx=g++
+if [ "$mode" != one ] && need_packages ccache; then
+    gcc='ccache gcc' gxx='ccache g++'
+    export CCACHE_DIR=$builds/ccache CCACHE_NOHASHDIR=1
 fi
 
 gcc_stage
