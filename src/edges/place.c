@@ -13,9 +13,12 @@ enum {
     MOST_ENLARGED = 4,     /* the map is brought to at most so many times its size */
     LEAST_CONTRAST = 2621, /* 0.04, of a ramp */
 };
-/* Softer edges are ramps of several pixels, which show. An exact map has 0.4, with smooth
- * silhouettes 1; straight lines between samples two pixels apart make 1.2. */
-static const double SOFT = 1.25;
+/* Softer edges hold disparities that nothing in the scene has, be it in one pixel. An exact map has
+ * 0.41, one with smooth (antialiased) silhouettes 0.6 to 1. */
+static const double SOFT = 0.5;
+/* The least softness of an enlarged map: straight lines between samples two pixels apart make 1.2.
+ */
+static const double ENLARGED = 1.25;
 /* Samples of a small map that were taken at points, as sensors do, have 0.4 at their own size;
  * means over areas mix two surfaces along edges and have 0.64 and more. */
 static const double MIXED = 0.6;
@@ -157,7 +160,7 @@ static double steady(const struct rf_edges *e, double softness)
 /* Maps are parted from this softness on; in a video it leans to what the last frame was. */
 static double least_soft(const struct rf_edges *e)
 {
-    return !e->last ? SOFT : e->last->parted ? SOFT - 0.1 : SOFT + 0.1;
+    return !e->last ? SOFT : e->last->parted ? SOFT - 0.05 : SOFT + 0.05;
 }
 
 /* Works on job->edges and leaves the result in its map; says whether it differs from the samples.
@@ -174,8 +177,8 @@ static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_repor
     rf_find_steepest(e);
     softness = steady(e, rf_measure_softness(e));
     soft = job->enlarged || softness >= least_soft(e);
-    if (job->enlarged && softness < SOFT) /* straight lines between samples are ramps */
-        softness = SOFT;
+    if (job->enlarged)
+        softness = fmax(softness, ENLARGED);
     /* A ramp of a Gaussian is 4 standard deviations long. */
     limits =
         (struct rf_ramp_limits){.steps = (int)(4 * softness + 2.5), .contrast = LEAST_CONTRAST};
