@@ -14,14 +14,12 @@ enum {
     LEAST_CONTRAST = 2621, /* 0.04, of a ramp */
 };
 /* Softer edges hold disparities that nothing in the scene has, be it in one pixel. An exact map has
- * 0.41, one with smooth (antialiased) silhouettes 0.6 to 1. */
+ * 0.41, one with smooth (antialiased) silhouettes 0.6 to 1. So have samples of a small map, at their
+ * own size, that were taken at points, as sensors do, and those that are means over areas. */
 static const double SOFT = 0.5;
 /* The least softness of an enlarged map: straight lines between samples two pixels apart make 1.2.
  */
 static const double ENLARGED = 1.25;
-/* Samples of a small map that were taken at points, as sensors do, have 0.4 at their own size;
- * means over areas mix two surfaces along edges and have 0.64 and more. */
-static const double MIXED = 0.6;
 
 /* ----- sizes and memory ----- */
 
@@ -252,7 +250,7 @@ bool rf_place_edges(const struct rf_place_edges *place, struct refocus_depth_edg
     if (job.enlarged) {
         const double softness = rf_softness_of_samples(&job);
 
-        if (softness < MIXED) {
+        if (softness < SOFT) {
             report->softness = (float)(softness * photo->width / job.columns);
             report->parted = 1;
             if (place->last)
