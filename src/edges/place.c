@@ -17,9 +17,6 @@ enum {
  * 0.41, one with smooth (antialiased) silhouettes 0.6 to 1. So have samples of a small map, at their
  * own size, that were taken at points, as sensors do, and those that are means over areas. */
 static const double SOFT = 0.5;
-/* The least softness of an enlarged map: straight lines between samples two pixels apart make 1.2.
- */
-static const double ENLARGED = 1.25;
 
 /* ----- sizes and memory ----- */
 
@@ -176,7 +173,7 @@ static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_repor
     softness = steady(e, rf_measure_softness(e));
     soft = job->enlarged || softness >= least_soft(e);
     if (job->enlarged)
-        softness = fmax(softness, ENLARGED);
+        softness = fmax(softness, SOFT);
     /* A ramp of a Gaussian is 4 standard deviations long. */
     limits =
         (struct rf_ramp_limits){.steps = (int)(4 * softness + 2.5), .contrast = LEAST_CONTRAST};
