@@ -155,8 +155,13 @@ void rf_find_rough_blocks(struct rf_edges *e, const uint16_t *plane);
 void rf_find_steepest(struct rf_edges *e);
 
 /* The softness of the map's edges: the standard deviation in pixels of the Gaussian that would make
- * such ramps of sharp edges. 0: there are too few to tell. After rf_find_steepest(). */
-double rf_measure_softness(const struct rf_edges *e);
+ * such ramps of sharp edges, which so many percent of them do not exceed. 0: there are too few to
+ * tell. After rf_find_steepest(). */
+double rf_measure_softness(const struct rf_edges *e, int percentile);
+
+/* What the softness of a map is taken to be. Wires and hair look less soft than the map is: their two
+ * ramps overlap. */
+enum { RF_SOFTNESS_PERCENTILE = 85 };
 
 /* Limits of what is taken for a ramp. */
 struct rf_ramp_limits {

@@ -162,7 +162,7 @@ double rf_softness_of_samples(struct rf_edge_job *job)
     rf_pool_run(own.pool, load_samples, job, job->rows);
     job->sample.at = own.near;
     rf_find_steepest(&own);
-    return rf_measure_softness(&own);
+    return rf_measure_softness(&own, RF_SOFTNESS_PERCENTILE);
 }
 
 /* Writes how many pixels of a row differ to the place of its first sample. */

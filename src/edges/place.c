@@ -14,9 +14,14 @@ enum {
     LEAST_CONTRAST = 2621, /* 0.04, of a ramp */
 };
 /* Softer edges hold disparities that nothing in the scene has, be it in one pixel. An exact map has
- * 0.41, one with smooth (antialiased) silhouettes 0.6 to 1. So have samples of a small map, at their
- * own size, that were taken at points, as sensors do, and those that are means over areas. */
-static const double SOFT = 0.5;
+ * 0.41, one with smooth (antialiased) silhouettes 0.49 and more. What lossy compression leaves around
+ * the edges of an exact map looks soft, but many of them are steps still, so that it is those that
+ * tell. */
+static const double SOFT = 0.475;
+enum { SHARP_PERCENTILE = 40 };
+/* Samples of a small map that were taken at points, as sensors do, have 0.41 at their own size;
+ * means over areas mix two surfaces along some edges. */
+static const double MIXED = 0.5;
 
 /* ----- sizes and memory ----- */
 
@@ -152,10 +157,12 @@ static double steady(const struct rf_edges *e, double softness)
     return last > 0 && fabs(softness - last) < last / 4 ? (3 * last + softness) / 4 : softness;
 }
 
-/* Maps are parted from this softness on; in a video it leans to what the last frame was. */
-static double least_soft(const struct rf_edges *e)
+/* Whether the map is parted; in a video that leans to what the last frame was. */
+static bool is_soft(const struct rf_edges *e)
 {
-    return !e->last ? SOFT : e->last->parted ? SOFT - 0.05 : SOFT + 0.05;
+    const double least = !e->last ? SOFT : e->last->parted ? SOFT - 0.03 : SOFT + 0.03;
+
+    return rf_measure_softness(e, SHARP_PERCENTILE) >= least;
 }
 
 /* Works on job->edges and leaves the result in its map; says whether it differs from the samples.
@@ -170,8 +177,8 @@ static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_repor
     bool soft;
 
     rf_find_steepest(e);
-    softness = steady(e, rf_measure_softness(e));
-    soft = job->enlarged || softness >= least_soft(e);
+    softness = steady(e, rf_measure_softness(e, RF_SOFTNESS_PERCENTILE));
+    soft = job->enlarged || is_soft(e);
     if (job->enlarged)
         softness = fmax(softness, SOFT);
     /* A ramp of a Gaussian is 4 standard deviations long. */
@@ -247,7 +254,7 @@ bool rf_place_edges(const struct rf_place_edges *place, struct refocus_depth_edg
     if (job.enlarged) {
         const double softness = rf_softness_of_samples(&job);
 
-        if (softness < SOFT) {
+        if (softness < MIXED) {
             report->softness = (float)(softness * photo->width / job.columns);
             report->parted = 1;
             if (place->last)

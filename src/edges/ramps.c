@@ -14,7 +14,6 @@ enum {
     MOST_STEPS = 16,         /* a longer ramp is a slope, when softness is measured */
     ROWS = 64,               /* softness is measured on so many, at least */
     FEWEST = 50,             /* pixels along edges to measure softness by */
-    PERCENTILE = 85, /* wires and hair look less soft than the map is: their two ramps overlap */
 };
 
 /* ----- blocks ----- */
@@ -331,7 +330,7 @@ static void add_ramp(const struct rf_edges *e, ptrdiff_t at, struct histogram *r
  * middle, c / (s sqrt(2 pi)) a pixel: so s = contrast / largest step / 2.507. The two pixels at a
  * step of an exact map read 1 / 2.507 = 0.4.
  */
-double rf_measure_softness(const struct rf_edges *e)
+double rf_measure_softness(const struct rf_edges *e, int percentile)
 {
     const int every = e->height / ROWS + 1;
     struct histogram ramps = {{0}, 0};
@@ -349,7 +348,7 @@ double rf_measure_softness(const struct rf_edges *e)
         }
     if (ramps.all * every < FEWEST * 256)
         return 0;
-    while (i < BINS - 1 && (below += ramps.bin[i]) * 100 < ramps.all * PERCENTILE)
+    while (i < BINS - 1 && (below += ramps.bin[i]) * 100 < ramps.all * percentile)
         i++;
     return (i + 0.5) / (16 * 2.5066);
 }

@@ -166,6 +166,32 @@ static void antialiased_is_parted(void **state)
     end(&p);
 }
 
+/* Lossy compression adds waves beside the edges of an exact map, so that most of its ramps look
+ * soft. It stays as it is. */
+static void compressed_stays(void **state)
+{
+    struct picture p = make(WIDTH, HEIGHT);
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct refocus_depth_edges_report report;
+
+        draw(&p, i ? disc_and_wire : disc, 1);
+        for (int k = 0; k < WIDTH * HEIGHT; k++) {
+            const int x = k % WIDTH, y = k / WIDTH;
+            const int wave = far_from_edges(i ? disc_and_wire : disc, x, y, 4) ? 0 : 16 * CODE;
+
+            p.map[k] = (uint16_t)(p.map[k] + (x % 4 < 2 ? wave : 0) - (y % 4 < 2 ? wave : 0));
+        }
+        memcpy(p.exact, p.map, WIDTH * HEIGHT * sizeof *p.map);
+        report = place(&p);
+        assert_true(report.softness >= 0.5F);
+        assert_true(report.parted == 0);
+        assert_same(&p, p.exact, "compressed", i);
+    }
+    end(&p);
+}
+
 /* A strip at the side, where few vote for what is near. */
 static struct seen strip(double x, double y)
 {
@@ -410,6 +436,7 @@ int main(void)
         cmocka_unit_test(slopes_stay),
         cmocka_unit_test(soft_is_parted),
         cmocka_unit_test(antialiased_is_parted),
+        cmocka_unit_test(compressed_stays),
         cmocka_unit_test(soft_before_grey),
         cmocka_unit_test(specks_of_photo),
         cmocka_unit_test(overshoot_goes),
