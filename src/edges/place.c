@@ -14,9 +14,9 @@ enum {
     LEAST_CONTRAST = 2621, /* 0.04, of a ramp */
 };
 /* Softer edges hold disparities that nothing in the scene has, be it in one pixel. An exact map has
- * 0.41, one with smooth (antialiased) silhouettes 0.49 and more. What lossy compression leaves around
- * the edges of an exact map looks soft, but many of them are steps still, so that it is those that
- * tell. */
+ * 0.41, one with smooth (antialiased) silhouettes 0.49 and more. What lossy compression leaves
+ * around the edges of an exact map looks soft, but many of them are steps still, so that it is
+ * those that tell. */
 static const double SOFT = 0.475;
 enum { SHARP_PERCENTILE = 40 };
 /* Samples of a small map that were taken at points, as sensors do, have 0.41 at their own size;
