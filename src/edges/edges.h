@@ -159,8 +159,8 @@ void rf_find_steepest(struct rf_edges *e);
  * tell. After rf_find_steepest(). */
 double rf_measure_softness(const struct rf_edges *e, int percentile);
 
-/* What the softness of a map is taken to be. Wires and hair look less soft than the map is: their
- * two ramps overlap. */
+/* The percentile that is the softness of a map. Wires and hair look less soft than the map is:
+ * their two ramps overlap. */
 enum { RF_SOFTNESS_PERCENTILE = 85 };
 
 /* Limits of what is taken for a ramp. */
