@@ -73,11 +73,11 @@ static inline struct refocus_depth_edges_report refocus_depth_edges_report_defau
  *     photo when it is in focus.
  *
  * A map of the photo's size that is sharp and lies on the photo comes out as it is, to the code.
- * A small map whose samples were taken at points, as sensors do, is brought to the photo's size by
- * refocus_upsample(): whether its edges lie on the photo's is not looked at, and on_photo and
- * changed are 0.
- * Of large photos with small maps the work is done at up to four times the map's size, and the
- * rest by refocus_upsample(). The result does not depend on threads or processor.
+ * A small map whose samples were taken at points, as sensors do, and that lies on the photo is
+ * brought to the photo's size by refocus_upsample(), and changed is 0. For a video
+ * (REFOCUS_DEPTH_EDGES_STEADY) whether it does is not looked at, and on_photo is 0, too. Of large
+ * photos with small maps the work is done at up to four times the map's size, and the rest by
+ * refocus_upsample(). The result does not depend on threads or processor.
  *
  * @param photo   any format, upright as the map is
  * @param map     covers the same view as the photo; see struct refocus_disparity

@@ -165,6 +165,11 @@ static bool is_soft(const struct rf_edges *e)
     return rf_measure_softness(e, SHARP_PERCENTILE) >= least;
 }
 
+static bool is_moved(const struct refocus_depth_edges_report *found)
+{
+    return found->bent || found->grown != 0 || found->shift_x != 0 || found->shift_y != 0;
+}
+
 /* Works on job->edges and leaves the result in its map; says whether it differs from the samples.
  */
 static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_report *report)
@@ -187,12 +192,6 @@ static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_repor
     if (soft)
         rf_find_ramps(e, limits);
     found = rf_align(e, softness, soft ? &limits : NULL);
-    if (soft && !rf_run_cancelled(e->pool->run)) {
-        rf_vote(e, softness);
-        rf_settle(e, softness);
-        rf_restore_thin(e, softness);
-        rf_copy_plane(e, e->map, e->label);
-    }
     report->softness = (float)(softness * pixel);
     report->on_photo = (float)found.on_photo;
     report->grown = (float)(found.grown * pixel);
@@ -201,7 +200,13 @@ static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_repor
     report->bent = found.bent;
     report->parted = soft;
     report->noise = fminf((float)job->noise / 65535, 1);
-    return soft || job->noise || found.bent || found.grown || found.shift_x || found.shift_y;
+    if (soft && (!job->points || is_moved(report)) && !rf_run_cancelled(e->pool->run)) {
+        rf_vote(e, softness);
+        rf_settle(e, softness);
+        rf_restore_thin(e, softness);
+        rf_copy_plane(e, e->map, e->label);
+    }
+    return soft || job->noise || is_moved(report);
 }
 
 static bool fits(const struct rf_last_edges *last, const struct rf_edges *e)
@@ -216,7 +221,7 @@ static void keep(struct rf_edges *e, struct rf_last_edges *last, const struct rf
     rf_hold_still(e, last);
     last->softness = (double)found->softness / job->reduced;
     last->parted = found->parted;
-    last->aligned = found->bent || found->grown != 0 || found->shift_x != 0 || found->shift_y != 0;
+    last->aligned = is_moved(found);
 }
 
 /* Brings the result to the photo's size. */
@@ -236,6 +241,9 @@ static void give_out(const struct rf_place_edges *place, const struct rf_edges *
                        (struct rf_bytes){e->is_wide, e->stride});
 }
 
+/* Samples that were taken at points are brought to the photo's size by depth/upsample.h, which
+ * keeps their edges better, unless the map lies beside the photo; in a video always, as looking for
+ * that takes time. */
 bool rf_place_edges(const struct rf_place_edges *place, struct refocus_depth_edges_report *report)
 {
     const struct refocus_image *photo = place->photo;
@@ -243,6 +251,7 @@ bool rf_place_edges(const struct rf_place_edges *place, struct refocus_depth_edg
     struct rf_arena arena = {place->memory, 0};
     struct rf_edge_job job = {.photo = photo, .map = map};
     struct rf_edges *e = &job.edges;
+    double softness;
     bool changed;
 
     choose_size(&job, photo->width, photo->height, map->width, map->height);
@@ -251,17 +260,14 @@ bool rf_place_edges(const struct rf_place_edges *place, struct refocus_depth_edg
     e->pool = place->pool;
     e->last = fits(place->last, e) ? place->last : NULL;
     job.sample = (struct rf_disparity_q16){e->near, e->stride};
-    if (job.enlarged) {
-        const double softness = rf_softness_of_samples(&job);
-
-        if (softness < MIXED) {
-            report->softness = (float)(softness * photo->width / job.columns);
-            report->parted = 1;
-            if (place->last)
-                place->last->width = 0;
-            upsample(place, e, map);
-            return true;
-        }
+    softness = job.enlarged ? rf_softness_of_samples(&job) : 0;
+    job.points = job.enlarged && softness < MIXED;
+    if (job.points && place->last) {
+        place->last->width = 0;
+        report->softness = (float)(softness * photo->width / job.columns);
+        report->parted = 1;
+        upsample(place, e, map);
+        return true;
     }
     rf_load_edge_photo(&job);
     rf_load_edge_map(&job);
@@ -270,6 +276,10 @@ bool rf_place_edges(const struct rf_place_edges *place, struct refocus_depth_edg
     changed = run_passes(&job, report);
     if (rf_run_cancelled(place->pool->run))
         return false;
+    if (job.points && !is_moved(report)) {
+        upsample(place, e, map);
+        return true;
+    }
     if (place->last)
         keep(e, place->last, &job, report);
     report->changed = changed ? rf_share_changed(&job) : 0;

@@ -325,7 +325,7 @@ static void small_means(void **state)
     end(&p);
 }
 
-/* Samples at points go through refocus_upsample() as they are. */
+/* Samples at points go through refocus_upsample() as they are, where the map lies on the photo. */
 static void small_points(void **state)
 {
     enum { SIDE = 5 };
@@ -340,13 +340,38 @@ static void small_points(void **state)
     draw(&p, disc, 1);
     reduce(&p, SIDE, false);
     report = place_small(&p, SIDE);
-    assert_true(report.on_photo == 0 && report.changed == 0 && report.parted == 1);
+    assert_true(report.on_photo > 0.75F && report.changed == 0 && report.parted == 1);
     assert_int_equal(refocus_upsample(&photo, &map, &params, p.exact, 2 * WIDTH), REFOCUS_OK);
     assert_same(&p, p.exact, "points", SIDE);
     end(&p);
 }
 
 /* ----- maps beside the photo ----- */
+
+/* As of a sensor beside the camera: of samples at points that are 4 pixels off. */
+static void displaced_points_return(void **state)
+{
+    enum { SIDE = 4 };
+    struct picture p = make(WIDTH, HEIGHT);
+    const size_t size = WIDTH * HEIGHT * sizeof *p.exact;
+    uint16_t *exact = malloc(size);
+    struct refocus_depth_edges_report report;
+
+    (void)state;
+    assert_non_null(exact);
+    draw(&p, disc, 1);
+    memcpy(exact, p.exact, size);
+    displace(&p, disc, 4, 0);
+    memcpy(p.exact, p.map, size);
+    reduce(&p, SIDE, false);
+    report = place_small(&p, SIDE);
+    memcpy(p.exact, exact, size);
+    assert_true(report.on_photo > 0.75F && report.changed > 0.01F);
+    assert_true(report.shift_x != 0 && report.shift_y == 0);
+    assert_true(share_within(&p, p.out, 0.02) >= 0.998);
+    free(exact);
+    end(&p);
+}
 
 static struct seen larger_disc(double x, double y)
 {
@@ -442,6 +467,7 @@ int main(void)
         cmocka_unit_test(overshoot_goes),
         cmocka_unit_test(small_means),
         cmocka_unit_test(small_points),
+        cmocka_unit_test(displaced_points_return),
         cmocka_unit_test(displaced_returns),
         cmocka_unit_test(bent_returns),
     };
