@@ -21,7 +21,7 @@ struct rf_edge_job {
     int columns, rows;              /* samples of the map that are used */
     struct rf_sample_place *column; /* where each pixel of a row lies among samples */
     bool enlarged;                  /* the map is not of the photo's size */
-    bool points;                    /* its samples were taken at points */
+    bool points;                    /* samples were taken at points */
     int noise;                      /* standard deviation of what was smoothed away, Q16 */
     struct rf_disparity_q16 sample; /* in the memory of near, until ramps are found */
 };
