@@ -54,6 +54,12 @@ static GstFlowReturn fail(GstRefocus *element, const char *what)
     return GST_FLOW_ERROR;
 }
 
+/* Says what one buffer lacks; a stream that runs for weeks does not end by it. */
+static void warn(GstRefocus *element, const char *what)
+{
+    GST_ELEMENT_WARNING(element, STREAM, FORMAT, ("%s", what), (NULL));
+}
+
 /* The next map. One that was flushed away is forgotten here, as flushes come from other threads:
  * what comes behind a flush is seen after it. */
 static GstBuffer *peek_depth(GstRefocus *element, GstAggregatorPad *pad)
@@ -72,7 +78,6 @@ static GstFlowReturn pair(GstRefocus *element, GstAggregatorPad *pad, GstClockTi
 {
     struct rf_gst_depths *const depths = &element->depths;
     GstBuffer *next;
-    bool held = true;
 
     while ((next = peek_depth(element, pad))) {
         const GstClockTime time = running_time(pad, next);
@@ -82,11 +87,12 @@ static GstFlowReturn pair(GstRefocus *element, GstAggregatorPad *pad, GstClockTi
             return GST_FLOW_OK;
         }
         gst_aggregator_pad_drop_buffer(pad);
-        if (!is_gap(next))
-            held = rf_gst_depths_hold(depths, next, &element->depth_info, time);
+        if (!is_gap(next) && !rf_gst_depths_hold(depths, next, &element->depth_info, time)) {
+            warn(element, "a depth map is left out: its buffer is no picture of its caps");
+            gst_buffer_unref(next);
+            continue;
+        }
         gst_buffer_unref(next);
-        if (!held)
-            return fail(element, "a buffer of the pad depth is no picture of its caps");
         if (!GST_CLOCK_TIME_IS_VALID(time) || !GST_CLOCK_TIME_IS_VALID(frame))
             return GST_FLOW_OK;
     }
@@ -190,7 +196,7 @@ static int render(GstRefocus *element, GstVideoFrame *in, GstVideoFrame *out,
     return status;
 }
 
-static GstFlowReturn refocus(GstRefocus *element, GstBuffer *buffer)
+static GstFlowReturn refocus(GstRefocus *element, GstBuffer *buffer, GstClockTime time)
 {
     GstBuffer *const result = new_frame(element, buffer);
     struct refocus_reason reason = {""};
@@ -199,11 +205,13 @@ static GstFlowReturn refocus(GstRefocus *element, GstBuffer *buffer)
 
     if (!result)
         return GST_FLOW_FLUSHING;
-    if (!gst_video_frame_map(&in, &element->info, buffer, GST_MAP_READ)) {
+    if (!rf_gst_frame_map(&in, &element->info, buffer, GST_MAP_READ)) {
         gst_buffer_unref(result);
-        return fail(element, "a buffer is no frame of its caps");
+        warn(element, "a frame is left out: its buffer is no picture of its caps");
+        leave_out(element, buffer, time);
+        return GST_FLOW_OK;
     }
-    if (!gst_video_frame_map(&out, &element->info, result, GST_MAP_WRITE)) {
+    if (!rf_gst_frame_map(&out, &element->info, result, GST_MAP_WRITE)) {
         gst_video_frame_unmap(&in);
         gst_buffer_unref(result);
         return fail(element, "the memory for frames cannot be written");
@@ -245,7 +253,7 @@ GstFlowReturn rf_gst_aggregate(GstAggregator *aggregator, gboolean timeout)
         if (!element->depths.known || comes_too_late(element, time))
             leave_out(element, frame, time);
         else
-            flow = refocus(element, frame);
+            flow = refocus(element, frame, time);
     }
     gst_buffer_unref(frame);
     return flow;

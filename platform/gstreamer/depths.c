@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "depths.h"
+#include "frame.h"
 
 static bool reserve(struct rf_gst_depths *depths, int32_t width, int32_t height)
 {
@@ -58,10 +59,12 @@ int rf_gst_depths_read(struct rf_gst_depths *depths, const struct rf_gst_setting
 bool rf_gst_depths_hold(struct rf_gst_depths *depths, GstBuffer *buffer, const GstVideoInfo *info,
                         GstClockTime time)
 {
-    let_go(depths);
-    depths->known = false;
-    if (!gst_video_frame_map(&depths->frame, info, buffer, GST_MAP_READ))
+    GstVideoFrame frame;
+
+    if (!rf_gst_frame_map(&frame, info, buffer, GST_MAP_READ))
         return false;
+    let_go(depths);
+    depths->frame = frame;
     depths->mapped = depths->known = depths->fresh = true;
     depths->still = false;
     depths->time = time;

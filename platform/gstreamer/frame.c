@@ -49,6 +49,44 @@ static uint32_t transfer_of(GstVideoTransferFunction transfer)
     }
 }
 
+/* Whether a plane lies in the memory that was mapped for it. Of a buffer with metadata that is a
+ * map of each plane, of others one of them all. */
+static bool fits(const GstVideoFrame *frame, guint plane)
+{
+    const GstMapInfo *const map = &frame->map[frame->meta ? plane : 0];
+    const GstVideoFormatInfo *const format = frame->info.finfo;
+    const gint stride = GST_VIDEO_FRAME_PLANE_STRIDE(frame, plane);
+    const guint8 *const data = GST_VIDEO_FRAME_PLANE_DATA(frame, plane);
+    gint component[GST_VIDEO_MAX_COMPONENTS];
+    guint64 row, rows;
+
+    gst_video_format_info_component(format, plane, component);
+    row = (guint64)GST_VIDEO_FORMAT_INFO_SCALE_WIDTH(format, component[0],
+                                                     GST_VIDEO_FRAME_WIDTH(frame)) *
+          (guint64)GST_VIDEO_FORMAT_INFO_PSTRIDE(format, component[0]);
+    rows = (guint64)GST_VIDEO_FORMAT_INFO_SCALE_HEIGHT(format, component[0],
+                                                       GST_VIDEO_FRAME_HEIGHT(frame));
+    return stride > 0 && (guint64)stride >= row && data >= map->data &&
+           (guint64)(data - map->data) + (rows - 1) * (guint64)stride + row <= map->size;
+}
+
+bool rf_gst_frame_map(GstVideoFrame *frame, const GstVideoInfo *info, GstBuffer *buffer,
+                      GstMapFlags flags)
+{
+    bool good = gst_video_frame_map(frame, info, buffer, flags);
+
+    if (!good)
+        return false;
+    good = GST_VIDEO_FRAME_WIDTH(frame) == GST_VIDEO_INFO_WIDTH(info) &&
+           GST_VIDEO_FRAME_HEIGHT(frame) == GST_VIDEO_INFO_HEIGHT(info) &&
+           GST_VIDEO_FRAME_FORMAT(frame) == GST_VIDEO_INFO_FORMAT(info);
+    for (guint i = 0; good && i < GST_VIDEO_FRAME_N_PLANES(frame); i++)
+        good = fits(frame, i);
+    if (!good)
+        gst_video_frame_unmap(frame);
+    return good;
+}
+
 bool rf_gst_is_deep(const struct refocus_image *picture)
 {
     return picture->format == REFOCUS_FORMAT_P010;

@@ -20,6 +20,11 @@ struct rf_gst_chroma {
     size_t bytes;
 };
 
+/* Map a buffer as a frame of these caps. False where it is none: it has too few bytes, its metadata
+ * lays rows out beyond its memory or within another, or its memory cannot be mapped. */
+bool rf_gst_frame_map(GstVideoFrame *frame, const GstVideoInfo *info, GstBuffer *buffer,
+                      GstMapFlags flags);
+
 /* The picture that a frame holds, in the frame's memory. Of GRAY8 the planes of U and V are those
  * of `chroma`, set to neutral; false: there is no memory for them. */
 bool rf_gst_picture(const GstVideoFrame *frame, struct rf_gst_chroma *chroma,
