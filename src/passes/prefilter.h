@@ -19,8 +19,9 @@
 
 enum { RF_PREFILTER_STEPS = 7 };
 
-/* The most steps of a frame with blurs up to that radius, which its margins have to hold. 64 rays
- * lie 12 pixels apart from 54 pixels of blur on, and 28 at 127. */
+/* The most steps of a frame with blurs up to that radius, which its margins have to hold; a frame
+ * whose rays gather highlights has 3 up to 127 pixels. 64 rays lie 12 pixels apart from 54 pixels
+ * of blur on, and 28 at 127. */
 static inline int rf_prefilter_most_steps(float max_blur_radius)
 {
     return max_blur_radius > RF_PLAIN_RADIUS ? RF_PREFILTER_STEPS : max_blur_radius > 54 ? 5 : 3;

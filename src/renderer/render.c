@@ -135,6 +135,15 @@ static void run_tiles(struct rf_frame *f)
     rf_pool_run(&rf_renderer_of(f)->pool, tile_item, f, f->count_tx * f->count_ty);
 }
 
+/* Where rays gather highlights, long steps would spread a lamp of a pixel so thin that Q12 rounds
+ * it away. */
+static int prefilter_steps(const struct rf_frame *f)
+{
+    const bool gathers = f->params->highlight_gain > 1 && !f->splats;
+
+    return gathers && !f->focus.unit ? 3 : rf_prefilter_most_steps(f->params->max_blur_radius);
+}
+
 static void run(struct rf_frame *f, struct rf_rect region)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
@@ -277,9 +286,9 @@ static int render(struct refocus_renderer *r, const struct rf_log *log,
     /* The steps of live frames set in gradually; those of stills, which do not move, at once, as
      * highlights keep more of their light then. */
     f->prefilter_fades = params->rays <= RF_LIVE_RAYS;
-    rf_prefilter_bounds(
-        f->prefilter_above, rf_prefilter_most_steps(params->max_blur_radius), params->rays,
-        params->prefilter && !rf_searches_subtracted(f) ? f->focus.radius : 0, f->focus.unit);
+    rf_prefilter_bounds(f->prefilter_above, prefilter_steps(f), params->rays,
+                        params->prefilter && !rf_searches_subtracted(f) ? f->focus.radius : 0,
+                        f->focus.unit);
     r->blurred = false;
     r->last_plan = f->plan;
     rf_run_begin(r);

@@ -165,38 +165,34 @@ static void long_frame(void **state)
     finish(&bench);
 }
 
-/* Sources flag what a driver calls damaged; whoever shows it decides. */
-static void corrupt_frame(void **state)
-{
-    struct bench bench;
-    GstBuffer *frame = frame_make(NV12, 0, ms(40));
-
-    (void)state;
-    begin(&bench);
-    end_depth(&bench);
-    GST_BUFFER_FLAG_SET(frame, GST_BUFFER_FLAG_CORRUPTED);
-    frame = through(&bench, frame);
-    assert_true(GST_BUFFER_FLAG_IS_SET(frame, GST_BUFFER_FLAG_CORRUPTED));
-    gst_buffer_unref(frame);
-    goes_on(&bench, 80, true);
-    finish(&bench);
-}
-
-static void dropped_frames(void **state)
+/* A flag of a frame stays with it; whoever shows it decides. */
+static void flag_stays(GstBufferFlags flag)
 {
     struct bench bench;
     GstBuffer *frame = frame_make(NV12, 0, ms(400));
 
-    (void)state;
     begin(&bench);
     end_depth(&bench);
     goes_on(&bench, 0, true);
-    GST_BUFFER_FLAG_SET(frame, GST_BUFFER_FLAG_DISCONT);
+    GST_BUFFER_FLAG_SET(frame, flag);
     frame = through(&bench, frame);
-    assert_true(GST_BUFFER_FLAG_IS_SET(frame, GST_BUFFER_FLAG_DISCONT));
+    assert_true(GST_BUFFER_FLAG_IS_SET(frame, flag));
     gst_buffer_unref(frame);
     goes_on(&bench, 440, true);
     finish(&bench);
+}
+
+/* Sources flag what a driver calls damaged. */
+static void corrupt_frame(void **state)
+{
+    (void)state;
+    flag_stays(GST_BUFFER_FLAG_CORRUPTED);
+}
+
+static void dropped_frames(void **state)
+{
+    (void)state;
+    flag_stays(GST_BUFFER_FLAG_DISCONT);
 }
 
 /* Frames whose times run backwards, or are a hundred seconds off, come out in order of arrival. */

@@ -132,6 +132,58 @@ static void yuv(void **state)
     picture_free(&p);
 }
 
+/* A lamp so wide on a dark wall, all of it out of focus by K: the least and the greatest code
+ * inside its disc, on a cross through the middle. */
+static void disc_of(float K, int wide, int *least, int *most)
+{
+    const int side = 2 * (int)K + 2 * wide + 64, middle = side / 2;
+    struct picture p = picture_flat(side, side, (const uint8_t[3]){20, 20, 20}, 0);
+    struct refocus_settings s = refocus_settings_default(1, K);
+    const struct refocus_renderer_params limits = limits_of(&p, K);
+    uint8_t *out = malloc(3 * (size_t)side * (size_t)side);
+
+    assert_non_null(out);
+    s.highlights.gain = 16;
+    for (int i = 0; i < wide * wide; i++)
+        memset(p.rgb + 3 * ((middle + i / wide) * side + middle + i % wide), 255, 3);
+    render_once(&limits, &p, &s, out);
+    *least = 255;
+    *most = 0;
+    for (int i = -(int)K + wide + 2; i < (int)K - wide - 2; i++) {
+        const int across = out[3 * (middle * side + middle + i)];
+        const int down = out[3 * ((middle + i) * side + middle)];
+
+        *least = across < *least ? across : *least;
+        *least = down < *least ? down : *least;
+        *most = across > *most ? across : *most;
+        *most = down > *most ? down : *most;
+    }
+    /* Nothing of it is beyond its rim. */
+    assert_int_equal(out[3 * (middle * side + middle - (int)K - 3)], 20);
+    free(out);
+    picture_free(&p);
+}
+
+/* A disc has no ripple of more than 2 codes, and the light of the lamp over its area. */
+static void discs(void **state)
+{
+    static const float blurs[] = {127, 200, 300, 470};
+
+    (void)state;
+    for (int i = 0; i < 4; i++)
+        for (int wide = 4; wide <= 12 && !left_out(i, 3); wide += 4) {
+            const double lamp = 16 * wide * wide;
+            const double area = 3.14159265358979 * (double)blurs[i] * (double)blurs[i];
+            const double light = picture_light(20) + lamp / area;
+            int least, most;
+
+            disc_of(blurs[i], wide, &least, &most);
+            if (most - least > 2 || fabs(picture_light(most) / light - 1) > 0.12)
+                fail_msg("K = %g, a lamp of %d: codes %d to %d, should be %d", (double)blurs[i],
+                         wide, least, most, picture_code(light));
+        }
+}
+
 /* A round lamp on a dark wall, whose light falls off over `soft` pixels at its rim. */
 struct lamp {
     int wide, soft;
@@ -145,7 +197,7 @@ static double seen(const struct lamp *lamp, double distance)
 
 /* The least and the greatest code inside its disc, where all of it is out of focus by K. Returns
  * how much light there is, in pixels of white. */
-static double disc_of(float K, const struct lamp *lamp, int *least, int *most)
+static double soft_disc_of(float K, const struct lamp *lamp, int *least, int *most)
 {
     const int reach = lamp->wide / 2 + lamp->soft + 1;
     const int side = 2 * (int)K + 2 * reach + 64, middle = side / 2;
@@ -185,8 +237,8 @@ static double disc_of(float K, const struct lamp *lamp, int *least, int *most)
     return light;
 }
 
-/* A disc has no ripple of more than 2 codes, and the light of the lamp over its area. */
-static void discs(void **state)
+/* Nor has that of a round lamp with a rim, anywhere in it. */
+static void soft_discs(void **state)
 {
     static const float blurs[] = {60, 100, 127, 200, 300, 470};
     static const struct lamp lamps[] = {{4, 1}, {9, 1}, {9, 4}, {40, 1}, {40, 4}};
@@ -196,7 +248,7 @@ static void discs(void **state)
         for (int j = 0; j < 5 && !left_out(5 * i + j, 4); j++) {
             const double area = 3.14159265358979 * (double)blurs[i] * (double)blurs[i];
             int least, most;
-            const double lamp = disc_of(blurs[i], &lamps[j], &least, &most);
+            const double lamp = soft_disc_of(blurs[i], &lamps[j], &least, &most);
             const double light = picture_light(20) + lamp / area;
             const bool small = lamps[j].wide < 12; /* large ones get less than the gain */
 
@@ -252,7 +304,7 @@ static void methods(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes), cmocka_unit_test(regions),
-                                       cmocka_unit_test(yuv), cmocka_unit_test(discs),
-                                       cmocka_unit_test(methods)};
+                                       cmocka_unit_test(yuv),        cmocka_unit_test(discs),
+                                       cmocka_unit_test(soft_discs), cmocka_unit_test(methods)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
