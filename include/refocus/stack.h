@@ -173,7 +173,12 @@ REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refo
  *
  * A sample is sure where the least sharp frame has less than half of the E_k of the sharpest: noise
  * is alike in all. Each sample takes the depth of most of the sure ones around it, on its side of
- * the photo's edges. So what is flat, clipped or grainy takes the depth of what is around it.
+ * the photo's edges. So what is flat, clipped or grainy takes the depth of what is around it. The
+ * less sure a sample is, the more it becomes the mean of depth around it, weighted by how sure that
+ * is and not across edges of the photo (normalised convolution, Knutsson & Westin 1993, with a
+ * recursive filter as in Gastal & Oliveira 2011): from one surface to the next without a step. The
+ * noise of the frames is measured where sharpness goes up and down from frame to frame, and less
+ * than it is neither sure nor an edge.
  * Integer arithmetic: the same bytes on every processor and with any number of threads.
  *
  * Windows of sharpness take the silhouette of a surface for part of what is behind. So where depths

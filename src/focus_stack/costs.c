@@ -116,7 +116,8 @@ static uint8_t sure_of(const struct refocus_stack *s, const uint32_t *mean)
         most = mean[k] > most ? mean[k] : most;
     }
 
-    const int ratio = (int)((least + NOISE / 4) * 256 / (most + NOISE / 4));
+    const uint64_t noise = 2 * s->noise > NOISE / 4 ? 2 * s->noise : NOISE / 4;
+    const int ratio = (int)((least + noise) * 256 / (most + noise));
 
     return (uint8_t)rf_stack_clamp(255 * (UNSURE - ratio) / (UNSURE - SURE), 255);
 }
@@ -207,6 +208,7 @@ void rf_stack_costs(struct refocus_stack *s)
 {
     for (int k = 0; k < s->count; k++)
         move(s, &s->frame[k]);
+    rf_stack_find_noise(s);
     if (s->sub > 1)
         rf_stack_model(s);
     rf_pool_run(s->pool, cost_band, s, (s->rows + BAND - 1) / BAND);

@@ -77,6 +77,7 @@ struct refocus_stack {
     uint16_t *depth_row; /* one row of the photo for each worker */
     uint8_t *sure_row;
     struct rf_transfer *transfer;
+    uint32_t noise; /* squared sharpness of noise, in quarters of a squared code */
     int models;
     int16_t share[RF_STACK_MODELS][RF_STACK_FEW]
                  [RF_STACK_FEW_DEPTHS]; /* shares of the sharpness, Q12 */
@@ -121,6 +122,9 @@ int rf_stack_sub(int frames);
 void rf_stack_model(struct refocus_stack *stack);
 /* Adds to the costs of a sample by mean squares of sharpness, each in Q2 codes. */
 void rf_stack_model_costs(const struct refocus_stack *stack, uint8_t *cost, const uint32_t *mean);
+/* Finds `noise`: what the least sharp frame has in the flattest tenth of the photo, once frames lie
+ * on each other. */
+void rf_stack_find_noise(struct refocus_stack *stack);
 /* Costs, guide and confidence, from the sharpness. */
 void rf_stack_costs(struct refocus_stack *stack);
 /* Adds up the costs along eight directions. */
@@ -131,6 +135,8 @@ void rf_stack_choose(struct refocus_stack *stack);
 void rf_stack_silhouettes(struct refocus_stack *stack);
 /* Depth that was not measured becomes that of the sure samples around it. */
 void rf_stack_fill(struct refocus_stack *stack);
+/* Depth that was not measured becomes smooth between what was. */
+void rf_stack_smooth(struct refocus_stack *stack);
 
 /* A row of the photo in focus everywhere; frames that do not show a place leave it to the next one
  * towards the reference, which shows all. */

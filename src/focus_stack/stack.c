@@ -323,6 +323,7 @@ static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
     rf_stack_fill(s);
     if (s->count > 2)
         rf_stack_silhouettes(s);
+    rf_stack_smooth(s);
     write_rows(s, own);
     own->moving = (float)((double)s->moving / ((double)s->columns * s->rows));
     own->moved = 0;

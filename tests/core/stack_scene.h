@@ -18,7 +18,8 @@ struct scene {
     double left, right;             /* focus of the surface on either side of the middle */
     double scale, shift_x, shift_y; /* frame k: by 1 + k scale, k shift */
     int flat;                       /* a square without texture in the right one */
-    int noise;                      /* codes of noise in the square, either way */
+    int wall;                       /* a wall without texture between them, of all rows */
+    int noise;                      /* codes of noise where there is no texture, either way */
     int lamp;                       /* a clipped disc on the left one */
     int walks;                      /* a grey disc crosses the photo, a frame after the other */
     double turn;                    /* frame k: by k turn, radians about the middle */
@@ -54,8 +55,12 @@ static inline void make_waves(void)
         }
 }
 
+enum { WALL_LEFT = 32, WALL_RIGHT = 112 };
+
 static inline int is_flat(const struct scene *scene, double x, double y)
 {
+    if (scene->wall)
+        return x > WALL_LEFT && x < WALL_RIGHT;
     return scene->flat && x > 84 && x < 130 && y > 20 && y < 76;
 }
 

@@ -152,6 +152,51 @@ static void makes_no_blob_of_a_lamp(void **state)
 }
 
 /* Noise is as sharp in each frame. */
+/* The largest step of disparity between neighbours on the wall. */
+static int largest_step_on_wall(void)
+{
+    int most = 0;
+
+    for (int y = 1; y < H; y++)
+        for (int x = WALL_LEFT + 12; x < WALL_RIGHT - 12; x++) {
+            const int i = y * W + x;
+            const int across = abs(disparity[i] - disparity[i - 1]);
+            const int down = abs(disparity[i] - disparity[i - W]);
+
+            most = across > most ? across : most;
+            most = down > most ? down : most;
+        }
+    return most;
+}
+
+/* A wall between surfaces at the two ends of focus, clean or with noise: depth goes over from one
+ * to the other without a step, whatever the noise looks like. */
+static void is_smooth_where_nothing_is_measured(void **state)
+{
+    static const struct scene scenes[] = {
+        {.left = 0, .right = 8, .wall = 1},
+        {.left = 0, .right = 8, .wall = 1, .noise = 6},
+        {.left = 0, .right = 8, .wall = 1, .noise = 16},
+    };
+
+    (void)state;
+    frames = MOST;
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+        int sure = 0;
+
+        draw(&scenes[i]);
+        run(NULL, NULL, REFOCUS_STACK_ALIGN_NONE);
+        assert_true(largest_step_on_wall() < 65535 / 32);
+        for (int y = 0; y < H; y++)
+            for (int x = WALL_LEFT + 12; x < WALL_RIGHT - 12; x++)
+                sure += confidence[y * W + x] >= 64;
+        assert_int_equal(sure, 0);
+        assert_true(disparity[48 * W + 16] < 65535 / 20);
+        assert_true(abs(disparity[48 * W + 128] - 65535) < 65535 / 20);
+    }
+    frames = FRAMES;
+}
+
 static void takes_no_noise_for_texture(void **state)
 {
     static const struct scene scene = {.left = 1, .right = 3, .flat = 1, .noise = 12};
@@ -276,6 +321,7 @@ int main(void)
         cmocka_unit_test(undoes_breathing_and_shake),
         cmocka_unit_test(covers_the_border),
         cmocka_unit_test(fills_what_is_flat),
+        cmocka_unit_test(is_smooth_where_nothing_is_measured),
         cmocka_unit_test(makes_no_blob_of_a_lamp),
         cmocka_unit_test(says_when_frames_are_alike),
         cmocka_unit_test(is_the_same_everywhere),
