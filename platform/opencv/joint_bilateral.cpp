@@ -1,6 +1,7 @@
 /* joint_bilateral.cpp: joint bilateral upsampling: a pixel is the mean of the 5x5 samples around
  * it, weighted by nearness and likeness. What depends on its row or its column alone is computed
- * once; all else is a loop over a row, which compilers and OpenCV make vectors of. */
+ * once; all else is a loop over a row, which compilers and OpenCV make vectors of. Rows are shared
+ * out to OpenCV's threads. */
 #include "joint_bilateral.hpp"
 
 #include <algorithm>
@@ -150,8 +151,12 @@ class Upsampling
 void refocus_cv::joint_bilateral(const refocus_image &photo, const refocus_disparity &map,
                                  float sigma, uint16_t *out)
 {
-    Upsampling upsampling(photo, map, sigma);
+    const auto make_rows = [&](const cv::Range &range) {
+        Upsampling upsampling(photo, map, sigma);
 
-    for (int y = 0; y < photo.height; y++)
-        upsampling.make_row(y, out + (size_t)y * (size_t)photo.width);
+        for (int y = range.start; y < range.end; y++)
+            upsampling.make_row(y, out + (size_t)y * (size_t)photo.width);
+    };
+
+    cv::parallel_for_(cv::Range(0, photo.height), make_rows, cv::getNumThreads());
 }

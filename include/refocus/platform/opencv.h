@@ -209,7 +209,8 @@ REFOCUS_API void refocus_cv_estimator_destroy(struct refocus_estimator **estimat
  * map its last samples go on. The core's
  * refocus_upsample() measures better and is faster: tests/depth.md compares them.
  *
- * Thread-safe; it works in the caller's thread alone.
+ * Thread-safe; rows are shared out to OpenCV's threads (cv::setNumThreads()), the same bytes with
+ * any number of them.
  *
  * @param sigma_range  s of the likeness, in codes, > 0
  * @param out          width x height, packed; undefined after an error
