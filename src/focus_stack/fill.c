@@ -1,10 +1,12 @@
 /* fill.c: each sample takes the depth that most of the sure samples around it have.
  *
  * A sure sample votes for its depth, with its confidence. Votes are handed on from sample to
- * sample, along rows first and then along columns; each step keeps KEEP / 256 of them, and less
- * across edges of the photo. The depth with the most votes is taken, between frames in proportion
- * to the votes of its neighbours. A sample counts its own vote OWN times, so that speckles go and
- * thin things stay. No vote comes from where nothing is sure: depth stays as it was chosen.
+ * sample, along rows first and then along columns, or along columns first: the second time takes
+ * the combs away that the first leaves, since what reaches a sample comes along its column in the
+ * end. Each step keeps KEEP / 256 of them, and less across edges of the photo. The depth with the
+ * most votes is taken, between frames in proportion to the votes of its neighbours. A sample counts
+ * its own vote OWN times, so that speckles go and thin things stay. No vote comes from where
+ * nothing is sure: depth stays as it was chosen.
  *
  * Votes of a row are below OWN 255 + 2 * 255 * 128 < 2^17, those of a column 128 times as much,
  * 2^24, so that a product with KEEP fits 32 bits. The planes of costs, sums, paths and moved
@@ -45,20 +47,27 @@ static void vote(struct refocus_stack *s)
     }
 }
 
+/* The map as votes go through it: rows first, or columns. */
+struct walk {
+    int width, height;
+    ptrdiff_t across, down; /* samples to the next one */
+};
+
 /* Votes that reach each sample of row y along it. n is known to the compiler. */
-static inline void along_row(const struct refocus_stack *s, int y, uint32_t *restrict votes, int n)
+static inline void along_row(const struct refocus_stack *s, const struct walk *walk, int y,
+                             uint32_t *restrict votes, int n)
 {
-    const int w = s->columns;
-    const size_t row = (size_t)y * (size_t)w;
+    const int w = walk->width;
     uint32_t sum[REFOCUS_STACK_MOST_FRAMES];
 
     for (int way = 1; way >= -1; way -= 2) {
         memset(sum, 0, sizeof sum);
         for (int i = 0; i < w; i++) {
             const size_t x = (size_t)(way > 0 ? i : w - 1 - i);
-            const uint8_t *own = s->cost + (row + x) * (size_t)n;
-            const uint8_t *guide = s->guide + 3 * (row + x);
-            const uint32_t keep = i ? kept(guide, guide - 3 * way) : 0;
+            const ptrdiff_t at = y * walk->down + (ptrdiff_t)x * walk->across;
+            const uint8_t *own = s->cost + at * n;
+            const uint8_t *guide = s->guide + 3 * at;
+            const uint32_t keep = i ? kept(guide, guide - 3 * way * walk->across) : 0;
             uint32_t *to = votes + x * (size_t)n;
 
             for (int k = 0; k < n; k++) {
@@ -108,18 +117,18 @@ static inline uint16_t store(uint16_t *stored, const uint32_t *votes, int n)
 }
 
 /* Votes of row y and of the rows before it, on the way down or up. */
-static inline void next_row(struct refocus_stack *s, int y, int way, bool first, int n)
+static inline void next_row(struct refocus_stack *s, const struct walk *walk, int y, int way,
+                            bool first, int n)
 {
-    const int w = s->columns;
-    const size_t row = (size_t)y * (size_t)w;
+    const int w = walk->width;
     uint32_t *votes = (uint32_t *)(void *)s->path, *sums = votes + (size_t)w * (size_t)n;
 
-    along_row(s, y, votes, n);
+    along_row(s, walk, y, votes, n);
     for (int x = 0; x < w; x++) {
-        const size_t i = row + (size_t)x;
+        const ptrdiff_t i = y * walk->down + x * walk->across;
         const uint8_t *guide = s->guide + 3 * i;
-        const uint32_t keep = first ? 0 : kept(guide, guide - (ptrdiff_t)3 * way * w);
-        uint16_t *stored = (uint16_t *)s->sum + i * (size_t)n;
+        const uint32_t keep = first ? 0 : kept(guide, guide - 3 * way * walk->down);
+        uint16_t *stored = (uint16_t *)s->sum + i * n;
         uint32_t *sum = sums + (size_t)x * (size_t)n, *vote = votes + (size_t)x * (size_t)n;
         uint32_t all[REFOCUS_STACK_MOST_FRAMES];
 
@@ -137,24 +146,28 @@ static inline void next_row(struct refocus_stack *s, int y, int way, bool first,
     }
 }
 
-static inline void along_columns(struct refocus_stack *s, int n)
+static inline void along_columns(struct refocus_stack *s, const struct walk *walk, int n)
 {
     for (int way = 1; way >= -1; way -= 2) {
-        memset(s->path, 0, 2 * sizeof(uint32_t) * (size_t)s->columns * (size_t)n);
-        for (int i = 0; i < s->rows; i++)
-            next_row(s, way > 0 ? i : s->rows - 1 - i, way, i == 0, n);
+        memset(s->path, 0, 2 * sizeof(uint32_t) * (size_t)walk->width * (size_t)n);
+        for (int i = 0; i < walk->height; i++)
+            next_row(s, walk, way > 0 ? i : walk->height - 1 - i, way, i == 0, n);
     }
 }
 
-void rf_stack_fill(struct refocus_stack *s)
+void rf_stack_fill(struct refocus_stack *s, bool columns_first)
 {
+    const struct walk rows = {s->columns, s->rows, 1, s->columns};
+    const struct walk columns = {s->rows, s->columns, s->columns, 1};
+    const struct walk *walk = columns_first ? &columns : &rows;
+
     vote(s);
     if (s->labels == 8)
-        along_columns(s, 8);
+        along_columns(s, walk, 8);
     else if (s->labels == 16)
-        along_columns(s, 16);
+        along_columns(s, walk, 16);
     else if (s->labels == 24)
-        along_columns(s, 24);
+        along_columns(s, walk, 24);
     else
-        along_columns(s, REFOCUS_STACK_MOST_FRAMES);
+        along_columns(s, walk, REFOCUS_STACK_MOST_FRAMES);
 }

@@ -133,8 +133,9 @@ void rf_stack_aggregate(struct refocus_stack *stack);
 void rf_stack_choose(struct refocus_stack *stack);
 /* Depth beside a nearer surface, which windows of sharpness take for it, is filled once more. */
 void rf_stack_silhouettes(struct refocus_stack *stack);
-/* Depth that was not measured becomes that of the sure samples around it. */
-void rf_stack_fill(struct refocus_stack *stack);
+/* Depth that was not measured becomes that of the sure samples around it; votes go along rows and
+ * then columns, or columns first. */
+void rf_stack_fill(struct refocus_stack *stack, bool columns_first);
 /* Depth that was not measured becomes smooth between what was. */
 void rf_stack_smooth(struct refocus_stack *stack);
 

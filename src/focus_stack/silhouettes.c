@@ -6,8 +6,8 @@
  * two focuses, sharp farther out and blurred where depth is too near, and so has an edge at the
  * wrong place. Here it becomes, as far as windows reach from the surface, the frame that is focused
  * on it: all that is behind is blurred, and the silhouette is the one sharp edge. Depth is then
- * filled once more, by half of the votes of what is on the nearer side there, as half of it may be
- * behind. Two frames do not have one that is focused on the nearer surface.
+ * filled once more, along columns first, by half of the votes of what is on the nearer side there,
+ * as half of it may be behind. Two frames do not have one that is focused on the nearer surface.
  */
 #include "focus_stack/focus_stack.h"
 
@@ -85,6 +85,6 @@ void rf_stack_silhouettes(struct refocus_stack *s)
                 s->sure[i] /= 2;
         }
     }
-    rf_stack_fill(s);
+    rf_stack_fill(s, true);
     memcpy(s->sure, s->luma, samples);
 }

@@ -26,6 +26,7 @@ static void lay_out(struct refocus_stack *s, struct rf_arena *arena)
     const uint64_t pixels = (uint64_t)s->width * (uint64_t)s->height;
     const uint64_t samples = (uint64_t)s->columns * (uint64_t)s->rows;
     const uint64_t labels = (uint64_t)s->labels;
+    const uint64_t longer = (uint64_t)(s->columns > s->rows ? s->columns : s->rows);
 
     for (int k = 0; k < s->most; k++) {
         struct rf_stack_frame *frame = &s->frame[k];
@@ -44,7 +45,7 @@ static void lay_out(struct refocus_stack *s, struct rf_arena *arena)
     s->guide = rf_arena_take(arena, samples, 3);
     s->cost = rf_arena_take(arena, samples * labels, 1);
     s->sum = rf_arena_take(arena, samples * labels, 2);
-    s->path = rf_arena_take(arena, (uint64_t)s->columns * PATHS * (labels + BESIDE), 2);
+    s->path = rf_arena_take(arena, longer * PATHS * (labels + BESIDE), 2);
     s->column = rf_arena_take(arena, (uint64_t)s->columns * SQUARES * (uint64_t)s->most,
                               4 * (uint64_t)s->threads);
     s->depth = rf_arena_take(arena, samples, 2);
@@ -320,7 +321,7 @@ static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
     own->disorder = disorder_of(s);
     rf_stack_aggregate(s);
     rf_stack_choose(s);
-    rf_stack_fill(s);
+    rf_stack_fill(s, false);
     if (s->count > 2)
         rf_stack_silhouettes(s);
     rf_stack_smooth(s);
