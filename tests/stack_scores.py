@@ -147,12 +147,12 @@ is stored (+.3 dB on tabletop, but -.1 to -.4 on real photos).
 
 What makes depth smooth where it was not measured, and the bounds of noise, were chosen by looking at ten stacks of
 other people's cameras (2 to 32 frames: insects, books, balls, a keyboard, hedges), whose paper, walls and grain had combs
-and patches before. The scores here stay within .1 dB (two frames of fence -.2, three +.3), those of 96 rendered stacks of
-eight scenes within .05 in the mean; the one that loses most is aloe with noise of 6 codes, -.35.
+and patches before. The scores here stay within .1 dB (portrait up to +.1; two frames of fence -.2, three +.3), those of
+96 rendered stacks of eight scenes gain .02 in the mean; the scene that loses most is aloe, -.15 in the mean.
 
-Processor time of `refocus depth --focal-stack`, nine frames, with files read and written, x86-64 on a busy
-machine: 2 megapixels 2.9 s and 280 MB, 12 megapixels 10.4 s and 730 MB. By the clock, on a slower day: 2 megapixels
-4.9 s with one thread, 3.7 s with two.
+Processor time of `refocus depth --focal-stack`, nine frames, with files read and written, x86-64: 2 megapixels
+3.8 s and 280 MB, 12 megapixels 14 s and 735 MB (a slow day; on another 2.9 and 10.4 s, before depth was smoothed, which
+takes 6 % of it). By the clock with two threads: as much, since most of it is done by one.
 
 %s
 

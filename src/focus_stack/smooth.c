@@ -25,10 +25,12 @@ enum {
     BAND = 32,     /* rows or columns that a worker takes at a time */
 };
 
+/* Planes of a sample each, in the memory of costs and their sums. */
 struct planes {
     const struct refocus_stack *stack;
     int32_t *sum, *weight;
-    int32_t kept[256]; /* by the difference of two neighbours, Q16 */
+    uint8_t *across, *down; /* differences of the guide to the sample before, to the one above */
+    int32_t kept[256];      /* by the difference of two neighbours, Q16 */
 };
 
 static void set_length(struct planes *p, int64_t length)
@@ -42,11 +44,22 @@ static void set_length(struct planes *p, int64_t length)
     }
 }
 
-/* Mixes the sample at `from` into that at `to`. */
-static inline void hand_on(const struct planes *p, ptrdiff_t to, ptrdiff_t from)
+/* Differences of the guide between all neighbours. */
+static void find_differences(const struct planes *p)
 {
     const uint8_t *guide = p->stack->guide;
-    const int64_t kept = p->kept[rf_stack_difference(guide + 3 * to, guide + 3 * from)];
+    const ptrdiff_t w = p->stack->columns, samples = w * p->stack->rows;
+
+    for (ptrdiff_t i = 1; i < samples; i++)
+        p->across[i] = (uint8_t)rf_stack_difference(guide + 3 * i, guide + 3 * (i - 1));
+    for (ptrdiff_t i = w; i < samples; i++)
+        p->down[i] = (uint8_t)rf_stack_difference(guide + 3 * i, guide + 3 * (i - w));
+}
+
+/* Mixes the sample at `from` into that at `to`. */
+static inline void hand_on(const struct planes *p, ptrdiff_t to, ptrdiff_t from, int difference)
+{
+    const int64_t kept = p->kept[difference];
 
     p->sum[to] += (int32_t)((p->sum[from] - p->sum[to]) * kept / 65536);
     p->weight[to] += (int32_t)((p->weight[from] - p->weight[to]) * kept / 65536);
@@ -63,34 +76,40 @@ static void along_rows(void *context, int band, int worker)
         const ptrdiff_t row = (ptrdiff_t)y * w;
 
         for (int x = 1; x < w; x++)
-            hand_on(p, row + x, row + x - 1);
+            hand_on(p, row + x, row + x - 1, p->across[row + x]);
         for (int x = w - 2; x >= 0; x--)
-            hand_on(p, row + x, row + x + 1);
+            hand_on(p, row + x, row + x + 1, p->across[row + x + 1]);
     }
 }
 
 static void along_columns(void *context, int band, int worker)
 {
     const struct planes *p = context;
-    const int w = p->stack->columns, h = p->stack->rows, right = (band + 1) * BAND;
-    const int end = right < w ? right : w;
+    const ptrdiff_t w = p->stack->columns, h = p->stack->rows, right = (band + 1) * BAND;
+    const ptrdiff_t end = right < w ? right : w;
 
     (void)worker;
-    for (int y = 1; y < h; y++)
-        for (int x = band * BAND; x < end; x++)
-            hand_on(p, (ptrdiff_t)y * w + x, (ptrdiff_t)(y - 1) * w + x);
-    for (int y = h - 2; y >= 0; y--)
-        for (int x = band * BAND; x < end; x++)
-            hand_on(p, (ptrdiff_t)y * w + x, (ptrdiff_t)(y + 1) * w + x);
+    for (ptrdiff_t y = 1; y < h; y++)
+        for (ptrdiff_t i = y * w + band * BAND; i < y * w + end; i++)
+            hand_on(p, i, i - w, p->down[i]);
+    for (ptrdiff_t y = h - 2; y >= 0; y--)
+        for (ptrdiff_t i = y * w + band * BAND; i < y * w + end; i++)
+            hand_on(p, i, i + w, p->down[i + w]);
 }
 
 void rf_stack_smooth(struct refocus_stack *s)
 {
     const size_t samples = (size_t)s->columns * (size_t)s->rows;
-    struct planes planes = {.stack = s, .sum = (int32_t *)(void *)s->sum};
+    struct planes planes = {
+        .stack = s,
+        .sum = (int32_t *)(void *)s->sum,
+        .weight = (int32_t *)(void *)s->sum + samples,
+        .across = s->cost,
+        .down = s->cost + samples,
+    };
     int length = LENGTH;
 
-    planes.weight = planes.sum + samples;
+    find_differences(&planes);
     for (size_t i = 0; i < samples; i++) {
         planes.weight[i] = (s->sure[i] + LEAST) << 8;
         planes.sum[i] = planes.weight[i] * s->depth[i];
