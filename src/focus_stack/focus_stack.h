@@ -122,8 +122,8 @@ int rf_stack_sub(int frames);
 void rf_stack_model(struct refocus_stack *stack);
 /* Adds to the costs of a sample by mean squares of sharpness, each in Q2 codes. */
 void rf_stack_model_costs(const struct refocus_stack *stack, uint8_t *cost, const uint32_t *mean);
-/* Finds `noise`: what the least sharp frame has in the flattest tenth of the photo, once frames lie
- * on each other. */
+/* Finds `noise`, from samples that show nothing else, once frames lie on each other; 0: there is
+ * hardly any. */
 void rf_stack_find_noise(struct refocus_stack *stack);
 /* Costs, guide and confidence, from the sharpness. */
 void rf_stack_costs(struct refocus_stack *stack);

@@ -2,8 +2,9 @@
  *
  * Sharpness of texture rises from frame to frame up to the one in focus and falls from there, so
  * that its steps add up to twice its range at the most. That of noise goes up and down: samples
- * whose steps add up to more show it. Its strength is what the flattest tenth of them has in the
- * least sharp frame. Where hardly any sample is of that kind, there is no noise to speak of.
+ * whose steps add up to two and a half times their range show it. Its strength is what the flattest
+ * tenth of them has in the least sharp frame. Where hardly any sample is of that kind, there is no
+ * noise to speak of.
  */
 #include "focus_stack/focus_stack.h"
 
@@ -11,10 +12,10 @@
 #include <string.h>
 
 enum {
-    APART = 13, /* samples from one that is looked at to the next */
-    VALUES = 1 << 13,
-    FLAT = 10, /* one noisy sample in so many is flat */
-    MANY = 10, /* one sample in so many is noisy at the least */
+    APART = 13,       /* samples from one that is looked at to the next */
+    VALUES = 1 << 13, /* sharpness is below, in half codes */
+    FLAT = 10,        /* one noisy sample in so many is flat */
+    MANY = 10,        /* one sample in so many is noisy at the least */
 };
 
 static int sharpness_of(const struct refocus_stack *s, int k, size_t i)

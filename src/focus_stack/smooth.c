@@ -9,7 +9,9 @@
  * (normalised convolution, Knutsson & Westin 1993). What k keeps of a neighbour is handed on from
  * sample to sample, along rows and columns, both ways, and less across edges of the photo (a
  * recursive filter as in Gastal & Oliveira 2011). Rounds with ever shorter lengths take away the
- * stripes that the longer ones leave. In noise, differences that noise makes are no edges.
+ * stripes that the longer ones leave. Differences that noise makes are no edges: its squared
+ * sharpness, of second differences, is several times their squares, and stands for EDGE where it
+ * is more.
  *
  * Sums are below 2^9 2^13 and Q8, weights are Q8, too, so that a difference times k, Q16, fits 47
  * bits.

@@ -151,7 +151,6 @@ static void makes_no_blob_of_a_lamp(void **state)
     assert_true(right_share(&scene) > 0.98);
 }
 
-/* Noise is as sharp in each frame. */
 /* The largest step of disparity between neighbours on the wall. */
 static int largest_step_on_wall(void)
 {
@@ -197,6 +196,7 @@ static void is_smooth_where_nothing_is_measured(void **state)
     frames = FRAMES;
 }
 
+/* Noise is as sharp in each frame. */
 static void takes_no_noise_for_texture(void **state)
 {
     static const struct scene scene = {.left = 1, .right = 3, .flat = 1, .noise = 12};
