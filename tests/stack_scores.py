@@ -151,8 +151,9 @@ and patches before. The scores here stay within .1 dB (portrait up to +.1; two f
 96 rendered stacks of eight scenes gain .02 in the mean; the scene that loses most is aloe, -.15 in the mean.
 
 Processor time of `refocus depth --focal-stack`, nine frames, with files read and written, x86-64: 2 megapixels
-3.8 s and 280 MB, 12 megapixels 14 s and 735 MB (a slow day; on another 2.9 and 10.4 s, before depth was smoothed, which
-takes 6 % of it). By the clock with two threads: as much, since most of it is done by one.
+4.5 s and 280 MB, 12 megapixels 19 s and 735 MB (a slow day; on another 2.9 and 10.4 s). By the clock with two threads,
+by turns with one thread for most of it, as it was before, medians of five and of two: 2.98 for 4.01 s, and 13.5 for
+20.6 s. Files are read and written by one thread: a quarter of the 2.98 s.
 
 %s
 

@@ -49,7 +49,7 @@ struct refocus_stack_params {
                                that they are added in; 0 = the one in the middle of the focus */
     uint32_t align;       /**< enum refocus_stack_align */
     uint32_t order;       /**< enum refocus_stack_order; frames with positions go by those */
-    int32_t threads;      /**< 1 to 64, of refocus_stack_finish(); 0 = one for each processor */
+    int32_t threads;      /**< 1 to 64, which end with each call; 0 = one for each processor */
 };
 
 static inline struct refocus_stack_params
@@ -139,8 +139,8 @@ REFOCUS_API void refocus_stack_destroy(struct refocus_stack **stack);
  *                  a surface is from the focus, but not on which side.
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (not an image of that size, a format of Y, U and V or
  *         of more than 8 bits, an infinite position, one that another frame has, one where others
- *         had none), REFOCUS_ERR_STATE (there are as many as were announced); on an error the
- *         stack is as it was
+ *         had none), REFOCUS_ERR_STATE (there are as many as were announced), REFOCUS_ERR_THREAD;
+ *         on an error the stack is as it was
  */
 REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refocus_image *frame,
                                   double position);

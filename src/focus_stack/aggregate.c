@@ -98,32 +98,42 @@ static inline void pass_row(const struct refocus_stack *s, int y, int way, bool 
     }
 }
 
-static inline void pass(struct refocus_stack *s, int way, int n)
+static inline void pass(const struct refocus_stack *s, struct rf_stack_part part, int n)
 {
     const ptrdiff_t row = (ptrdiff_t)(n + 2 * BESIDE) * s->columns;
-    int16_t *line[2][WAYS];
+    int16_t *const path = rf_stack_path(s, part.way), *line[2][WAYS];
 
-    for (ptrdiff_t i = 0; i < 2 * WAYS * row; i++)
-        s->path[i] = NEVER;
+    for (ptrdiff_t i = 0; i < 2 * WAYS * row && !part.begin; i++)
+        path[i] = NEVER;
     for (int i = 0; i < 2 * WAYS; i++)
-        line[i & 1][i / 2] = s->path + i * row + BESIDE;
-    for (int i = 0; i < s->rows; i++)
-        pass_row(s, way > 0 ? i : s->rows - 1 - i, way, i == 0, line[i & 1], line[~i & 1], n);
+        line[i & 1][i / 2] = path + i * row + BESIDE;
+    for (int i = part.begin; i < part.end; i++) {
+        const int y = part.way > 0 ? i : s->rows - 1 - i;
+        const size_t sums = (size_t)s->columns * (size_t)n;
+
+        if (!part.second)
+            memset(s->sum + (size_t)y * sums, 0, sums * sizeof *s->sum);
+        pass_row(s, y, part.way, i == 0, line[i & 1], line[~i & 1], n);
+    }
+}
+
+static void pass_part(void *context, struct rf_stack_part part)
+{
+    const struct refocus_stack *s = context;
+
+    if (s->labels == 8)
+        pass(s, part, 8);
+    else if (s->labels == 16)
+        pass(s, part, 16);
+    else if (s->labels == 24)
+        pass(s, part, 24);
+    else
+        pass(s, part, REFOCUS_STACK_MOST_FRAMES);
 }
 
 void rf_stack_aggregate(struct refocus_stack *s)
 {
-    memset(s->sum, 0, (size_t)s->columns * (size_t)s->rows * (size_t)s->labels * sizeof *s->sum);
-    for (int way = 1; way >= -1; way -= 2) {
-        if (s->labels == 8)
-            pass(s, way, 8);
-        else if (s->labels == 16)
-            pass(s, way, 16);
-        else if (s->labels == 24)
-            pass(s, way, 24);
-        else
-            pass(s, way, REFOCUS_STACK_MOST_FRAMES);
-    }
+    rf_stack_both_ways(s->pool, pass_part, s, s->rows);
 }
 
 /* The least of the parabola through three sums, Q8 from the middle one; at most half a frame. */
@@ -134,11 +144,13 @@ static int between(int before, int least, int after)
     return bend > 0 ? rf_stack_clamp(128 * (before - after) / bend + 128, 256) - 128 : 0;
 }
 
-void rf_stack_choose(struct refocus_stack *s)
+static void choose_row(void *context, int y, int worker)
 {
-    const size_t samples = (size_t)s->columns * (size_t)s->rows;
+    struct refocus_stack *const s = context;
+    const size_t begin = (size_t)y * (size_t)s->columns, end = begin + (size_t)s->columns;
 
-    for (size_t i = 0; i < samples; i++) {
+    (void)worker;
+    for (size_t i = begin; i < end; i++) {
         const int16_t *sum = s->sum + i * (size_t)s->labels;
         int best = 0;
 
@@ -149,4 +161,9 @@ void rf_stack_choose(struct refocus_stack *s)
             s->depth[i] =
                 (uint16_t)(s->depth[i] + between(sum[best - 1], sum[best], sum[best + 1]));
     }
+}
+
+void rf_stack_choose(struct refocus_stack *s)
+{
+    rf_pool_run(s->pool, choose_row, s, s->rows);
 }

@@ -221,9 +221,10 @@ static bool refine(const struct level *l, struct rf_similarity *s)
 static struct level level_of(const struct refocus_stack *s, const struct rf_stack_frame *reference,
                              const struct rf_stack_frame *frame, int i)
 {
+    /* Frames before the reference and behind it are aligned at the same time. */
     const struct level l = {.reference = reference->small[i],
                             .frame = frame->small[i],
-                            .warped = (int16_t *)s->moved,
+                            .warped = frame > reference ? (int16_t *)s->moved : s->sum,
                             .width = s->width / s->small_by >> i,
                             .height = s->height / s->small_by >> i};
 
@@ -351,27 +352,46 @@ static double likeness_of(const struct refocus_stack *s, const struct rf_stack_f
     return most;
 }
 
+struct sides {
+    struct refocus_stack *stack;
+    int reference;
+    double alike[2]; /* the least of frames before the reference, and of those behind it */
+};
+
+/* Aligns the frames on one side of the reference. */
+static void align_side(void *context, int side, int worker)
+{
+    struct sides *const sides = context;
+    const struct refocus_stack *s = sides->stack;
+    const int way = side ? 1 : -1;
+
+    (void)worker;
+    sides->alike[side] = 1;
+    for (int i = sides->reference + way; i >= 0 && i < s->count; i += way) {
+        struct rf_stack_frame *frame = &sides->stack->frame[i];
+        const struct rf_stack_frame *last = &s->frame[i - way];
+        struct rf_similarity found = {{1, 0}, {0, 0}};
+
+        if (s->align == REFOCUS_STACK_ALIGN_SIMILARITY)
+            found = between(s, last, frame);
+
+        const double alike = likeness_of(s, last, frame, &found);
+
+        if (alike < sides->alike[side])
+            sides->alike[side] = alike;
+        rescale(&found, s->small_by);
+        frame->from_reference = compose(&found, &last->from_reference);
+    }
+}
+
 void rf_stack_align(struct refocus_stack *s, int reference)
 {
     const struct rf_similarity none = {{1, 0}, {0, 0}};
+    struct sides sides = {.stack = s, .reference = reference};
 
-    s->alike = 1;
     s->frame[reference].from_reference = none;
-    for (int way = -1; way <= 1; way += 2)
-        for (int i = reference + way; i >= 0 && i < s->count; i += way) {
-            struct rf_stack_frame *frame = &s->frame[i];
-            const struct rf_stack_frame *last = &s->frame[i - way];
-            struct rf_similarity found = none;
-
-            if (s->align == REFOCUS_STACK_ALIGN_SIMILARITY)
-                found = between(s, last, frame);
-
-            const double alike = likeness_of(s, last, frame, &found);
-
-            s->alike = alike < s->alike ? alike : s->alike;
-            rescale(&found, s->small_by);
-            frame->from_reference = compose(&found, &last->from_reference);
-        }
+    rf_pool_run(s->pool, align_side, &sides, 2);
+    s->alike = sides.alike[sides.alike[1] < sides.alike[0]];
     for (int i = 0; i < s->count; i++)
         if (rf_similarity_reach(&s->frame[i].from_reference, s->width, s->height) < LEAST_REACH)
             s->frame[i].from_reference = none;

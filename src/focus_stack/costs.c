@@ -15,44 +15,54 @@ enum {
 
 static const int reach[SQUARES] = {0, 4, 8};
 
+struct move {
+    const struct refocus_stack *stack;
+    const struct rf_stack_frame *frame;
+};
+
+static void move_row(void *context, int y, int worker)
+{
+    const struct move *move = context;
+    const struct refocus_stack *s = move->stack;
+    const int w = s->columns, h = s->rows, k = s->reduced;
+    const struct rf_stack_line line =
+        rf_stack_line(s, move->frame, 0.5 * (k - 1), y * k + 0.5 * (k - 1), k);
+    const int64_t half = (int64_t)(k - 1) << 31;
+    uint16_t *out = s->moved + (size_t)y * (size_t)w;
+
+    (void)worker;
+    for (int x = 0; x < w; x++) {
+        /* Q32 pixels of the frame, to Q8 samples. */
+        const int64_t px = ((line.x + x * line.dx - half) >> 24) / k;
+        const int64_t py = ((line.y + x * line.dy - half) >> 24) / k;
+        const int u = (int)(px & 255), v = (int)(py & 255);
+        const int64_t left = px >> 8, above = py >> 8;
+        const int x0 = left < 0 ? 0 : left < w ? (int)left : w - 1;
+        const int y0 = above < 0 ? 0 : above < h ? (int)above : h - 1;
+        const int x1 = left < 0 ? 0 : rf_stack_clamp(x0 + 1, w - 1);
+        const int y1 = above < 0 ? 0 : rf_stack_clamp(y0 + 1, h - 1);
+        const uint16_t *p = move->frame->sharpness + (size_t)y0 * (size_t)w;
+        const uint16_t *q = move->frame->sharpness + (size_t)y1 * (size_t)w;
+
+        out[x] =
+            (uint16_t)((((uint32_t)p[x0] * (uint32_t)(256 - u) + (uint32_t)p[x1] * (uint32_t)u) /
+                            256 * (uint32_t)(256 - v) +
+                        ((uint32_t)q[x0] * (uint32_t)(256 - u) + (uint32_t)q[x1] * (uint32_t)u) /
+                            256 * (uint32_t)v) >>
+                       8);
+    }
+}
+
 /* Sharpness of a frame as the reference sees it: bilinear, in the memory that it has. */
 static void move(struct refocus_stack *s, struct rf_stack_frame *frame)
 {
     const struct rf_similarity *m = &frame->from_reference;
-    const int w = s->columns, h = s->rows, k = s->reduced;
-    const size_t samples = (size_t)w * (size_t)h;
 
     if (m->c[0] == 1 && m->c[1] == 0 && m->t[0] == 0 && m->t[1] == 0)
         return;
-    for (int y = 0; y < h; y++) {
-        const struct rf_stack_line line =
-            rf_stack_line(s, frame, 0.5 * (k - 1), y * k + 0.5 * (k - 1), k);
-        const int64_t half = (int64_t)(k - 1) << 31;
-        uint16_t *out = s->moved + (size_t)y * (size_t)w;
-
-        for (int x = 0; x < w; x++) {
-            /* Q32 pixels of the frame, to Q8 samples. */
-            const int64_t px = ((line.x + x * line.dx - half) >> 24) / k;
-            const int64_t py = ((line.y + x * line.dy - half) >> 24) / k;
-            const int u = (int)(px & 255), v = (int)(py & 255);
-            const int64_t left = px >> 8, above = py >> 8;
-            const int x0 = left < 0 ? 0 : left < w ? (int)left : w - 1;
-            const int y0 = above < 0 ? 0 : above < h ? (int)above : h - 1;
-            const int x1 = left < 0 ? 0 : rf_stack_clamp(x0 + 1, w - 1);
-            const int y1 = above < 0 ? 0 : rf_stack_clamp(y0 + 1, h - 1);
-            const uint16_t *p = frame->sharpness + (size_t)y0 * (size_t)w;
-            const uint16_t *q = frame->sharpness + (size_t)y1 * (size_t)w;
-
-            out[x] = (uint16_t)((((uint32_t)p[x0] * (uint32_t)(256 - u) +
-                                  (uint32_t)p[x1] * (uint32_t)u) /
-                                     256 * (uint32_t)(256 - v) +
-                                 ((uint32_t)q[x0] * (uint32_t)(256 - u) +
-                                  (uint32_t)q[x1] * (uint32_t)u) /
-                                     256 * (uint32_t)v) >>
-                                8);
-        }
-    }
-    memcpy(frame->sharpness, s->moved, samples * sizeof *s->moved);
+    rf_pool_run(s->pool, move_row, &(struct move){s, frame}, s->rows);
+    memcpy(frame->sharpness, s->moved,
+           (size_t)s->columns * (size_t)s->rows * sizeof *frame->sharpness);
 }
 
 /* Squared sharpness, Q2 codes: at most 4080^2 < 2^24, so that 17 x 17 of them fit 33 bits. */
@@ -122,6 +132,12 @@ static uint8_t sure_of(const struct refocus_stack *s, const uint32_t *mean)
     return (uint8_t)rf_stack_clamp(255 * (UNSURE - ratio) / (UNSURE - SURE), 255);
 }
 
+/* A sum over a square as a mean; divisors are constants, by which compilers multiply. */
+static uint32_t mean_of(uint64_t sum, int i)
+{
+    return (uint32_t)(i == 0 ? sum : i == 1 ? sum / (9 * 9) : sum / (17 * 17));
+}
+
 static void cost_row(struct refocus_stack *s, int worker, int y)
 {
     const int w = s->columns, n = s->labels;
@@ -132,20 +148,22 @@ static void cost_row(struct refocus_stack *s, int worker, int y)
         memset(cost + (size_t)x * (size_t)n, 0, (size_t)s->depths);
     for (int i = 0; i < SQUARES; i++) {
         const int r = reach[i];
-        const uint64_t area = (uint64_t)(2 * r + 1) * (uint64_t)(2 * r + 1);
+        const uint32_t *column[REFOCUS_STACK_MOST_FRAMES];
         uint64_t sum[REFOCUS_STACK_MOST_FRAMES] = {0};
         uint32_t mean[REFOCUS_STACK_MOST_FRAMES];
 
-        for (int k = 0; k < s->count; k++)
+        for (int k = 0; k < s->count; k++) {
+            column[k] = columns_of(s, worker, i, k);
             for (int x = -r - 1; x < r; x++)
-                sum[k] += columns_of(s, worker, i, k)[rf_stack_clamp(x, w - 1)];
+                sum[k] += column[k][rf_stack_clamp(x, w - 1)];
+        }
         for (int x = 0; x < w; x++) {
-            for (int k = 0; k < s->count; k++) {
-                const uint32_t *column = columns_of(s, worker, i, k);
+            const int right = rf_stack_clamp(x + r, w - 1), left = rf_stack_clamp(x - r - 1, w - 1);
 
-                sum[k] += column[rf_stack_clamp(x + r, w - 1)];
-                sum[k] -= column[rf_stack_clamp(x - r - 1, w - 1)];
-                mean[k] = (uint32_t)(sum[k] / area);
+            for (int k = 0; k < s->count; k++) {
+                sum[k] += column[k][right];
+                sum[k] -= column[k][left];
+                mean[k] = mean_of(sum[k], i);
             }
             if (s->sub > 1)
                 rf_stack_model_costs(s, cost + (size_t)x * (size_t)n, mean);

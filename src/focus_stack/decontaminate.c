@@ -181,28 +181,42 @@ static uint64_t error_of(const struct refocus_stack *s, const struct rf_stack_ph
     return error;
 }
 
+struct radii {
+    const struct refocus_stack *stack;
+    const struct rf_stack_photo *photo;
+    int reach;
+    uint64_t error[RADII + 1]; /* the last one without blur */
+};
+
+static double radius_of(const struct radii *radii, int i)
+{
+    return i < RADII ? ldexp(i & 1 ? sqrt(0.5) * radii->reach : radii->reach, -(i / 2)) : 0;
+}
+
+static void try_radius(void *context, int i, int worker)
+{
+    struct radii *const radii = context;
+    const double radius = radius_of(radii, i);
+    struct disc disc;
+
+    (void)worker;
+    make_disc(&disc, radius > 0 ? radius : 1);
+    radii->error[i] = error_of(radii->stack, radii->photo, &disc, radius, radii->reach);
+}
+
 /* K in pixels; 0 if no blur explains the frames. */
 static double find_radius(const struct refocus_stack *s, const struct rf_stack_photo *photo)
 {
-    const int longer = s->width > s->height ? s->width : s->height, reach = longer / PART;
-    uint64_t least = UINT64_MAX, without;
-    double best = 0;
-    struct disc disc;
+    const int longer = s->width > s->height ? s->width : s->height;
+    struct radii radii = {.stack = s, .photo = photo, .reach = longer / PART};
+    int best = 0;
 
-    make_disc(&disc, 1);
-    without = error_of(s, photo, &disc, 0, reach);
-    for (int i = 0; i < RADII; i++) {
-        const double radius = ldexp(i & 1 ? sqrt(0.5) * reach : reach, -(i / 2));
-        uint64_t error;
+    rf_pool_run(s->pool, try_radius, &radii, RADII + 1);
+    for (int i = 1; i < RADII; i++)
+        best = radii.error[i] < radii.error[best] ? i : best;
 
-        make_disc(&disc, radius);
-        error = error_of(s, photo, &disc, radius, reach);
-        if (error < least) {
-            least = error;
-            best = radius;
-        }
-    }
-    return 4 * (least / 3) < without ? best : 0; /* three quarters of it at the most */
+    /* Three quarters of the error that no blur leaves, at the most. */
+    return 4 * (radii.error[best] / 3) < radii.error[RADII] ? radius_of(&radii, best) : 0;
 }
 
 /* ----- the background ----- */
@@ -332,14 +346,47 @@ static void look_past(const struct refocus_stack *s, int disparity, int x, int y
     rf_stack_pixel(s, best, x, y, p);
 }
 
+struct lifting {
+    const struct refocus_stack *stack;
+    const struct rf_stack_photo *photo; /* written */
+    struct rf_stack_photo before;       /* pixels as they were */
+    const uint16_t *nearest;            /* disparity, of tiles */
+    struct disc disc;
+    int most; /* K, Q8 pixels */
+};
+
+static void lift_row(void *context, int y, int worker)
+{
+    const struct lifting *l = context;
+    const struct refocus_stack *s = l->stack;
+    const int across = (s->columns + TILE - 1) / TILE;
+    uint16_t *const depth = s->depth_row + (ptrdiff_t)worker * s->width;
+    uint8_t *const sure = s->sure_row + (ptrdiff_t)worker * s->width;
+    uint8_t *row = l->photo->rgb + y * l->photo->stride;
+
+    rf_stack_depth_row(s, depth, sure, y);
+    for (int x = 0; x < s->width; x++) {
+        const int focus = rf_stack_disparity(s, rf_stack_focus(s, depth[x]));
+        const size_t at = sample_at(s, x, y);
+        const int tile =
+            (int)(at / (size_t)s->columns) / TILE * across + (int)(at % (size_t)s->columns) / TILE;
+        struct veil veil;
+
+        if ((int64_t)l->most * (l->nearest[tile] - focus) >> 16 < LEAST)
+            continue; /* nothing near is nearer */
+        veil_of(s, &l->before, &l->disc, l->most, focus, x, y, &veil);
+        if (veil.bright > ONE / 100)
+            look_past(s, veil.clipped, x, y, row + 3 * (ptrdiff_t)x);
+        else
+            lift(s, &veil, row + 3 * (ptrdiff_t)x);
+    }
+}
+
 void rf_stack_decontaminate(struct refocus_stack *s, const struct rf_stack_photo *photo)
 {
-    const size_t samples = (size_t)s->columns * (size_t)s->rows;
-    const int across = (s->columns + TILE - 1) / TILE;
-    const uint16_t *nearest;
-    struct disc disc;
+    const size_t samples = (size_t)s->columns * (size_t)s->rows, line = 3 * (size_t)s->width;
+    struct lifting lifting = {.stack = s, .photo = photo, .before = {s->before, (ptrdiff_t)line}};
     double radius;
-    int most;
 
     for (size_t i = 0; i < samples; i++)
         s->moved[i] = rf_stack_disparity(s, s->depth[i] / s->sub);
@@ -347,27 +394,10 @@ void rf_stack_decontaminate(struct refocus_stack *s, const struct rf_stack_photo
     radius = find_radius(s, photo);
     if (radius * 256 < LEAST)
         return;
-    most = (int)(radius * 256);
-    make_disc(&disc, radius * 5 / 4);
-    nearest = nearest_of_tiles(s, disc.taps * disc.apart);
-    for (int y = 0; y < s->height; y++) {
-        uint8_t *row = photo->rgb + y * photo->stride;
-
-        rf_stack_depth_row(s, s->depth_row, s->sure_row, y);
-        for (int x = 0; x < s->width; x++) {
-            const int focus = rf_stack_disparity(s, rf_stack_focus(s, s->depth_row[x]));
-            const size_t at = sample_at(s, x, y);
-            const int tile = (int)(at / (size_t)s->columns) / TILE * across +
-                             (int)(at % (size_t)s->columns) / TILE;
-            struct veil veil;
-
-            if ((int64_t)most * (nearest[tile] - focus) >> 16 < LEAST)
-                continue; /* nothing near is nearer */
-            veil_of(s, photo, &disc, most, focus, x, y, &veil);
-            if (veil.bright > ONE / 100)
-                look_past(s, veil.clipped, x, y, row + 3 * (ptrdiff_t)x);
-            else
-                lift(s, &veil, row + 3 * (ptrdiff_t)x);
-        }
-    }
+    for (int y = 0; y < s->height; y++)
+        memcpy(s->before + (size_t)y * line, photo->rgb + y * photo->stride, line);
+    lifting.most = (int)(radius * 256);
+    make_disc(&lifting.disc, radius * 5 / 4);
+    lifting.nearest = nearest_of_tiles(s, lifting.disc.taps * lifting.disc.apart);
+    rf_pool_run(s->pool, lift_row, &lifting, s->height);
 }

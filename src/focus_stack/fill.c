@@ -32,12 +32,14 @@ static uint32_t kept(const uint8_t *p, const uint8_t *q)
 
 /* The vote of each sample, 0 to 255 in all, shared by the two frames that its depth lies between;
  * it takes the place of its costs. */
-static void vote(struct refocus_stack *s)
+static void vote_row(void *context, int y, int worker)
 {
-    const size_t samples = (size_t)s->columns * (size_t)s->rows, n = (size_t)s->labels;
+    const struct refocus_stack *s = context;
+    const size_t w = (size_t)s->columns, n = (size_t)s->labels, begin = (size_t)y * w;
 
-    memset(s->cost, 0, samples * n);
-    for (size_t i = 0; i < samples; i++) {
+    (void)worker;
+    memset(s->cost + begin * n, 0, w * n);
+    for (size_t i = begin; i < begin + w; i++) {
         const int k = s->depth[i] >> 8, t = s->depth[i] & 255;
         uint8_t *own = s->cost + i * n + k;
 
@@ -49,6 +51,7 @@ static void vote(struct refocus_stack *s)
 
 /* The map as votes go through it: rows first, or columns. */
 struct walk {
+    const struct refocus_stack *stack;
     int width, height;
     ptrdiff_t across, down; /* samples to the next one */
 };
@@ -100,8 +103,8 @@ static uint16_t elected(const uint32_t *votes, int count, uint16_t depth)
     return (uint16_t)(256 * first + (int)(256 * sum / all));
 }
 
-/* Sums of the votes that reach a sample from above, in 16 bits; returns by how many bits they are
- * less. */
+/* Sums of the votes that reach a sample from one side, in 16 bits; returns by how many bits they
+ * are less. */
 static inline uint16_t store(uint16_t *stored, const uint32_t *votes, int n)
 {
     uint32_t most = 0;
@@ -116,12 +119,14 @@ static inline uint16_t store(uint16_t *stored, const uint32_t *votes, int n)
     return shift;
 }
 
-/* Votes of row y and of the rows before it, on the way down or up. */
-static inline void next_row(struct refocus_stack *s, const struct walk *walk, int y, int way,
-                            bool first, int n)
+/* Votes of row y and of the rows before it, on the way down or up: they are stored for the other
+ * way, or the sample has those of that way and elects. */
+static inline void next_row(const struct refocus_stack *s, const struct walk *walk, int y,
+                            struct rf_stack_part part, bool first, int n)
 {
-    const int w = walk->width;
-    uint32_t *votes = (uint32_t *)(void *)s->path, *sums = votes + (size_t)w * (size_t)n;
+    const int w = walk->width, way = part.way;
+    uint32_t *votes = (uint32_t *)(void *)rf_stack_path(s, way);
+    uint32_t *sums = votes + (size_t)w * (size_t)n;
 
     along_row(s, walk, y, votes, n);
     for (int x = 0; x < w; x++) {
@@ -134,40 +139,49 @@ static inline void next_row(struct refocus_stack *s, const struct walk *walk, in
 
         for (int k = 0; k < n; k++)
             sum[k] = sum[k] * keep >> 8;
-        if (way < 0) {
+        if (part.second) {
             for (int k = 0; k < n; k++)
                 all[k] = sum[k] + ((uint32_t)stored[k] << s->moved[i]);
             s->depth[i] = elected(all, s->depths, s->depth[i]);
         }
         for (int k = 0; k < n; k++)
             sum[k] += vote[k];
-        if (way > 0)
+        if (!part.second)
             s->moved[i] = store(stored, sum, n);
     }
 }
 
-static inline void along_columns(struct refocus_stack *s, const struct walk *walk, int n)
+static inline void along_columns(const struct walk *walk, struct rf_stack_part part, int n)
 {
-    for (int way = 1; way >= -1; way -= 2) {
-        memset(s->path, 0, 2 * sizeof(uint32_t) * (size_t)walk->width * (size_t)n);
-        for (int i = 0; i < walk->height; i++)
-            next_row(s, walk, way > 0 ? i : walk->height - 1 - i, way, i == 0, n);
-    }
+    const struct refocus_stack *s = walk->stack;
+
+    if (!part.begin)
+        memset(rf_stack_path(s, part.way), 0,
+               2 * sizeof(uint32_t) * (size_t)walk->width * (size_t)n);
+    for (int i = part.begin; i < part.end; i++)
+        next_row(s, walk, part.way > 0 ? i : walk->height - 1 - i, part, i == 0, n);
+}
+
+static void walk_part(void *context, struct rf_stack_part part)
+{
+    const struct walk *walk = context;
+
+    if (walk->stack->labels == 8)
+        along_columns(walk, part, 8);
+    else if (walk->stack->labels == 16)
+        along_columns(walk, part, 16);
+    else if (walk->stack->labels == 24)
+        along_columns(walk, part, 24);
+    else
+        along_columns(walk, part, REFOCUS_STACK_MOST_FRAMES);
 }
 
 void rf_stack_fill(struct refocus_stack *s, bool columns_first)
 {
-    const struct walk rows = {s->columns, s->rows, 1, s->columns};
-    const struct walk columns = {s->rows, s->columns, s->columns, 1};
-    const struct walk *walk = columns_first ? &columns : &rows;
+    struct walk rows = {s, s->columns, s->rows, 1, s->columns};
+    struct walk columns = {s, s->rows, s->columns, s->columns, 1};
+    struct walk *walk = columns_first ? &columns : &rows;
 
-    vote(s);
-    if (s->labels == 8)
-        along_columns(s, walk, 8);
-    else if (s->labels == 16)
-        along_columns(s, walk, 16);
-    else if (s->labels == 24)
-        along_columns(s, walk, 24);
-    else
-        along_columns(s, walk, REFOCUS_STACK_MOST_FRAMES);
+    rf_pool_run(s->pool, vote_row, s, s->rows);
+    rf_stack_both_ways(s->pool, walk_part, walk, walk->height);
 }

@@ -58,19 +58,22 @@ struct refocus_stack {
     double alike;      /* the least correlation of neighbours once they are aligned */
     atomic_int moving; /* samples where something moves */
     int threads;
-    struct rf_pool *pool; /* while the stack is finished */
+    struct rf_pool *pool; /* while a frame is added or the stack is finished */
     int sub;              /* depths from a frame to the next: 1 where steps are fine */
     int depths;           /* told apart in all: (count - 1) sub + 1 */
     int labels; /* depths of `most` frames, rounded up so that costs of a sample fill vectors */
     struct rf_stack_frame frame[REFOCUS_STACK_MOST_FRAMES]; /* in the order of their positions */
 
-    uint8_t *luma;    /* one frame's, of the photo's size */
-    uint16_t *smooth; /* likewise, Q4 */
+    /* One block of 3 bytes a pixel: luminance of the frame that is added, as it is and smooth (Q4);
+     * then the photo before the light of blur is taken out. */
+    uint8_t *before, *luma;
+    uint16_t *smooth;
     uint16_t *moved;  /* sharpness in the geometry of the reference */
     uint8_t *guide;   /* R, G, B of the work's size */
     uint8_t *cost;    /* `labels` of a sample */
     int16_t *sum;     /* aggregated, `labels` of a sample */
-    int16_t *path;    /* costs along three directions that reach the last row, and the next */
+    int16_t *path;    /* rf_stack_path(): what reaches the last row and the next, each way */
+    size_t path_size; /* elements, of one way */
     uint32_t *column; /* sums of a column, for each worker, square and frame */
     uint16_t *depth;  /* a sample each, Q8 frames */
     uint8_t *sure;
@@ -80,9 +83,28 @@ struct refocus_stack {
     uint32_t noise; /* squared sharpness of noise, in quarters of a squared code */
     int models;
     int16_t share[RF_STACK_MODELS][RF_STACK_FEW]
-                 [RF_STACK_FEW_DEPTHS]; /* shares of the sharpness, Q12 */
+                 [RF_STACK_FEW_DEPTHS];                   /* shares of the sharpness, Q12 */
+    int16_t shares[RF_STACK_MODELS][RF_STACK_FEW_DEPTHS]; /* sums of them over all frames */
     void *block;
 };
+
+/* Steps of a walk over the rows of the map, 1 downwards or -1 upwards: from `begin`, counted from
+ * where the walk enters, to before `end`. */
+struct rf_stack_part {
+    int way, begin, end;
+    bool second; /* the walk the other way has been in these rows */
+};
+typedef void rf_stack_part_fn(void *context, struct rf_stack_part part);
+
+/* Walks over all rows, down and up at the same time: each takes the half first where it enters, so
+ * that they never meet in one row, and then the other. */
+void rf_stack_both_ways(struct rf_pool *pool, rf_stack_part_fn *part, void *context, int rows);
+
+/* The memory of one of them. */
+static inline int16_t *rf_stack_path(const struct refocus_stack *stack, int way)
+{
+    return stack->path + (way > 0 ? 0 : stack->path_size);
+}
 
 /* Luminance, sharpness and the small pictures of a frame that has its pixels. */
 void rf_stack_measure(struct refocus_stack *stack, struct rf_stack_frame *frame);

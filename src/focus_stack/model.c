@@ -79,9 +79,8 @@ static double ratio_of(const struct refocus_stack *s, uint32_t one_in)
     return ratio > LEAST_RATIO ? ratio : LEAST_RATIO;
 }
 
-/* The shares of a depth that lies at a position. */
-static void share_out(const struct refocus_stack *s, int16_t (*share)[RF_STACK_FEW_DEPTHS], int d,
-                      double at, double rho)
+/* The shares of a depth that lies at a position, by a model. */
+static void share_out(struct refocus_stack *s, int m, int d, double at, double rho)
 {
     const double first = s->frame[0].position;
     const double step = (s->frame[s->count - 1].position - first) / (s->count - 1);
@@ -93,8 +92,11 @@ static void share_out(const struct refocus_stack *s, int16_t (*share)[RF_STACK_F
         sharp[k] = 1 / (1 + rho * x * x);
         sum += sharp[k];
     }
-    for (int k = 0; k < s->count; k++)
-        share[k][d] = (int16_t)(sharp[k] / sum * ONE + 0.5);
+    s->shares[m][d] = 0;
+    for (int k = 0; k < s->count; k++) {
+        s->share[m][k][d] = (int16_t)(sharp[k] / sum * ONE + 0.5);
+        s->shares[m][d] = (int16_t)(s->shares[m][d] + s->share[m][k][d]);
+    }
 }
 
 void rf_stack_model(struct refocus_stack *s)
@@ -107,41 +109,45 @@ void rf_stack_model(struct refocus_stack *s)
             const int k = rf_stack_clamp(d / s->sub, s->count - 2);
             const double below = s->frame[k].position, above = s->frame[k + 1].position;
 
-            share_out(s, s->share[m], d, below + (above - below) * (d - k * s->sub) / s->sub, rho);
+            share_out(s, m, d, below + (above - below) * (d - k * s->sub) / s->sub, rho);
         }
         rho /= 3;
     }
 }
 
-/* n, at least the number of depths, is known to the compiler. */
+/* Differences of shares add up to twice the larger of each two, less all of them. n, at least the
+ * number of depths, is known to the compiler. */
 static inline void add_costs(const struct refocus_stack *s, uint8_t *cost, const uint32_t *mean,
                              int n)
 {
-    int16_t least[RF_STACK_FEW_DEPTHS], share[RF_STACK_FEW];
+    int16_t least[RF_STACK_FEW_DEPTHS], share[RF_STACK_FEW], all = 0;
     uint64_t sum = 0;
 
     for (int k = 0; k < s->count; k++)
         sum += mean[k];
-    for (int k = 0; k < s->count; k++)
-        share[k] = (int16_t)((uint64_t)mean[k] * ONE / (sum + 1));
+    /* Means are below 2^24, and none is above the sum. */
+    const uint64_t one = ((uint64_t)ONE << 28) / (sum + 1);
+
+    for (int k = 0; k < s->count; k++) {
+        share[k] = (int16_t)(mean[k] * one >> 28);
+        all = (int16_t)(all + share[k]);
+    }
     for (int d = 0; d < n; d++)
         least[d] = 2 * ONE;
     for (int m = 0; m < s->models; m++) {
-        int16_t wrong[RF_STACK_FEW_DEPTHS] = {0};
+        int16_t larger[RF_STACK_FEW_DEPTHS] = {0};
 
         for (int k = 0; k < s->count; k++) {
             const int16_t *restrict model = s->share[m][k], here = share[k];
 
-            /* The difference of the larger and the smaller: lanes stay of 16 bits. */
-            for (int d = 0; d < n; d++) {
-                const int16_t more = here > model[d] ? here : model[d];
-                const int16_t less = here < model[d] ? here : model[d];
-
-                wrong[d] = (int16_t)(wrong[d] + more - less);
-            }
+            for (int d = 0; d < n; d++)
+                larger[d] = (int16_t)(larger[d] + (here > model[d] ? here : model[d]));
         }
-        for (int d = 0; d < n; d++)
-            least[d] = wrong[d] < least[d] ? wrong[d] : least[d];
+        for (int d = 0; d < n; d++) {
+            const int16_t wrong = (int16_t)(2 * larger[d] - all - s->shares[m][d]);
+
+            least[d] = wrong < least[d] ? wrong : least[d];
+        }
     }
 
     const int scale = (int)(MOST * sum / (sum + NOISE));

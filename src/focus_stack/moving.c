@@ -198,27 +198,40 @@ static void find(const struct refocus_stack *s, const struct rf_stack_frame *fra
     widen(p);
 }
 
+struct coloured {
+    const struct refocus_stack *stack;
+    struct rf_stack_frame *frame;
+};
+
+static void colour_row(void *context, int y, int worker)
+{
+    const struct coloured *coloured = context;
+    const struct refocus_stack *s = coloured->stack;
+    const int k = s->small_by << LEVEL, w = s->width / s->small_by >> LEVEL;
+
+    (void)worker;
+    for (int x = 0; x < w; x++) {
+        int32_t sum[3] = {0};
+
+        for (int v = 0; v < k; v++) {
+            const uint8_t *p = coloured->frame->rgb +
+                               3 * ((size_t)(y * k + v) * (size_t)s->width + (size_t)(x * k));
+
+            for (int u = 0; u < k; u++, p += 3)
+                for (int c = 0; c < 3; c++)
+                    sum[c] += p[c];
+        }
+        for (int c = 0; c < 2; c++)
+            coloured->frame->colour[c][(size_t)y * (size_t)w + (size_t)x] =
+                (uint16_t)(RF_STACK_GREY + 16 * (sum[2 * c] - sum[1]) / (k * k));
+    }
+}
+
 void rf_stack_measure_colour(const struct refocus_stack *s, struct rf_stack_frame *frame)
 {
-    const int k = s->small_by << LEVEL, w = s->width / s->small_by >> LEVEL;
-    const int h = s->height / s->small_by >> LEVEL;
+    struct coloured coloured = {s, frame};
 
-    for (int y = 0; y < h; y++)
-        for (int x = 0; x < w; x++) {
-            int32_t sum[3] = {0};
-
-            for (int v = 0; v < k; v++) {
-                const uint8_t *p =
-                    frame->rgb + 3 * ((size_t)(y * k + v) * (size_t)s->width + (size_t)(x * k));
-
-                for (int u = 0; u < k; u++, p += 3)
-                    for (int c = 0; c < 3; c++)
-                        sum[c] += p[c];
-            }
-            for (int c = 0; c < 2; c++)
-                frame->colour[c][(size_t)y * (size_t)w + (size_t)x] =
-                    (uint16_t)(RF_STACK_GREY + 16 * (sum[2 * c] - sum[1]) / (k * k));
-        }
+    rf_pool_run(s->pool, colour_row, &coloured, s->height / s->small_by >> LEVEL);
 }
 
 void rf_stack_find_moving(struct refocus_stack *s)

@@ -5,38 +5,51 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void load(struct refocus_stack *s, const struct rf_stack_frame *frame)
+struct measured {
+    struct refocus_stack *stack;
+    struct rf_stack_frame *frame;
+    uint32_t *squares, *across; /* squares of sharpness, and their sums along rows */
+};
+
+static void load_row(void *context, int y, int worker)
 {
-    const size_t pixels = (size_t)s->width * (size_t)s->height;
-    const uint8_t *restrict rgb = frame->rgb;
-    uint8_t *restrict luma = s->luma;
+    const struct measured *m = context;
+    const size_t w = (size_t)m->stack->width;
+    const uint8_t *restrict rgb = m->frame->rgb + 3 * (size_t)y * w;
+    uint8_t *restrict luma = m->stack->luma + (size_t)y * w;
 
-    for (size_t i = 0; i < pixels; i++) {
-        const int r = rgb[3 * i], g = rgb[3 * i + 1], b = rgb[3 * i + 2];
+    (void)worker;
+    for (size_t x = 0; x < w; x++) {
+        const int r = rgb[3 * x], g = rgb[3 * x + 1], b = rgb[3 * x + 2];
 
-        luma[i] = (uint8_t)((5 * r + 9 * g + 2 * b + 8) >> 4);
+        luma[x] = (uint8_t)((5 * r + 9 * g + 2 * b + 8) >> 4);
     }
 }
 
-/* Luminance by binomial weights over 3 x 3 pixels, Q4. */
-static void smooth(struct refocus_stack *s)
+/* A row of a worker's own, of the photo's width. */
+static uint16_t *row_of(const struct refocus_stack *s, int worker)
 {
+    return s->depth_row + (ptrdiff_t)worker * s->width;
+}
+
+/* Luminance by binomial weights over 3 x 3 pixels, Q4. */
+static void smooth_row(void *context, int y, int worker)
+{
+    const struct measured *m = context;
+    const struct refocus_stack *s = m->stack;
     const int w = s->width;
+    const uint8_t *restrict at = s->luma + (size_t)y * (size_t)w;
+    const uint8_t *restrict up = y ? at - w : at;
+    const uint8_t *restrict down = y + 1 < s->height ? at + w : at;
+    uint16_t *restrict out = s->smooth + (size_t)y * (size_t)w;
+    uint16_t *restrict sum = row_of(s, worker);
 
-    for (int y = 0; y < s->height; y++) {
-        const uint8_t *restrict at = s->luma + (size_t)y * (size_t)w;
-        const uint8_t *restrict up = y ? at - w : at;
-        const uint8_t *restrict down = y + 1 < s->height ? at + w : at;
-        uint16_t *restrict out = s->smooth + (size_t)y * (size_t)w;
-        uint16_t *restrict sum = s->moved; /* at least a row, and unused here */
-
-        for (int x = 0; x < w; x++)
-            sum[x] = (uint16_t)(up[x] + 2 * at[x] + down[x]);
-        for (int x = 1; x < w - 1; x++)
-            out[x] = (uint16_t)(sum[x - 1] + 2 * sum[x] + sum[x + 1]);
-        out[0] = (uint16_t)(3 * sum[0] + sum[1]);
-        out[w - 1] = (uint16_t)(3 * sum[w - 1] + sum[w - 2]);
-    }
+    for (int x = 0; x < w; x++)
+        sum[x] = (uint16_t)(up[x] + 2 * at[x] + down[x]);
+    for (int x = 1; x < w - 1; x++)
+        out[x] = (uint16_t)(sum[x - 1] + 2 * sum[x] + sum[x + 1]);
+    out[0] = (uint16_t)(3 * sum[0] + sum[1]);
+    out[w - 1] = (uint16_t)(3 * sum[w - 1] + sum[w - 2]);
 }
 
 static int difference(int before, int middle, int after)
@@ -67,25 +80,28 @@ static void differences(const struct refocus_stack *s, uint16_t *restrict out, i
     }
 }
 
-/* Sharpness of a row of samples: means over their pixels. */
-static void reduce(struct refocus_stack *s, struct rf_stack_frame *frame, int row)
+/* Sharpness of a row of samples: means over their pixels. The squares of it are at most 4080^2,
+ * Q2, below 2^24: 16 of them fit 32 bits, and each is exact in single precision. */
+static void reduce_row(void *context, int row, int worker)
 {
-    const int k = s->reduced;
-    uint16_t *restrict line = s->moved;
-    uint32_t *restrict sum = s->column;
-    uint16_t *restrict out = frame->sharpness + (size_t)row * (size_t)s->columns;
+    const struct measured *m = context;
+    const struct refocus_stack *s = m->stack;
+    const int k = s->reduced, w = s->columns;
     const int below = (row + 1) * k < s->height ? (row + 1) * k : s->height;
+    uint16_t *restrict line = row_of(s, worker);
+    uint32_t *restrict squares = m->squares + (size_t)row * (size_t)w;
 
-    memset(sum, 0, (size_t)s->columns * sizeof *sum);
+    memset(squares, 0, (size_t)w * sizeof *squares);
     for (int y = row * k; y < below; y++) {
         differences(s, line, y);
         for (int x = 0; x < s->width; x++)
-            sum[x / k] += line[x];
+            squares[x / k] += line[x];
     }
-    for (int x = 0; x < s->columns; x++) {
+    for (int x = 0; x < w; x++) {
         const int wide = (x + 1) * k < s->width ? k : s->width - x * k;
+        const uint32_t mean = squares[x] / (uint32_t)(wide * (below - row * k)) >> 2;
 
-        out[x] = (uint16_t)(sum[x] / (uint32_t)(wide * (below - row * k)));
+        squares[x] = mean * mean >> 2;
     }
 }
 
@@ -100,62 +116,67 @@ static void across(uint32_t *restrict out, const uint32_t *restrict in, int n)
     }
 }
 
-/* Likewise down the columns, row by row. */
-static void down(uint32_t *restrict out, const uint32_t *restrict in, int width, int rows)
+static void across_row(void *context, int y, int worker)
 {
-    const size_t w = (size_t)width;
+    const struct measured *m = context;
+    const size_t w = (size_t)m->stack->columns;
 
-    for (int y = 0; y < rows; y++) {
-        const uint32_t *restrict r0 = in + (size_t)rf_stack_clamp(y - 2, rows - 1) * w;
-        const uint32_t *restrict r1 = in + (size_t)rf_stack_clamp(y - 1, rows - 1) * w;
-        const uint32_t *restrict r2 = in + (size_t)y * w;
-        const uint32_t *restrict r3 = in + (size_t)rf_stack_clamp(y + 1, rows - 1) * w;
-        const uint32_t *restrict r4 = in + (size_t)rf_stack_clamp(y + 2, rows - 1) * w;
-        uint32_t *restrict to = out + (size_t)y * w;
+    (void)worker;
+    across(m->across + (size_t)y * w, m->squares + (size_t)y * w, m->stack->columns);
+}
 
-        for (size_t x = 0; x < w; x++)
-            to[x] = (r0[x] + r4[x] + 4 * (r1[x] + r3[x]) + 6 * r2[x] + 8) >> 4;
+/* Likewise down the columns. */
+static void down_row(void *context, int y, int worker)
+{
+    const struct measured *m = context;
+    const size_t w = (size_t)m->stack->columns;
+    const uint32_t *restrict row[5];
+    uint32_t *restrict to = m->squares + (size_t)y * w;
+
+    (void)worker;
+    for (int i = 0; i < 5; i++)
+        row[i] = m->across + (size_t)rf_stack_clamp(y + i - 2, m->stack->rows - 1) * w;
+    for (size_t x = 0; x < w; x++)
+        to[x] = (row[0][x] + row[4][x] + 4 * (row[1][x] + row[3][x]) + 6 * row[2][x] + 8) >> 4;
+}
+
+static void root_row(void *context, int y, int worker)
+{
+    const struct measured *m = context;
+    const size_t w = (size_t)m->stack->columns;
+    const uint32_t *restrict squares = m->squares + (size_t)y * w;
+    uint16_t *restrict out = m->frame->sharpness + (size_t)y * w;
+
+    (void)worker;
+    for (size_t x = 0; x < w; x++)
+        out[x] = (uint16_t)(8 * sqrtf((float)squares[x]));
+}
+
+/* A row of the finest small picture: means of the smooth luminance over squares. */
+static void small_row(void *context, int y, int worker)
+{
+    const struct measured *m = context;
+    const struct refocus_stack *s = m->stack;
+    const int k = s->small_by, w = s->width / k;
+    const uint16_t *smooth = s->smooth + (size_t)(y * k) * (size_t)s->width;
+    uint16_t *out = m->frame->small[0] + (size_t)y * (size_t)w;
+
+    (void)worker;
+    for (int x = 0; x < w; x++) {
+        uint32_t sum = 0;
+
+        for (int v = 0; v < k; v++)
+            for (int u = 0; u < k; u++)
+                sum += smooth[(size_t)v * (size_t)s->width + (size_t)(x * k + u)];
+        out[x] = (uint16_t)(sum / (uint32_t)(k * k));
     }
 }
 
-/* The root of the mean square of sharpness around each sample, by a Gaussian of sqrt(2) samples: a
- * strong edge then outweighs the weak ones that its blur makes beside it. Squares of Q2 are below
- * 2^24, so that 16 of them fit 32 bits and each is exact in single precision. */
-static void gather(struct refocus_stack *s, struct rf_stack_frame *frame)
+/* The others are means over 2 x 2 pixels of the last. */
+static void halve(const struct refocus_stack *s, struct rf_stack_frame *frame)
 {
-    const size_t w = (size_t)s->columns, samples = w * (size_t)s->rows;
-    uint32_t *restrict a = (uint32_t *)(void *)s->sum, *restrict b = a + samples;
-    uint16_t *restrict sharpness = frame->sharpness;
+    int w = s->width / s->small_by, h = s->height / s->small_by;
 
-    for (size_t i = 0; i < samples; i++) {
-        const uint32_t v = sharpness[i] >> 2;
-
-        a[i] = v * v >> 2;
-    }
-    for (int i = 0; i < 2; i++) {
-        for (int y = 0; y < s->rows; y++)
-            across(b + (size_t)y * w, a + (size_t)y * w, s->columns);
-        down(a, b, s->columns, s->rows);
-    }
-    for (size_t i = 0; i < samples; i++)
-        sharpness[i] = (uint16_t)(8 * sqrtf((float)a[i]));
-}
-
-/* Means of the smooth luminance over squares, then of those over 2 x 2. */
-static void make_small(struct refocus_stack *s, struct rf_stack_frame *frame)
-{
-    int k = s->small_by, w = s->width / k, h = s->height / k;
-
-    for (int y = 0; y < h; y++)
-        for (int x = 0; x < w; x++) {
-            uint32_t sum = 0;
-
-            for (int v = 0; v < k; v++)
-                for (int u = 0; u < k; u++)
-                    sum += s->smooth[(size_t)(y * k + v) * (size_t)s->width + (size_t)(x * k + u)];
-            frame->small[0][(size_t)y * (size_t)w + (size_t)x] =
-                (uint16_t)(sum / (uint32_t)(k * k));
-        }
     for (int i = 1; i < RF_STACK_LEVELS; i++) {
         const uint16_t *in = frame->small[i - 1];
         const size_t wide = (size_t)w;
@@ -174,11 +195,21 @@ static void make_small(struct refocus_stack *s, struct rf_stack_frame *frame)
 
 void rf_stack_measure(struct refocus_stack *s, struct rf_stack_frame *frame)
 {
-    load(s, frame);
-    smooth(s);
-    for (int row = 0; row < s->rows; row++)
-        reduce(s, frame, row);
-    gather(s, frame);
-    make_small(s, frame);
+    const size_t samples = (size_t)s->columns * (size_t)s->rows;
+    uint32_t *sum = (uint32_t *)(void *)s->sum;
+    struct measured m = {s, frame, sum, sum + samples};
+
+    rf_pool_run(s->pool, load_row, &m, s->height);
+    rf_pool_run(s->pool, smooth_row, &m, s->height);
+    rf_pool_run(s->pool, reduce_row, &m, s->rows);
+    /* The root of the mean square of sharpness around each sample, by a Gaussian of sqrt(2)
+     * samples: a strong edge then outweighs the weak ones that its blur makes beside it. */
+    for (int i = 0; i < 2; i++) {
+        rf_pool_run(s->pool, across_row, &m, s->rows);
+        rf_pool_run(s->pool, down_row, &m, s->rows);
+    }
+    rf_pool_run(s->pool, root_row, &m, s->rows);
+    rf_pool_run(s->pool, small_row, &m, s->height / s->small_by);
+    halve(s, frame);
     rf_stack_measure_colour(s, frame);
 }

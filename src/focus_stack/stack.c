@@ -39,13 +39,15 @@ static void lay_out(struct refocus_stack *s, struct rf_arena *arena)
         for (int c = 0; c < 2; c++)
             frame->colour[c] = rf_arena_take(arena, SMALL_PIXELS / 4, 2);
     }
-    s->luma = rf_arena_take(arena, pixels, 1);
-    s->smooth = rf_arena_take(arena, pixels, 2);
+    s->before = rf_arena_take(arena, pixels, 3);
+    s->smooth = (uint16_t *)(void *)s->before;
+    s->luma = s->before ? s->before + 2 * pixels : NULL;
     s->moved = rf_arena_take(arena, samples > SMALL_PIXELS ? samples : SMALL_PIXELS, 2);
     s->guide = rf_arena_take(arena, samples, 3);
     s->cost = rf_arena_take(arena, samples * labels, 1);
     s->sum = rf_arena_take(arena, samples * labels, 2);
-    s->path = rf_arena_take(arena, longer * PATHS * (labels + BESIDE), 2);
+    s->path_size = (size_t)(longer * PATHS * (labels + BESIDE));
+    s->path = rf_arena_take(arena, longer * PATHS * (labels + BESIDE), 2 * 2);
     s->column = rf_arena_take(arena, (uint64_t)s->columns * SQUARES * (uint64_t)s->most,
                               4 * (uint64_t)s->threads);
     s->depth = rf_arena_take(arena, samples, 2);
@@ -147,18 +149,24 @@ static bool position_fits(const struct refocus_stack *s, double position)
     return true;
 }
 
-static void copy_pixels(uint8_t *out, const struct refocus_image *frame)
+struct copy {
+    uint8_t *out;
+    const struct refocus_image *frame;
+};
+
+static void copy_row(void *context, int y, int worker)
 {
+    const struct copy *copy = context;
+    const struct refocus_image *frame = copy->frame;
     const struct rf_order order = rf_order_of(frame->format);
+    const uint8_t *in = frame->plane[0] + y * frame->stride[0];
+    uint8_t *out = copy->out + (ptrdiff_t)y * 3 * frame->width;
 
-    for (int y = 0; y < frame->height; y++) {
-        const uint8_t *in = frame->plane[0] + y * frame->stride[0];
-
-        for (int x = 0; x < frame->width; x++, in += order.bytes, out += 3) {
-            out[0] = in[order.r];
-            out[1] = in[order.g];
-            out[2] = in[order.b];
-        }
+    (void)worker;
+    for (int x = 0; x < frame->width; x++, in += order.bytes, out += 3) {
+        out[0] = in[order.r];
+        out[1] = in[order.g];
+        out[2] = in[order.b];
     }
 }
 
@@ -166,6 +174,7 @@ int refocus_stack_add(struct refocus_stack *s, const struct refocus_image *given
 {
     struct refocus_image image;
     struct rf_stack_frame frame;
+    struct rf_pool pool;
     int status, place;
 
     if (!s)
@@ -178,11 +187,16 @@ int refocus_stack_add(struct refocus_stack *s, const struct refocus_image *given
         return REFOCUS_ERR_ARGUMENT;
     if (s->count == s->most || s->finished)
         return REFOCUS_ERR_STATE;
+    status = rf_pool_start(&pool, s->threads, NULL, NULL);
+    if (status)
+        return status;
+    s->pool = &pool;
     s->without_positions = isnan(position);
     frame = s->frame[s->count];
     frame.position = s->without_positions ? s->count : position;
-    copy_pixels(frame.rgb, &image);
+    rf_pool_run(&pool, copy_row, &(struct copy){frame.rgb, &image}, s->height);
     rf_stack_measure(s, &frame);
+    rf_pool_end(&pool);
     for (place = s->count; place > 0 && s->frame[place - 1].position > frame.position; place--)
         s->frame[place] = s->frame[place - 1];
     frame.added = s->count + 1;

@@ -2,6 +2,7 @@
  * REFOCUS_ERR_THREAD, and nothing stays behind: no thread, lock, condition or memory. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -105,35 +106,51 @@ static int place_edges(void)
     return refocus_depth_edges(&photo, &map, &params, out, 2 * SIDE, &report);
 }
 
-static int finish_stack(void)
+/* A focus stack of two frames whose last one or whose end meets the fault: it is as it was. */
+static int make_stack(bool finish)
 {
     const struct refocus_image photo =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, SIDE, SIDE, 3 * SIDE);
     struct refocus_stack_params params = refocus_stack_params_default(SIDE, SIDE, 2);
     struct refocus_stack_result result = refocus_stack_result_default();
     struct refocus_stack *stack = NULL;
+    const int fault = fail_at;
     int status;
 
     params.threads = THREADS;
     assert_int_equal(refocus_stack_create(&stack, &params), REFOCUS_OK);
-    for (int i = 0; i < 2; i++)
-        assert_int_equal(refocus_stack_add(stack, &photo, i), REFOCUS_OK);
-    status = refocus_stack_finish(stack, &result);
-    if (status != REFOCUS_OK) { /* it is as it was */
-        const int again = fail_at;
-
+    fail_at = 0;
+    assert_int_equal(refocus_stack_add(stack, &photo, 0), REFOCUS_OK);
+    if (finish)
+        assert_int_equal(refocus_stack_add(stack, &photo, 1), REFOCUS_OK);
+    fail_at = fault;
+    calls = 0;
+    status = finish ? refocus_stack_finish(stack, &result) : refocus_stack_add(stack, &photo, 1);
+    if (status != REFOCUS_OK) {
         fail_at = 0;
+        if (!finish)
+            assert_int_equal(refocus_stack_add(stack, &photo, 1), REFOCUS_OK);
         assert_int_equal(refocus_stack_finish(stack, &result), REFOCUS_OK);
-        fail_at = again;
-        calls = again;
+        fail_at = fault;
+        calls = fault;
     }
     refocus_stack_destroy(&stack);
     return status;
 }
 
+static int add_to_stack(void)
+{
+    return make_stack(false);
+}
+
+static int finish_stack(void)
+{
+    return make_stack(true);
+}
+
 static void each_call(void **state)
 {
-    int (*const acts[])(void) = {create, upsample, place_edges, finish_stack};
+    int (*const acts[])(void) = {create, upsample, place_edges, add_to_stack, finish_stack};
 
     (void)state;
     for (size_t i = 0; i < sizeof acts / sizeof *acts; i++) {

@@ -207,11 +207,15 @@ static int add(struct refocus_stack *stack, const struct frames *frames, int k)
 
     if (status == EXIT_DONE) {
         status = refocus_stack_add(stack, other.photo->image, frames->position[k]);
-        if (status != REFOCUS_OK)
+        if (status == REFOCUS_ERR_ARGUMENT)
             status = report_failure(EXIT_FAILED, frames->file[k],
                                     "it is %dx%d, and other frames are not; give frames of one "
                                     "size",
                                     other.photo->image->width, other.photo->image->height);
+        else if (status != REFOCUS_OK)
+            status =
+                report_failure(EXIT_FAILED, frames->file[k], "it cannot be added to the stack: %s",
+                               refocus_strerror(status));
     }
     input_free(&other);
     return status;
