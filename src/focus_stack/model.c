@@ -26,8 +26,8 @@ enum {
     APART = 13,   /* samples from one that is looked at to the next */
     BINS = 128,   /* for ratios, four to an octave */
     LEAST_RATIO = 4,
-    ONE = 4096, /* a share of all */
-    MOST = 85,  /* cost of a square, so that three fit a byte */
+    ONE = 1 << 12, /* a share of all */
+    MOST = 85,     /* cost of a square, so that three fit a byte */
 };
 
 int rf_stack_sub(int frames)
@@ -117,8 +117,8 @@ void rf_stack_model(struct refocus_stack *s)
 
 /* Differences of shares add up to twice the larger of each two, less all of them. n, at least the
  * number of depths, is known to the compiler. */
-static inline void add_costs(const struct refocus_stack *s, uint8_t *cost, const uint32_t *mean,
-                             int n)
+static inline void add_costs(const struct refocus_stack *s, uint8_t *restrict cost,
+                             const uint32_t *mean, int n)
 {
     int16_t least[RF_STACK_FEW_DEPTHS], share[RF_STACK_FEW], all = 0;
     uint64_t sum = 0;
@@ -152,8 +152,10 @@ static inline void add_costs(const struct refocus_stack *s, uint8_t *cost, const
 
     const int scale = (int)(MOST * sum / (sum + NOISE));
 
-    for (int d = 0; d < s->depths; d++)
-        cost[d] = (uint8_t)(cost[d] + scale * least[d] / (2 * ONE));
+    for (int d = s->depths; d < n; d++) /* costs that fill vectors up stay */
+        least[d] = 0;
+    for (int d = 0; d < n; d++)
+        cost[d] = (uint8_t)(cost[d] + (scale * least[d] >> 13));
 }
 
 void rf_stack_model_costs(const struct refocus_stack *s, uint8_t *cost, const uint32_t *mean)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Counts the instructions of whole frames on AArch64 and ARMv7 and estimates their cycles.
 
-usage: count.py [--build FOLDER] [--quick] [--search] [--out tests/performance.md]
+usage: count.py [--build FOLDER] [--quick] [--search] [--stack] [--out tests/performance.md]
 
 Cross-builds the core, renders under qemu-user with a plugin that counts blocks (plugin.c), and
 takes the difference between two runs that differ by whole frames: counts are exact and the
@@ -37,6 +37,7 @@ BLUR = 20
 METHODS = [("`sweep`", 64, 0, 0), ("`sweep`", 64, 0, 128), ("`search`", 64, 1, 0),
            ("`search`", 64, 1, 128), ("`search`", 64, 2, 0), ("`search`", 64, 2, 128),
            ("`search`", -1, 1, 0), ("`search`", -1, 1, 128)]
+STACKS = [2, 9]  # frames
 # what four cores are to reach: size, core, frames a second, a usual clock in MHz
 TARGETS = [((1920, 1080), "A76", 30, 2400), ((1280, 720), "A72", 30, 1800),
            ((720, 540), "A53", 15, 1400), ((720, 540), "A55", 15, 1800)]
@@ -69,9 +70,10 @@ def build(folder, arch):
             SOURCE / "tests" / "cross" / f"{arch}.ini", "-Dauto_features=disabled",
             "-Dsimd=enabled", "-Dtests=disabled", "-Dexamples=false")
     run("ninja", "-C", where, "src/librefocus.a")
-    run(f"{triple}-gcc", "-std=c11", "-O2", "-static", "-no-pie", f"-I{SOURCE / 'include'}", "-o",
-        where / "frame", SOURCE / "tests" / "arm" / "frame.c", where / "src" / "librefocus.a",
-        "-lm", "-lpthread")
+    for program in ("frame", "stack"):
+        run(f"{triple}-gcc", "-std=c11", "-O2", "-static", "-no-pie", f"-I{SOURCE / 'include'}",
+            "-o", where / program, SOURCE / "tests" / "arm" / f"{program}.c",
+            where / "src" / "librefocus.a", "-lm", "-lpthread")
     return where / "frame"
 
 
@@ -106,6 +108,13 @@ class Counter:
             return self.blocks(arch, program, *size, BLUR, rays, photos, renders)
         one = of(1, 1)
         return difference(of(2, 1), one, 1), difference(of(1, 3), one, 2)
+
+    def stack(self, arch, program, size, frames):
+        """Blocks of adding all frames to a new stack, and of finishing it."""
+        def of(stacks, finished):
+            return self.blocks(arch, program, *size, frames, stacks, finished)
+        one = of(1, 0)
+        return difference(of(2, 0), one, 1), difference(of(1, 1), one, 1)
 
 
 def difference(more, less, frames):
@@ -235,11 +244,46 @@ def search_report(counter, program):
         sections.table(["method", "rays", "tests", "light", "instructions a pixel"], rows)])
 
 
+def stack_report(counter, programs, mca):
+    """The section of focus stacks."""
+    size = SIZES[0]
+    pixels, rows, goes = size[0] * size[1], [], None
+    for frames in STACKS:
+        for arch, frame in programs.items():
+            program = frame.parent / "stack"
+            print(f"{arch}, a stack of {frames}", file=sys.stderr)
+            added, finished = counter.stack(arch, program, size, frames)
+            row = [frames, arch, f"{total(added) / pixels / frames:.0f}",
+                   f"{total(finished) / pixels:.0f}"]
+            if arch != "aarch64" or not mca:
+                rows.append(row + ["-"] * len(CORES))
+                continue
+            elf = Program(arch, program)
+            cycles = model(elf, finished, mca)
+            rows.append(row + [f"{frame_cycles(finished, cycles[core]) / pixels:.0f}"
+                               for core in CORES])
+            if frames == STACKS[-1]:
+                goes = where_it_goes(elf, finished, cycles["A76"], pixels, 12)
+    text = ["## ARM: focus stacks, instructions counted\n",
+            "examples/data/portrait, 720x540, frames that are rendered with K = 8, their focus even "
+            "in disparity, one thread: `refocus_stack_add()` and `refocus_stack_finish()`, which "
+            "makes depth and the photo. Cycles are estimated as above.\n",
+            sections.table(["frames", "", "add, instructions a pixel and frame",
+                            "finish, instructions a pixel"] +
+                           [f"{core}, cycles a pixel, finish" for core in CORES], rows)]
+    if goes:
+        text += [f"Where it goes, {STACKS[-1]} frames, AArch64:\n",
+                 sections.table(["function", "instructions a pixel", "of the instructions",
+                                 "of the A76's cycles"], goes)]
+    return "\n".join(text)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--build", type=Path, help="folder that is kept; default a new one")
     parser.add_argument("--quick", action="store_true", help="720x540 and 32 rays alone")
     parser.add_argument("--search", action="store_true", help="the section of the search alone")
+    parser.add_argument("--stack", action="store_true", help="the section of focus stacks alone")
     parser.add_argument("--out", type=Path, default=SOURCE / "tests" / "performance.md")
     args = parser.parse_args()
     tools = ["meson", "ninja", "cc"] + [t for triple, qemu, _ in ARCHES.values()
@@ -258,6 +302,11 @@ def main():
         scene_file(folder / "scene")
         counter = Counter(folder, folder / "scene")
         programs = {arch: build(folder, arch) for arch in (["aarch64"] if args.search else ARCHES)}
+        if not args.search:
+            sections.put(args.out, "arm-stack", "tests/arm/count.py",
+                         stack_report(counter, programs, mca))
+        if args.stack:
+            return
         sections.put(args.out, "arm-search", "tests/arm/count.py",
                      search_report(counter, programs["aarch64"]))
         if args.search:
