@@ -162,32 +162,70 @@ static void blend_rows(const struct chroma *s, int near, int far)
     }
 }
 
-static inline uint8_t code_of(int v)
+/* Columns of samples whose pixels are made together: loops of one kind each fill vectors. */
+enum { TOGETHER = 64 };
+
+/* Chroma in Q6 of the pixels of `n` samples from `first` on, where `in` has their luma: 9 3 3 1 of
+ * the samples around, and the slope times how far the luma is above the mean that is read alike.
+ * The slope is Q10 once its sixteenth is taken, below 2^13, and `over`, Q6, below 2^14. */
+static void set_chroma(const struct between *b, int k, const uint8_t *restrict in, int first, int n,
+                       int16_t *restrict out)
 {
-    return (uint8_t)(v < 0 ? 0 : v > 255 ? 255 : v);
+    const int32_t *restrict y = b->y + first + 1; /* samples are one later in padded rows */
+    const int32_t *restrict c = b->c[k] + first + 1, *restrict slope = b->slope[k] + first + 1;
+
+    for (int i = 0; i < n; i++)
+        for (int side = 0; side < 2; side++) {
+            const int far = side ? i + 1 : i - 1;
+            const int over = 64 * in[2 * i + side] - (3 * y[i] + y[far]);
+            const int value = 3 * c[i] + c[far], a = (3 * slope[i] + slope[far]) >> 4;
+            const int q6 = (value * 4096 + a * over + 512) >> 10;
+
+            out[2 * i + side] = (int16_t)(q6 < -8192 ? -8192 : q6 > 8191 ? 8191 : q6);
+        }
 }
 
-/* Chroma of a pixel in Q6: between samples `near` and `far`. `over` is how far its luma is above
- * the mean, Q6. The slope is Q10 once its sixteenth is taken, below 2^13, and `over` below 2^14. */
-static inline int chroma_at(const int32_t *c, const int32_t *slope, int near, int far, int over)
+static inline uint32_t code_of(int v)
 {
-    const int value = 3 * c[near] + c[far], a = (3 * slope[near] + slope[far]) >> 4;
-    const int q6 = (value * 4096 + a * over + 512) >> 10;
-
-    return q6 < -8192 ? -8192 : q6 > 8191 ? 8191 : q6;
+    return (uint32_t)(v < 0 ? 0 : v > 255 ? 255 : v);
 }
 
-/* The equations of JFIF, Q16; chroma is Q6, so that products are below 2^30. */
-static inline void pixel(const struct between *b, uint8_t *out, int y, int near, int far)
+/* The equations of JFIF, Q16; chroma is Q6, so that products are below 2^30. R, G and B are the
+ * first three bytes of each. */
+static void set_colours(const uint8_t *restrict luma, const int16_t *restrict cb,
+                        const int16_t *restrict cr, int n, uint32_t *restrict out)
 {
-    const int over = 64 * y - (3 * b->y[near] + b->y[far]);
-    const int cb = chroma_at(b->c[0], b->slope[0], near, far, over);
-    const int cr = chroma_at(b->c[1], b->slope[1], near, far, over);
     const int half = 1 << 21;
 
-    out[0] = code_of(y + ((91881 * cr + half) >> 22));
-    out[1] = code_of(y - ((22554 * cb + 46802 * cr + half) >> 22));
-    out[2] = code_of(y + ((116130 * cb + half) >> 22));
+    for (int x = 0; x < n; x++) {
+        const int y = luma[x];
+        const uint32_t r = code_of(y + ((91881 * cr[x] + half) >> 22));
+        const uint32_t g = code_of(y - ((22554 * cb[x] + 46802 * cr[x] + half) >> 22));
+        const uint32_t b = code_of(y + ((116130 * cb[x] + half) >> 22));
+
+        out[x] = r | g << 8 | b << 16;
+    }
+}
+
+static void write_row(const struct chroma *s, const uint8_t *in, uint8_t *out)
+{
+    int16_t chroma[2][2 * TOGETHER];
+    uint32_t colour[2 * TOGETHER];
+
+    for (int first = 0; first < s->columns; first += TOGETHER) {
+        const int columns = s->columns - first < TOGETHER ? s->columns - first : TOGETHER;
+        const int left = s->width - 2 * first, n = left < 2 * columns ? left : 2 * columns;
+        const uint8_t *luma = in + 2 * (ptrdiff_t)first;
+
+        for (int k = 0; k < 2; k++)
+            set_chroma(&s->between, k, luma, first, columns, chroma[k]);
+        set_colours(luma, chroma[0], chroma[1], n, colour);
+        for (int x = 0; x < n; x++, out += 3) {
+            out[0] = (uint8_t)colour[x];
+            out[1] = (uint8_t)(colour[x] >> 8);
+            out[2] = (uint8_t)(colour[x] >> 16);
+        }
+    }
 }
 
 void rf_jpeg_chroma(struct rf_raster *raster, const struct rf_jpeg_planes *planes, void *work)
@@ -205,11 +243,8 @@ void rf_jpeg_chroma(struct rf_raster *raster, const struct rf_jpeg_planes *plane
     for (int j = 0; j < s.rows; j++)
         slopes(&s, j);
     for (int y = 0; y < h; y++) {
-        const uint8_t *in = planes->y + (size_t)y * (size_t)(2 * s.columns);
-        uint8_t *out = raster->pixels + (size_t)y * rf_raster_stride(raster);
-
         blend_rows(&s, y / 2, y & 1 ? y / 2 + 1 : y / 2 - 1);
-        for (int x = 0; x < w; x++, out += 3) /* samples are one later in padded rows */
-            pixel(&s.between, out, in[x], x / 2 + 1, x & 1 ? x / 2 + 2 : x / 2);
+        write_row(&s, planes->y + (size_t)y * (size_t)(2 * s.columns),
+                  raster->pixels + (size_t)y * rf_raster_stride(raster));
     }
 }
