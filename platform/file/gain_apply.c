@@ -44,19 +44,22 @@ struct work {
     struct block *blocks; /* ROWS rows; NULL: blocks have one pixel, or none */
     int measured, y;      /* rows of blocks, and of pixels, that have been measured */
     struct column *columns;
-    float (*gain)[3];       /* a row of gains, interpolated between rows of blocks */
-    float light[256];       /* base light of each code */
-    float clipped[256];     /* 1 where a code is clipped, less where it may be */
-    float exp2[FRACTIONS];  /* 2^(i / FRACTIONS) */
-    float whole[2 * STOPS]; /* 2^(i - STOPS) */
+    float (*gain)[3];          /* a row of gains, interpolated between rows of blocks */
+    float light[256];          /* base light of each code */
+    float clipped[256];        /* 1 where a code is clipped, less where it may be */
+    float exp2[FRACTIONS + 1]; /* 2^(i / FRACTIONS) */
+    float whole[2 * STOPS];    /* 2^(i - STOPS) */
 };
 
-/* 2^gain, within 0.07 %. */
+/* 2^gain, within 2^-21 of it: offsets of many times white leave little of it. */
 static float power_of(const struct work *work, float gain)
 {
-    const int steps = (int)((gain + STOPS) * FRACTIONS);
+    const int whole = (int)(gain + STOPS);
+    const float at = (gain - (float)(whole - STOPS)) * FRACTIONS;
+    const int below = (int)at;
+    const float power = work->exp2[below];
 
-    return work->exp2[steps % FRACTIONS] * work->whole[steps / FRACTIONS];
+    return (power + (at - (float)below) * (work->exp2[below + 1] - power)) * work->whole[whole];
 }
 
 static float other_light(const struct work *work, int c, float base, float gain)
@@ -317,7 +320,7 @@ static void set_curves(struct work *work)
         work->light[i] = rf_tone_light(i);
         work->clipped[i] = clipped < 0 ? 0 : clipped > 1 ? 1 : clipped;
     }
-    for (int i = 0; i < FRACTIONS; i++) {
+    for (int i = 0; i <= FRACTIONS; i++) {
         work->exp2[i] = exp2f((float)i / FRACTIONS);
     }
     for (int i = 0; i < 2 * STOPS; i++) {

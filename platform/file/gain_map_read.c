@@ -84,7 +84,7 @@ static int judge_xmp(struct rf_read *read, const struct candidate *candidate, bo
 void rf_gain_settle(struct rf_read *read, const char *why, double headroom)
 {
     struct rf_gain_map *const map = read->gain;
-    double most = 0;
+    double stops = 0, most = 0;
 
     if (!why && (map->samples.sample != REFOCUS_SAMPLE_U8 || map->samples.max_value != 255)) {
         why = "its samples are not of 8 bits";
@@ -100,11 +100,14 @@ void rf_gain_settle(struct rf_read *read, const char *why, double headroom)
         rf_gain_make_curves(map);
     }
     for (int c = 0; c < 3; c++) {
-        most = fmax(most, map->values.greatest[c]);
+        const struct rf_gain_values *const v = &map->values;
+
+        stops = fmax(stops, v->greatest[c]);
+        most = fmax(most, (1 + v->base_offset[c]) * exp2(v->greatest[c]) - v->other_offset[c]);
     }
-    read->info->gain_map_stops = most;
+    read->info->gain_map_stops = stops;
     rf_note(read->info, "gain map: %d x %d samples, up to %.3g times white",
-            (int)map->samples.width, (int)map->samples.height, exp2(most));
+            (int)map->samples.width, (int)map->samples.height, most);
 }
 
 static int try_picture(struct rf_read *read, struct candidate *candidate)

@@ -8,7 +8,10 @@
 
 #include "number.h"
 
-enum { MOST_STOPS = 16 }; /* a gain has at the most, either way */
+enum {
+    MOST_STOPS = 16,   /* a gain has at the most, either way */
+    MOST_OFFSET = 256, /* times white, either way; Adobe's programs write up to 10 and more */
+};
 
 static bool is_within(double value, double least, double most)
 {
@@ -25,7 +28,8 @@ static const char *check(const struct rf_gain_values *v)
         if (!is_within(v->gamma[c], 1.0 / 64, 64)) {
             return "its gamma is out of bounds";
         }
-        if (!is_within(v->base_offset[c], -1, 1) || !is_within(v->other_offset[c], -1, 1)) {
+        if (!is_within(v->base_offset[c], -MOST_OFFSET, MOST_OFFSET) ||
+            !is_within(v->other_offset[c], -MOST_OFFSET, MOST_OFFSET)) {
             return "its offsets are out of bounds";
         }
     }

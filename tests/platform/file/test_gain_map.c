@@ -118,6 +118,14 @@ static void light_of_maps(void **state)
                       indexed, 1),
             -1, 4, 2, 0, 0.01);
         check_light(with_part(iso_part(1, one_channel), indexed, 1), -1, 3, 1, 0.016, 0.032);
+        /* what Adobe's programs choose for a bright photo */
+        check_light(with_part(xmp_part("<hdrgm:GainMapMax>0.753</hdrgm:GainMapMax>"
+                                       "<hdrgm:Gamma>0.25</hdrgm:Gamma>"
+                                       "<hdrgm:OffsetSDR>10.308957</hdrgm:OffsetSDR>"
+                                       "<hdrgm:OffsetHDR>10.308957</hdrgm:OffsetHDR>"
+                                       "<hdrgm:HDRCapacityMax>4</hdrgm:HDRCapacityMax>"),
+                              indexed, 1),
+                    0, 0.753, 0.25, 10.308957, 10.308957);
         /* a quarter as wide and high as the photo, grey */
         check_light(times_part(4, iso_part(1, one_channel), indexed, 1), -1, 3, 1, 0.016, 0.032);
     }
@@ -301,9 +309,9 @@ static void passed_over(void **state)
          "<hdrgm:HDRCapacityMax>3</hdrgm:HDRCapacityMax>"),
     };
     static const int32_t bad[][7] = {
-        {0, 3000, 0, 17000, 1000, 0, 0},    {0, 3000, 1, 0, 1000, 0, 0},
-        {0, 3000, 0, 3000, 0, 0, 0},        {0, 3000, 0, 3000, 1000, 1001, 0},
-        {0, 3000, 0, 3000, 1000, 0, -1001}, {0, -1, 0, 3000, 1000, 0, 0},
+        {0, 3000, 0, 17000, 1000, 0, 0},      {0, 3000, 1, 0, 1000, 0, 0},
+        {0, 3000, 0, 3000, 0, 0, 0},          {0, 3000, 0, 3000, 1000, 256001, 0},
+        {0, 3000, 0, 3000, 1000, 0, -256001}, {0, -1, 0, 3000, 1000, 0, 0},
     };
     struct bytes part, file;
 
