@@ -262,11 +262,11 @@ REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,
  * the largest value) is taken at its word: nothing was clipped, and highlights are not looked at.
  * Light above white, up to 336 times that, is drawn over the area of the aperture as that given
  * back to highlights is; where much of the photo is brighter than white, rays meet up to 16
- * times white. Means saturate at 4 times white. Pixels that come out as they went in do so in full,
- * U and V where all pixels do that share them. P010 and P016 are read as R, G and B, their chroma
- * as that of 2 x 2 pixels. Deep photos and pictures are rendered by the methods with the trait
- * REFOCUS_METHOD_TAKES_DEEP, in linear
- * light and without sigma; blur and interpolated take light above white for white.
+ * times white, those of search up to 8. Means saturate at 4 times white. Pixels that come out as
+ * they went in do so in full, U and V where all pixels do that share them. P010 and P016 are read
+ * as R, G and B, their chroma as that of 2 x 2 pixels. Deep photos and pictures are rendered by the
+ * methods with the trait REFOCUS_METHOD_TAKES_DEEP, in linear light and without sigma; blur and
+ * interpolated take light above white for white.
  *
  * @param params  see struct refocus_render_params; of a photo of Y, U and V the region begins and
  *                ends at even columns and, in 4:2:0, rows, or at the picture's end

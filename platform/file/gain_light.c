@@ -106,6 +106,7 @@ int refocus_light_to_base(const struct refocus_light *light, const struct refocu
             .out = to.plane[0] + row * to.stride[0],
             .width = to.width,
             .x = x,
+            .y = y + row,
             .thresholds = thresholds + 8 * ((y + row) & 7),
         };
 

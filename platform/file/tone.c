@@ -1,28 +1,12 @@
-/* tone.c: the curve from true light to that of a base rendition is measured in the photo itself,
- * where both are known, and applied to light that was refocused. */
+/* tone.c: light that was refocused is shown in the tones of the photo's base rendition.
+ *
+ * Programs and phones choose tones place by place: a bright sky and a bright wall of the same light
+ * have other codes. So each cell of the photo has curves of its own, one for each channel, read
+ * between the cells in proportion (a bilateral grid: Chen, Paris, Durand 2007).
+ */
 #include "tone.h"
 
 #include <math.h>
-#include <stdlib.h>
-
-#include <refocus/status.h>
-
-enum {
-    STEP = 64, /* halves to a bin: 16 bins an octave */
-    BINS = (RF_HALF_MOST + STEP) / STEP,
-};
-
-/* The codes that the pixels of a bin have, and where in the bin they lie. */
-struct bin {
-    uint32_t codes[256];
-    uint64_t count;
-    double halves;
-};
-
-/* A point of the curve, and how many samples say so. */
-struct knot {
-    double half, light, count;
-};
 
 float rf_tone_light(int code)
 {
@@ -31,127 +15,68 @@ float rf_tone_light(int code)
     return (float)(v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4));
 }
 
-static int brightest(const uint16_t *light)
-{
-    const int c = light[1] > light[0] ? 1 : 0;
+/* Where something lies among cells or knots: before which, and how far on to the next. */
+struct place {
+    int before, after;
+    float part;
+};
 
-    return light[2] > light[c] ? 2 : c;
+static struct place place_of(int at, int size, int cells)
+{
+    const float u = ((float)at + 0.5f) * (float)cells / (float)size - 0.5f;
+    const int before = u > 0 ? (int)u : 0;
+
+    return (struct place){before, before + 1 < cells ? before + 1 : before,
+                          u > 0 ? u - (float)before : 0};
 }
 
-static void count(struct bin *bins, const struct refocus_image *base,
-                  const struct refocus_image *light, bool by_brightest)
+/* The curves of a row of pixels, read between those of two rows of cells. */
+static void blend_curves(const struct rf_tone *tone, int y, struct rf_tone_curves *row)
 {
-    for (int y = 0; y < base->height; y++) {
-        const uint8_t *code = base->plane[0] + y * base->stride[0];
-        const uint16_t *own =
-            (const uint16_t *)(const void *)(light->plane[0] + y * light->stride[0]);
+    const struct place v = place_of(y, tone->height, tone->down);
 
-        for (int x = 0; x < base->width; x++, code += 3, own += 3) {
-            const int only = by_brightest ? brightest(own) : -1;
+    for (int x = 0; x < tone->across; x++) {
+        const struct rf_tone_curves *a = &tone->curves[v.before * tone->across + x];
+        const struct rf_tone_curves *b = &tone->curves[v.after * tone->across + x];
 
-            for (int c = 0; c < 3; c++) {
-                if (only < 0 || c == only) {
-                    struct bin *const bin = &bins[own[c] / STEP];
-
-                    bin->codes[code[c]]++;
-                    bin->count++;
-                    bin->halves += own[c];
-                }
+        for (int c = 0; c < rf_tone_channels(tone); c++) {
+            for (int i = 0; i < RF_TONE_KNOTS; i++) {
+                row[x].shown[c][i] = a->shown[c][i] + v.part * (b->shown[c][i] - a->shown[c][i]);
             }
         }
     }
 }
 
-/* The mean light of the middle half of a bin's codes: pixels beside a highlight, to which the
- * samples of a map that is smaller than the photo give a part of its gain, do not count. */
-static double middle(const struct bin *bin)
+static float read_curve(const float *shown, uint16_t light)
 {
-    const double low = (double)bin->count / 4, high = 3 * low;
-    double before = 0, sum = 0;
+    const uint16_t half = rf_tone_saturated(light);
+    const float part = (float)(half % RF_TONE_STEP) / RF_TONE_STEP;
 
-    for (int i = 0; i < 256; i++) {
-        const double after = before + bin->codes[i];
-        const double from = fmax(before, low), to = fmin(after, high);
-
-        sum += to > from ? (to - from) * (double)rf_tone_light(i) : 0;
-        before = after;
-    }
-    return sum / (high - low);
+    shown += half / RF_TONE_STEP;
+    return shown[0] + part * (shown[1] - shown[0]);
 }
 
-/* Make the light of knots grow: neighbours that do not are put together (pool adjacent violators).
- */
-static int add_knot(struct knot *knots, int n, struct knot knot)
+static float shown_of(const struct rf_tone_curves *row, const struct place *u, int c, uint16_t half)
 {
-    while (n > 0 && knots[n - 1].light >= knot.light) {
-        const struct knot *const last = &knots[--n];
-        const double all = last->count + knot.count;
+    const float a = read_curve(row[u->before].shown[c], half);
+    const float b = read_curve(row[u->after].shown[c], half);
 
-        knot.light = (last->light * last->count + knot.light * knot.count) / all;
-        knot.half = (last->half * last->count + knot.half * knot.count) / all;
-        knot.count = all;
-    }
-    knots[n] = knot;
-    return n + 1;
+    return a + u->part * (b - a);
 }
 
-/* Straight between knots, on from 0, and level behind the last. */
-static void draw(struct rf_tone *tone, const struct knot *knots, int n)
+static void show(const struct rf_tone *tone, const struct rf_tone_curves *row,
+                 const struct place *u, const uint16_t *light, float shown[3])
 {
-    struct knot a = {0, 0, 0};
-    int next = 0;
+    float scale = 0;
 
-    for (int half = 0; half <= RF_HALF_MOST; half++) {
-        while (next < n && knots[next].half <= half) {
-            a = knots[next++];
-        }
-        tone->shown[half] =
-            (float)(next < n ? a.light + (half - a.half) * (knots[next].light - a.light) /
-                                             (knots[next].half - a.half)
-                             : a.light);
+    if (tone->by_brightest) {
+        const uint16_t most = light[rf_tone_brightest(light)];
+
+        scale = most ? shown_of(row, u, 0, most) / rf_half_value(most) : 0;
     }
-}
-
-int rf_tone_fit(struct rf_tone *tone, const struct refocus_image *base,
-                const struct refocus_image *light, bool by_brightest)
-{
-    struct bin *const bins = calloc(BINS, sizeof *bins);
-    struct knot knots[BINS];
-    int n = 0;
-
-    if (!bins) {
-        return REFOCUS_ERR_MEMORY;
-    }
-    count(bins, base, light, by_brightest);
-    for (int i = 0; i < BINS; i++) {
-        if (bins[i].count) {
-            const double of = (double)bins[i].count;
-
-            n = add_knot(knots, n, (struct knot){bins[i].halves / of, middle(&bins[i]), of});
-        }
-    }
-    free(bins);
-    tone->by_brightest = by_brightest;
-    for (int i = 0; i < 256; i++) {
-        tone->light[i] = rf_tone_light(i);
-    }
-    draw(tone, knots, n);
-    for (int i = 0; i <= 4096; i++) {
-        const double v = i / 4096.0 * (i / 4096.0);
-
-        tone->code[i] =
-            (float)(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055));
-    }
-    return REFOCUS_OK;
-}
-
-static void show(const struct rf_tone *tone, const uint16_t *light, float shown[3])
-{
-    const int most = light[brightest(light)];
-    const float scale = most ? tone->shown[most] / rf_half_value((uint16_t)most) : 0;
-
     for (int c = 0; c < 3; c++) {
-        shown[c] = tone->by_brightest ? scale * rf_half_value(light[c]) : tone->shown[light[c]];
+        shown[c] =
+            tone->by_brightest ? scale * rf_half_value(light[c]) : shown_of(row, u, c, light[c]);
     }
 }
 
@@ -179,14 +104,18 @@ static uint8_t code_of(const struct rf_tone *tone, float shown, int threshold)
     return (uint8_t)(rounded < 255 ? rounded : 255);
 }
 
-/* Tones that were chosen place by place are not in the curve. A pixel keeps them as far as its
+/* Tones that were chosen pixel by pixel are not in the curves. A pixel keeps them as far as its
  * light is still its own: nothing shows where blur sets in. */
 void rf_tone_encode(const struct rf_tone *tone, const struct rf_tone_row *row)
 {
+    struct rf_tone_curves curves[RF_TONE_CELLS];
+
+    blend_curves(tone, row->y, curves);
     for (int x = 0; x < row->width; x++) {
         const uint16_t *const own = row->own + 3 * x;
         const uint8_t *const base = row->base + 3 * x;
         uint8_t *const out = row->out + 3 * x;
+        const struct place u = place_of(row->x + x, tone->width, tone->across);
         float shown[3], own_shown[3], like;
         uint16_t light[3];
 
@@ -198,8 +127,8 @@ void rf_tone_encode(const struct rf_tone *tone, const struct rf_tone_row *row)
         for (int c = 0; c < 3; c++) {
             light[c] = light[c] > RF_HALF_MOST ? 0 : light[c]; /* negative light and NaN, too */
         }
-        show(tone, light, shown);
-        show(tone, own, own_shown);
+        show(tone, curves, &u, light, shown);
+        show(tone, curves, &u, own, own_shown);
         like = likeness(own, light);
         for (int c = 0; c < 3; c++) {
             out[c] = code_of(tone, shown[c] + like * (tone->light[base[c]] - own_shown[c]),

@@ -9,12 +9,46 @@
 
 #include "half.h"
 
-struct rf_tone {
-    bool by_brightest;             /* channels are scaled alike, by the brightest of them */
-    float shown[RF_HALF_MOST + 1]; /* light of the base rendition for each half of true light */
-    float light[256];              /* light for each code of sRGB */
-    float code[4097];              /* code of sRGB, 0 to 255, of light (i / 4096)^2 */
+/* Curves of cells of the photo have knots at each quarter of an octave of light. */
+enum {
+    RF_TONE_CELLS = 12,    /* along the longer side, at the most */
+    RF_TONE_STEP = 256,    /* halves from knot to knot */
+    RF_TONE_MOST = 0x4400, /* 4, at which refocused light saturates: what is above counts as that */
+    RF_TONE_KNOTS = RF_TONE_MOST / RF_TONE_STEP + 2
 };
+
+/* Light of the base rendition at the knots, by channel. */
+struct rf_tone_curves {
+    float shown[3][RF_TONE_KNOTS];
+};
+
+struct rf_tone {
+    bool by_brightest; /* channels are scaled alike, by the brightest of them: it has a curve */
+    int width, height; /* pixels of the photo */
+    int across, down;  /* cells */
+    struct rf_tone_curves curves[RF_TONE_CELLS * RF_TONE_CELLS];
+    float light[256]; /* light for each code of sRGB */
+    float code[4097]; /* code of sRGB, 0 to 255, of light (i / 4096)^2 */
+};
+
+/* Curves of a cell. */
+static inline int rf_tone_channels(const struct rf_tone *tone)
+{
+    return tone->by_brightest ? 1 : 3;
+}
+
+static inline int rf_tone_brightest(const uint16_t light[3])
+{
+    const int c = light[1] > light[0] ? 1 : 0;
+
+    return light[2] > light[c] ? 2 : c;
+}
+
+/* Light as curves know it. */
+static inline uint16_t rf_tone_saturated(uint16_t half)
+{
+    return half < RF_TONE_MOST ? half : RF_TONE_MOST;
+}
 
 /* Light of a code of sRGB. */
 float rf_tone_light(int code);
@@ -30,7 +64,7 @@ struct rf_tone_row {
     const uint8_t *base; /* codes of it */
     const uint8_t *light;
     uint8_t *out;
-    int width, x;              /* pixels; column of the first */
+    int width, x, y;           /* pixels; column and row of the first */
     const uint8_t *thresholds; /* 8, 0 to 63, by column modulo 8 */
 };
 

@@ -75,10 +75,14 @@ static_assert(UINT64_C(16) * RF_CHROMA_MAX * RF_WEIGHT_MAX <= UINT32_MAX &&
               "sums of weighted light");
 static_assert((int)RF_CHROMA_MAX <= (int)RF_PLAIN_GAIN * RF_LIGHT_MAX, "chroma is RF_BRIGHT");
 
+static_assert(8 * RF_LIGHT_MAX <= INT16_MAX, "light that is RF_BRIGHTER is counted as signed");
+
 /* The most that a plane of what is searched holds. */
 static int most_light(const struct rf_frame *f)
 {
-    return f->yuv->on ? RF_CHROMA_MAX : RF_LIGHT_MAX;
+    return f->yuv->on                  ? RF_CHROMA_MAX
+           : rf_searches_subtracted(f) ? rf_most_light(f->bright)
+                                       : RF_LIGHT_MAX;
 }
 
 /* The light of what is searched in a strip. */

@@ -32,6 +32,14 @@ void rf_lay_out_known(struct rf_highlights *highlights, struct rf_arena *arena, 
                                         ((uint64_t)max_height + RF_TILE - 1) / RF_TILE);
 }
 
+/* The light above white of a channel, Q12. */
+static int excess_of(float exact)
+{
+    const float light = (exact - 1) * RF_LIGHT_MAX, most = (float)UINT16_MAX * UNIT;
+
+    return light > 0 ? (int)((light < most ? light : most) + 0.5f) : 0;
+}
+
 /* Reads the pixels x0 <= x < x1 of row y. Returns how many are above white. */
 static int read_row(const struct rf_deep *photo, struct patch *patch, int at, int x0, int x1, int y)
 {
@@ -43,10 +51,7 @@ static int read_row(const struct rf_deep *photo, struct patch *patch, int at, in
         patch->any[at] = false;
         rf_deep_light(photo, x, y, exact);
         for (int c = 0; c < 3; c++) {
-            const float light = (exact[c] - 1) * RF_LIGHT_MAX;
-            const float most = (float)UINT16_MAX * UNIT;
-
-            patch->excess[c][at] = light > 0 ? (int)((light < most ? light : most) + 0.5f) : 0;
+            patch->excess[c][at] = excess_of(exact[c]);
             patch->any[at] |= patch->excess[c][at] > LEAST;
         }
         count += patch->any[at];
@@ -197,6 +202,19 @@ void rf_list_known(const struct rf_executor *exec, const struct rf_deep *photo,
         rf_sort_highlights(exec, highlights);
 }
 
+void rf_known_light(const struct rf_deep *photo, const struct rf_highlight *run, int from, int to,
+                    double light[3])
+{
+    light[0] = light[1] = light[2] = 0;
+    for (int i = from; i < to; i++) {
+        float exact[3];
+
+        rf_deep_light(photo, run->x + i, run->y, exact);
+        for (int c = 0; c < 3; c++)
+            light[c] += excess_of(exact[c]);
+    }
+}
+
 bool rf_leaves_known(const struct rf_highlight_window *window)
 {
     const struct rf_viewport *view = window->view;
@@ -298,16 +316,14 @@ static void boost_tile(void *context, int item, int worker)
             const int at = (y % RF_TILE + REACH) * PATCH + x % RF_TILE + REACH;
             const int blur = abs(rf_window_blur(w, x, y));
             const int half = (int)(b->gap * blur / 512);
-            /* as of highlights that are listed: all of it from one pixel and a half on */
-            const int ramp = rf_ramp(blur, 128, 384);
             int mean[3];
 
-            if (!ramp)
+            if (blur < RF_KNOWN_FROM)
                 continue;
             mean_around(b, &patch, x, y, at, half < REACH ? half : REACH, mean);
             for (int c = 0; c < 3; c++) {
                 uint16_t *light = &b->smooth.channel[c][y * b->smooth.stride + x];
-                const int64_t sum = *light + (((int64_t)mean[c] * ramp) >> 8);
+                const int64_t sum = *light + (int64_t)mean[c];
 
                 *light = (uint16_t)(sum < b->most ? sum : b->most);
                 brightest = rf_larger(brightest, *light);

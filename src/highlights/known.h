@@ -14,6 +14,9 @@
  * above white, 336 times white. */
 enum { RF_KNOWN_GAIN = 64 };
 
+/* Q7.8: pixels that are less blurred have their own light, all of it (gather/encode_deep.c). */
+enum { RF_KNOWN_FROM = 128 };
+
 /* Gives the lists of photos up to that size the memory that known light needs beyond that of all.
  */
 void rf_lay_out_known(struct rf_highlights *highlights, struct rf_arena *arena, int max_width,
@@ -22,6 +25,10 @@ void rf_lay_out_known(struct rf_highlights *highlights, struct rf_arena *arena, 
 /* Lists the light of a photo. What a cancelled run leaves is of no use. */
 void rf_list_known(const struct rf_executor *exec, const struct rf_deep *photo,
                    struct rf_highlights *highlights);
+
+/* The light above white of pixels `from` to `to` - 1 of a run, in all, Q12. */
+void rf_known_light(const struct rf_deep *photo, const struct rf_highlight *run, int from, int to,
+                    double light[3]);
 
 /* Whether any light of the photo is left to the rays. */
 bool rf_leaves_known(const struct rf_highlight_window *window);

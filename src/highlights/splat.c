@@ -8,6 +8,7 @@
 #include "aperture/aperture.h"
 #include "highlights/clipped.h"
 #include "highlights/in_window.h"
+#include "highlights/known.h"
 #include "highlights/sprite.h"
 #include "highlights/visibility.h"
 #include "kernels/kernels.h"
@@ -88,10 +89,10 @@ static void add_sprite(struct canvas *canvas, const struct rf_sprite *sprite,
     const int seen = (job->to - job->from) << job->shift;
     uint16_t *mean[3];
 
-    static_assert((1 << 14) * INT16_MAX + (1 << 14) <= INT32_MAX, "of light and what is seen");
+    static_assert(INT16_MAX * INT16_MAX + (1 << 14) <= INT32_MAX, "of light and what is seen");
     if (!sprite->summed && is_even(job)) {
         for (int p = 0; p < job->planes; p++) {
-            const int light = (seen * job->each[p] + (1 << 14)) >> 15;
+            const int light = ((seen * job->each[p] + (1 << 14)) >> 15) * sprite->times;
             int *const even = &canvas->even[sprite->channel[p]];
 
             *even = rf_smaller(*even + light * (sprite->faint[p] ? 1 : 256), 256 * UINT16_MAX);
@@ -102,13 +103,14 @@ static void add_sprite(struct canvas *canvas, const struct rf_sprite *sprite,
         const int c = sprite->channel[p];
 
         if (sprite->faint[p])
-            make_room(canvas, sprite->most[p]);
+            make_room(canvas, sprite->most[p] * sprite->times);
         mean[p] = sprite->faint[p] ? canvas->faint[c] : canvas->mean[c];
     }
     if (sprite->summed)
         rf_sprite_draw_summed(mean, sprite, canvas->splat, run);
     else
-        canvas->splat->exec->kernels->draw_disc(mean, job);
+        for (int i = 0; i < sprite->times; i++)
+            canvas->splat->exec->kernels->draw_disc(mean, job);
 }
 
 /* Adds what is not yet added, dithered: a faint sprite is but a few steps of Q14 bright, and would
@@ -166,6 +168,14 @@ static void set_blur(struct rf_splat_run *run, int blur)
     run->radius = abs(blur);
 }
 
+/* How many pixels of a run are drawn as one, all with their mean light. Much of a photo may be
+ * above white, and its texture shows where discs are smaller than runs: so known light is drawn in
+ * parts of a quarter of its disc. */
+static int longest_part(const struct rf_splat *splat, int blur)
+{
+    return splat->window.known ? rf_larger(abs(blur) / 512, 1) : RF_HIGHLIGHT_RUN;
+}
+
 /* Makes a part of those pixels of a run that are equally far out of focus, from pixel i on, which
  * is in the window; returns how many these are. */
 static int part_of(struct rf_splat_run *part, const struct rf_visibility *tile,
@@ -177,8 +187,9 @@ static int part_of(struct rf_splat_run *part, const struct rf_visibility *tile,
     const int first = i, end = rf_smaller(run->count, w->view->width - x);
     const int unit = w->blur.unit;
     int least = rf_in_pixels(blur[i], unit), most = least, sum = 0;
+    const int longest = longest_part(tile->splat, least);
 
-    for (; i < end; i++) {
+    for (; i < end && i - first < longest; i++) {
         least = rf_smaller(least, rf_in_pixels(blur[i], unit));
         most = rf_larger(most, rf_in_pixels(blur[i], unit));
         if (most - least > rf_alike_within(least))
@@ -187,6 +198,12 @@ static int part_of(struct rf_splat_run *part, const struct rf_visibility *tile,
     }
     place(part, tile, x + first, y, i - first);
     set_blur(part, sum / (i - first));
+    if (w->known && longest < run->count) {
+        rf_known_light(w->known, run, first, i, part->light);
+        for (int c = 0; c < 3; c++)
+            part->light[c] = (part->light[c] + run->subtracted[c] * (i - first)) * 256;
+        return i - first;
+    }
     for (int c = 0; c < 3; c++)
         part->light[c] = light_of(tile->splat, run, c) * 256 * (i - first);
     return i - first;
@@ -283,7 +300,10 @@ static void draw_highlight(struct canvas *canvas, const struct rf_highlight *top
 {
     struct rf_splat_run run;
 
-    if (top->blur == RF_NO_BLUR) {
+    if (top->blur == RF_NO_BLUR ||
+        (top->rows == 1 &&
+         top->count > longest_part(canvas->splat,
+                                   rf_in_pixels(top->blur, canvas->splat->window.blur.unit)))) {
         draw_parts(canvas, top);
         return;
     }

@@ -6,7 +6,9 @@
 
 #include "aperture/aperture.h"
 #include "highlights/clipped.h"
+#include "highlights/known.h"
 #include "kernels/kernels.h"
+#include "support/compare.h"
 
 enum {
     BLURRED = 128, /* Q7.8: a splatted highlight begins to have its light at this blur */
@@ -14,6 +16,8 @@ enum {
     HEIGHTS = 64,  /* at which the area of a cut aperture is measured */
     STEPS = 8,     /* by which that of a cut circle is */
     FAINT = 128,   /* light of a run below this is rounded to 1/256 */
+    MOST_TIMES = 8,
+    SMALL = 1024, /* Q7.8: the area of discs is that of their chords up to here */
 };
 
 /* The place of a run, in half pixels from the middle of the photo, and the two circles that a lens
@@ -114,6 +118,29 @@ static double area_of(const struct cut *cut, const struct rf_summed_side *summed
     return sum * (2.0 / HEIGHTS);
 }
 
+/* The area that chords of a small disc cover in pixels: rows have the mean of those a quarter of a
+ * pixel above and below their middle (kernels/discs.h), which add up to less or more than it has.
+ */
+static double area_of_chords(double radius)
+{
+    double sum = 0;
+
+    for (double y = 0.25; y < radius; y += 0.5)
+        sum += 2 * sqrt(radius * radius - y * y);
+    return sum;
+}
+
+/* The area of a run's sprite in pixels. */
+static double area_in_pixels(const struct cut *cut, const struct rf_summed_side *summed,
+                             const struct rf_splat_run *run)
+{
+    const double radius = run->radius / 256.0;
+
+    return run->radius < SMALL && rf_aperture_is_disc(cut->aperture) && !cut->cuts
+               ? area_of_chords(radius)
+               : area_of(cut, summed) * radius * radius;
+}
+
 int rf_sprite_layers(const struct rf_splat *splat)
 {
     return chord_sets(splat->aperture) * (splat->fringe != 0 ? 2 : 1);
@@ -168,12 +195,20 @@ static void set_channels(struct rf_sprite *sprite, const struct rf_splat *splat,
         sprite->channel[p] = !fringed ? p : green ? 1 : 2 * p;
 }
 
+/* How much of its light a run has, Q8. What a photo holds above white is in focus, too, where
+ * pixels have their own light; what was estimated is not. */
+static int part_of_light(const struct rf_splat *splat, int blur)
+{
+    return splat->window.known ? blur < RF_KNOWN_FROM ? 0 : 256 : rf_ramp(blur, BLURRED, WHOLLY);
+}
+
 /* Sets the light of each pixel of the run that a pixel sees whole, Q14, times 2^(15 - shift) /
  * RF_SPLAT_UNIT: all of it, over the aperture's area. Returns whether there is any. */
-static bool set_light(struct rf_sprite *sprite, const struct rf_splat_run *run, double area)
+static bool set_light(struct rf_sprite *sprite, const struct rf_splat *splat,
+                      const struct rf_splat_run *run, double area, double each[3])
 {
     struct rf_disc_job *const job = &sprite->job;
-    const int blurred = rf_ramp(run->blur < 0 ? -run->blur : run->blur, BLURRED, WHOLLY);
+    const int blurred = part_of_light(splat, run->blur < 0 ? -run->blur : run->blur);
     const int seen = (run->to - run->from) >> job->unit;
     bool any = false;
 
@@ -183,18 +218,44 @@ static bool set_light(struct rf_sprite *sprite, const struct rf_splat_run *run, 
     for (int length = RF_SPLAT_UNIT >> job->unit; length < seen; length *= 2)
         job->shift--;
     for (int p = 0; p < job->planes; p++) {
-        double each;
-
         sprite->whole[p] = run->light[sprite->channel[p]] * (4.0 * blurred / 65536);
-        each = sprite->whole[p] / area * (double)(1 << (15 - job->shift)) / seen;
-        sprite->faint[p] = each < FAINT - 1;
-        each = each * (sprite->faint[p] ? 256 : 1) + 0.5;
+        each[p] = sprite->whole[p] / area * (double)(1 << (15 - job->shift)) / seen;
+        sprite->faint[p] = each[p] < FAINT - 1;
+        each[p] *= sprite->faint[p] ? 256 : 1;
         sprite->whole[p] *= sprite->faint[p] ? 256 : 1;
-        job->each[p] = (int16_t)(each < 32767 ? each : 32767);
-        sprite->most[p] = job->each[p] / 2 + 1;
-        any = any || job->each[p] > 0;
+        any = any || each[p] >= 0.5;
     }
     return any;
+}
+
+/* Stores that light in 16 bits. Where known light exceeds these, lengths are shifted by more bits,
+ * as far as the longest part of the run that a pixel sees lets them, and the sprite is drawn more
+ * often. Estimated light stays at that: it is that of large lamps, hardly blurred, whose rims would
+ * be too wide by it (.8 dB at nightlights, K = 10). */
+static void store_light(struct rf_sprite *sprite, const double each[3], bool known)
+{
+    struct rf_disc_job *const job = &sprite->job;
+    double most = 0, scale = 1;
+    int longest = 1;
+
+    for (int p = 0; known && p < job->planes; p++)
+        most = each[p] > most ? each[p] : most;
+    for (int y = job->first; y < job->end && most > INT16_MAX; y++) {
+        const int wide = rf_smaller(job->right[y] - job->left[y], job->to - job->from);
+
+        longest = rf_larger(longest, wide);
+    }
+    for (; most * scale > INT16_MAX && longest << (job->shift + 1) <= INT16_MAX; scale /= 2)
+        job->shift++;
+    sprite->times = 1;
+    while (most * scale > (double)INT16_MAX * sprite->times && sprite->times < MOST_TIMES)
+        sprite->times++;
+    for (int p = 0; p < job->planes; p++) {
+        const double light = each[p] * scale / sprite->times + 0.5;
+
+        job->each[p] = (int16_t)(light < INT16_MAX ? light : INT16_MAX);
+        sprite->most[p] = job->each[p] + 1;
+    }
 }
 
 /* Sets the chord of each row. A disc's rows are as wide to both sides. Behind the focus an iris is
@@ -247,6 +308,7 @@ bool rf_sprite_make(struct rf_sprite *sprite, const struct rf_visibility *tile,
     const struct refocus_aperture *const a = splat->aperture;
     struct rf_disc_job *const job = &sprite->job;
     struct cut cut;
+    double each[3];
 
     if (!rf_sprite_reaches(run))
         return false;
@@ -256,8 +318,7 @@ bool rf_sprite_make(struct rf_sprite *sprite, const struct rf_visibility *tile,
                                                                  : &a->summed->behind;
     set_channels(sprite, splat, run);
     cut = cut_at(tile, run);
-    if (!set_light(sprite, run,
-                   area_of(&cut, sprite->summed) * run->radius * run->radius / 65536.0))
+    if (!set_light(sprite, splat, run, area_in_pixels(&cut, sprite->summed, run), each))
         return false;
     if (sprite->summed)
         rf_sprite_set_extent(sprite, splat, run);
@@ -270,5 +331,6 @@ bool rf_sprite_make(struct rf_sprite *sprite, const struct rf_visibility *tile,
         job->end--;
     job->from = (int16_t)(run->from >> job->unit);
     job->to = (int16_t)(job->from + ((run->to - run->from) >> job->unit));
+    store_light(sprite, each, splat->window.known != NULL);
     return job->first < job->end;
 }

@@ -20,6 +20,7 @@ struct rf_sprite {
     int channel[3];         /* channels of the job's planes */
     bool faint[3];          /* light of a plane is 1/256 as bright: else it would be rounded away */
     int most[3];            /* light that a pixel of a plane gets at most, 1/256 if faint */
+    int times;              /* one of chords is drawn so often: brighter ones exceed 16 bits */
     double whole[3];        /* light of the run in all pixels, Q14, or 1/256 if faint */
     const struct rf_summed_side *summed; /* NULL: it is one of chords */
 };

@@ -188,7 +188,7 @@ static void mark_highlights(struct rf_frame *f)
 {
     const struct rf_highlight_window *window = &f->splat.window;
 
-    f->bright = rf_leaves_known(window) ? RF_BRIGHTEST : RF_WHITE;
+    f->bright = !rf_leaves_known(window) ? RF_WHITE : rf_is_search(f) ? RF_BRIGHTER : RF_BRIGHTEST;
     if (f->params->highlight_gain <= 1 || !rf_has_highlights(window->highlights, window->view))
         return;
     rf_mark_highlights(f->exec, window, f->splats);

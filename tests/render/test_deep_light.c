@@ -168,10 +168,11 @@ static void large_areas(void **state)
     expect_area(2);
 }
 
-/* Light that is left to the rays sets in at the same blur, 1.5 pixels, whatever the largest is,
+/* Light that is left to the rays is the same at a blur of 1.5 pixels, whatever the largest is,
  * which blurs are stored by. */
-static double mean_of_stripes(float most)
+static double mean_of_stripes(float most, uint32_t method)
 {
+    struct refocus_settings params = refocus_settings_default(1.5f / most, most);
     struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H);
     struct deep out = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H);
     struct refocus_renderer *renderer;
@@ -182,7 +183,8 @@ static double mean_of_stripes(float most)
         if (i / 3 % 2 == 0)
             deep_put(&photo, i / 3 % W, i / 3 / W, i % 3, 3);
     renderer = deep_prepare_flat(&photo.image, most);
-    assert_int_equal(deep_render(renderer, 1.5f / most, most, &out.image), REFOCUS_OK);
+    params.render.method = method;
+    assert_int_equal(refocus_render_settings(renderer, &params, &out.image), REFOCUS_OK);
     for (int i = 0; i < 100 * 100; i++)
         sum += (double)deep_get(&out, 100 + i % 100, 100 + i / 100, 1) / (100 * 100);
     refocus_renderer_destroy(&renderer);
@@ -197,15 +199,58 @@ static void stripes(void **state)
 
     (void)state;
     for (size_t i = 0; i < sizeof most / sizeof *most; i++)
-        if (fabs(mean_of_stripes(most[i]) - 1.625) > 0.05)
-            fail_msg("with blurs of up to %g pixels stripes have a mean of %.3f, not 1.625",
-                     (double)most[i], mean_of_stripes(most[i]));
+        for (uint32_t method = REFOCUS_METHOD_SWEEP; method <= REFOCUS_METHOD_SEARCH; method++) {
+            double mean;
+
+            if (method == REFOCUS_METHOD_SEARCH && most[i] > REFOCUS_PLAIN_BLUR_RADIUS)
+                continue;
+            mean = mean_of_stripes(most[i], method);
+            if (fabs(mean - 1.625) > 0.05)
+                fail_msg("by %s, with blurs of up to %g pixels, stripes have a mean of %.3f, not "
+                         "1.625",
+                         refocus_method_name(method), (double)most[i], mean);
+        }
+}
+
+/* Light of a sky, 1.5 times white, whose left half has squares of 2.5, of eight pixels: so that it
+ * shows where runs of pixels are drawn with their mean. */
+static float sky(int x, int y)
+{
+    return 1.5f + (x < CX && (x / 8 + y / 8) % 2 ? 1 : 0);
+}
+
+/* Hardly out of focus, a sky has the light that it has in focus, to its sides, and its texture. */
+static void hardly_blurred(void **state)
+{
+    (void)state;
+    for (float blur = 0.4f; blur < 3; blur += 0.2f)
+        for (enum way way = DISC; way <= SEARCHED; way++) {
+            struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H), out;
+
+            for (int i = 0; i < 3 * W * H; i++)
+                deep_put(&photo, i / 3 % W, i / 3 / W, i % 3, sky(i / 3 % W, i / 3 / W));
+            out = render_flat(&photo, REFOCUS_FORMAT_RGB_FLOAT, blur, way);
+            for (int i = 0; i < W * H; i++) {
+                const int x = i % W, y = i / W;
+                const float light = deep_get(&out, x, y, 1);
+
+                /* Squares have their own light as far from their sides as blur reaches. */
+                if (x < CX && (abs(x % 8 - 3) > 1 || abs(y % 8 - 3) > 1 || blur > 2.1f))
+                    continue;
+                if (fabsf(light - sky(x, y)) > 0.04f * sky(x, y) && abs(x - CX) > 8)
+                    fail_msg("way %d, blur %g: (%d, %d) is %.3f, should be %.3f", way, (double)blur,
+                             x, y, (double)light, (double)sky(x, y));
+            }
+            free(photo.memory);
+            free(out.memory);
+        }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(lamps), cmocka_unit_test(even_lamps),
-                                       cmocka_unit_test(large_areas), cmocka_unit_test(stripes)};
+                                       cmocka_unit_test(large_areas), cmocka_unit_test(stripes),
+                                       cmocka_unit_test(hardly_blurred)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -220,7 +220,7 @@ static int make(struct shot *shot, struct sheet *sheet, const char *photo,
         wanted.lens.focus = 1; /* each cell has its own: none has to be found */
     wanted.depth.light = settings->sheet.kind != SHEET_SIGMA;
     for (int i = 0; i < sheet->looks; i++)
-        wanted.depth.light &= engine_takes_deep(&sheet->look[i].params);
+        wanted.depth.light &= engine_draws_light(&sheet->look[i].params);
     status = shot_open(shot, photo, &wanted, isnan(sheet->most_blur) ? 0 : sheet->most_blur);
     if (status == EXIT_DONE)
         status = sheet_fill(sheet, &settings->sheet, &wanted.lens, &shot->input,

@@ -346,7 +346,7 @@ static int run(int argc, char **argv)
     for (int i = 0; i < variants.count; i++) {
         struct refocus_settings *params = &variants.variant[i].engine.params;
 
-        settings.depth.light &= engine_takes_deep(params);
+        settings.depth.light &= engine_draws_light(params);
         params->render.dither =
             settings.depth.no_dither ? REFOCUS_DITHER_OFF : REFOCUS_DITHER_ORDERED;
     }

@@ -207,6 +207,12 @@ bool engine_takes_deep(const struct refocus_settings *params)
            params->look.grain == 0 && params->look.star_spikes == 0;
 }
 
+bool engine_draws_light(const struct refocus_settings *params)
+{
+    return engine_takes_deep(params) &&
+           (refocus_method_traits(params->render.method) & REFOCUS_METHOD_HIGHLIGHTS);
+}
+
 void engine_add_grain(struct engine *engine, const struct engine_settings *settings)
 {
     if (isnan(settings->bokeh.grain) && !engine->deep)

@@ -203,6 +203,8 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings);
 
 /* Whether deep photos can be rendered so, as the core says. */
 bool engine_takes_deep(const struct refocus_settings *params);
+/* Whether light above white, as of a gain map, can: other methods take it for white. */
+bool engine_draws_light(const struct refocus_settings *params);
 
 /* Give a still grain where none was asked for nor refused; `deep` is known. */
 void engine_add_grain(struct engine *engine, const struct engine_settings *settings);

@@ -115,8 +115,8 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
         report_progress("reading", 0);
         if (!engine_takes_deep(&shot->engine.params) || settings->engine.in_strips) {
             depth.deep = DEEP_NONE;
-            depth.light = false;
         }
+        depth.light &= engine_draws_light(&shot->engine.params) && !settings->engine.in_strips;
         status = input_read(&shot->input, photo, &depth);
     }
     shot->input.most_blur = engine_most_blur(&settings->engine);

@@ -118,7 +118,7 @@ static void light_of_maps(void **state)
                       indexed, 1),
             -1, 4, 2, 0, 0.01);
         check_light(with_part(iso_part(1, one_channel), indexed, 1), -1, 3, 1, 0.016, 0.032);
-        /* what Adobe's programs choose for a bright photo */
+        /* Adobe's programs choose such offsets for a bright photo */
         check_light(with_part(xmp_part("<hdrgm:GainMapMax>0.753</hdrgm:GainMapMax>"
                                        "<hdrgm:Gamma>0.25</hdrgm:Gamma>"
                                        "<hdrgm:OffsetSDR>10.308957</hdrgm:OffsetSDR>"

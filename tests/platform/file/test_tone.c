@@ -1,127 +1,40 @@
-/* test_tone.c: the tones of a photo are found from its base rendition and its true light, and shown
- * for light that changed. */
+/* test_tone.c: the tones of a photo are found from its base rendition and its true light, place by
+ * place, and shown for light that changed. */
 #include "check.h"
 #include "tone.h"
 
 #include <math.h>
 
-enum { MOST = 16, ONE = 0x3c00, HALF = 0x3800, QUARTER = 0x3400 };
+enum { SIDE = 96, ONE = 0x3c00, HALF = 0x3800, QUARTER = 0x3400 };
 
-/* A pixel of the base rendition and its light, times so many of them. */
-struct sample {
-    uint8_t code[3];
-    uint16_t light[3];
-    int times;
-};
+static uint8_t codes[3 * SIDE * SIDE];
+static uint16_t halves[3 * SIDE * SIDE];
 
-static struct rf_tone *fit(const struct sample *samples, int count, bool by_brightest)
+static void set(int x, int y, uint16_t light, double base)
 {
-    uint8_t codes[3 * MOST];
-    uint16_t halves[3 * MOST];
+    for (int c = 0; c < 3; c++) {
+        const double v = base <= 0.0031308 ? 12.92 * base : 1.055 * pow(base, 1 / 2.4) - 0.055;
+
+        codes[3 * (SIDE * y + x) + c] = (uint8_t)(255 * v + 0.5);
+        halves[3 * (SIDE * y + x) + c] = light;
+    }
+}
+
+static struct rf_tone *fit(bool by_brightest)
+{
+    const struct refocus_image base =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, codes, SIDE, SIDE, 3 * SIDE);
+    const struct refocus_image light =
+        refocus_image_packed(REFOCUS_FORMAT_RGB_HALF, halves, SIDE, SIDE, 6 * SIDE);
     struct rf_tone *tone = malloc(sizeof *tone);
-    struct refocus_image base, light;
-    int n = 0;
 
     assert_non_null(tone);
-    for (int i = 0; i < count; i++) {
-        for (int k = 0; k < samples[i].times; k++, n++) {
-            memcpy(codes + 3 * n, samples[i].code, 3);
-            memcpy(halves + 3 * n, samples[i].light, 6);
-        }
-    }
-    assert_true(n <= MOST);
-    base = refocus_image_packed(REFOCUS_FORMAT_RGB8, codes, n, 1, 3 * n);
-    light = refocus_image_packed(REFOCUS_FORMAT_RGB_HALF, halves, n, 1, 6 * n);
     assert_int_equal(rf_tone_fit(tone, &base, &light, by_brightest), REFOCUS_OK);
     return tone;
 }
 
-static void is_shown(const struct rf_tone *tone, int half, double light)
-{
-    if (!(fabs(tone->shown[half] - light) <= 1e-6)) {
-        fail_msg("%#x is shown as %.7f, should be %.7f", half, tone->shown[half], light);
-    }
-}
-
-#define GREY(c, h, n)                                                                              \
-    {                                                                                              \
-        {c, c, c}, {h, h, h}, n                                                                    \
-    }
-
-/* The middle half of the codes that light of one strength has counts: here of five pixels the last
- * three quarters of the second to the first three of the fourth. */
-static void the_middle_half_counts(void **state)
-{
-    const struct sample samples[] = {GREY(0, HALF, 1), GREY(50, HALF, 2), GREY(100, HALF, 2)};
-    const struct sample whole[] = {GREY(255, HALF, 1), GREY(128, HALF, 6), GREY(0, HALF, 1)};
-    struct rf_tone *tone = fit(samples, 3, false);
-
-    (void)state;
-    is_shown(tone, HALF, 0.7 * (double)rf_tone_light(50) + 0.3 * (double)rf_tone_light(100));
-    free(tone);
-    tone = fit(whole, 3, false);
-    is_shown(tone, HALF, (double)rf_tone_light(128));
-    free(tone);
-}
-
-/* From black on straight from one to the next, and level behind the last. */
-static void straight_between(void **state)
-{
-    const struct sample samples[] = {GREY(60, QUARTER, 1), GREY(200, ONE, 3)};
-    const double a = (double)rf_tone_light(60), b = (double)rf_tone_light(200);
-    struct rf_tone *tone = fit(samples, 2, false);
-
-    (void)state;
-    is_shown(tone, 0, 0);
-    is_shown(tone, QUARTER / 4, a / 4);
-    is_shown(tone, QUARTER, a);
-    is_shown(tone, HALF, (a + b) / 2); /* halves count */
-    is_shown(tone, ONE - 512, a + 0.75 * (b - a));
-    is_shown(tone, ONE, b);
-    is_shown(tone, RF_HALF_MOST, b);
-    free(tone);
-}
-
-/* More light is never shown darker: what falls is put together, by how much there is of it. */
-static void tones_do_not_fall(void **state)
-{
-    const struct sample samples[] = {GREY(100, QUARTER, 1), GREY(60, HALF, 3), GREY(200, ONE, 1)};
-    struct rf_tone *tone = fit(samples, 3, false);
-    const double mean = ((double)rf_tone_light(100) + 3 * (double)rf_tone_light(60)) / 4;
-
-    (void)state;
-    is_shown(tone, (QUARTER + 3 * HALF) / 4, mean);
-    is_shown(tone, ONE, (double)rf_tone_light(200));
-    for (int half = 1; half <= RF_HALF_MOST; half++) {
-        assert_true(tone->shown[half] >= tone->shown[half - 1]);
-    }
-    free(tone);
-}
-
-/* By the brightest channel the others do not count, whichever it is. */
-static void by_the_brightest(void **state)
-{
-    struct rf_tone *tone;
-
-    (void)state;
-    for (int c = 0; c < 3; c++) {
-        struct sample sample = {{10, 10, 10}, {QUARTER, QUARTER, QUARTER}, 1};
-
-        sample.code[c] = 180;
-        sample.light[c] = ONE;
-        tone = fit(&sample, 1, true);
-        assert_true(tone->by_brightest);
-        is_shown(tone, ONE, (double)rf_tone_light(180));
-        is_shown(tone, ONE / 2, (double)rf_tone_light(180) / 2);
-        free(tone);
-        tone = fit(&sample, 1, false);
-        is_shown(tone, QUARTER, (double)rf_tone_light(10));
-        free(tone);
-    }
-}
-
-static void encode(const struct rf_tone *tone, const uint16_t *own, const uint8_t *base,
-                   const uint16_t *light, uint8_t *out)
+static void encode(const struct rf_tone *tone, int x, int y, const uint16_t *own,
+                   const uint8_t *base, const uint16_t *light, uint8_t *out)
 {
     static const uint8_t thresholds[8] = {31, 31, 31, 31, 31, 31, 31, 31};
     const struct rf_tone_row row = {.own = own,
@@ -129,28 +42,177 @@ static void encode(const struct rf_tone *tone, const uint16_t *own, const uint8_
                                     .light = (const uint8_t *)light,
                                     .out = out,
                                     .width = 1,
+                                    .x = x,
+                                    .y = y,
                                     .thresholds = thresholds};
 
     rf_tone_encode(tone, &row);
+}
+
+/* The light that is shown of grey light at a place whose own is black. */
+static double shown(const struct rf_tone *tone, int x, int y, int half)
+{
+    static const uint16_t own[3] = {0, 0, 0};
+    static const uint8_t base[3] = {0, 0, 0};
+    const uint16_t light[3] = {(uint16_t)half, (uint16_t)half, (uint16_t)half};
+    uint8_t out[3];
+
+    encode(tone, x, y, own, base, light, out);
+    return (double)rf_tone_light(out[1]);
+}
+
+static void is_shown(const struct rf_tone *tone, int x, int y, int half, double light)
+{
+    const double is = shown(tone, x, y, half);
+
+    if (!(fabs(is - light) <= 0.02 * light + 0.002)) {
+        fail_msg("%#x at (%d, %d) is shown as %.4f, should be %.4f", half, x, y, is, light);
+    }
+}
+
+/* Light from 0 to 2 in each cell, shown as half of it in the left third, as a quarter in the right,
+ * and as a third between. */
+static const double part_of[3] = {0.5, 1 / 3.0, 0.25};
+
+static void fill(void)
+{
+    for (int y = 0; y < SIDE; y++) {
+        for (int x = 0; x < SIDE; x++) {
+            const int i = (7 * x + 11 * y) % 97;
+            const uint16_t light = rf_half_of((float)i / 48);
+
+            set(x, y, light, part_of[3 * x / SIDE] * (double)rf_half_value(light));
+        }
+    }
+}
+
+static void tones_are_of_their_place(void **state)
+{
+    (void)state;
+    fill();
+    for (int by_brightest = 0; by_brightest < 2; by_brightest++) {
+        struct rf_tone *tone = fit(by_brightest);
+
+        for (int third = 0; third < 3; third++) {
+            for (int half = QUARTER; half <= ONE; half += 128) {
+                is_shown(tone, 16 + 32 * third, 48, half,
+                         part_of[third] * (double)rf_half_value((uint16_t)half));
+            }
+        }
+        for (int x = 1; x < SIDE; x++) { /* without a step from one to the next */
+            assert_true(fabs(shown(tone, x, 48, ONE) - shown(tone, x - 1, 48, ONE)) < 0.04);
+        }
+        free(tone);
+    }
+}
+
+/* A cell that has no pixel of a light shows it as the photo does elsewhere; what is brighter than
+ * all is as bright as the brightest, and from 4 on all is alike. */
+static void few_pixels_take_the_photo_s(void **state)
+{
+    struct rf_tone *tone;
+
+    (void)state;
+    for (int y = 0; y < SIDE; y++) {
+        for (int x = 0; x < SIDE; x++) {
+            const bool bright = x >= SIDE / 2;
+
+            set(x, y, bright ? ONE : QUARTER, bright ? 0.7 : 0.2);
+        }
+    }
+    set(90, 90, 0x4800, 1);
+    tone = fit(false);
+    is_shown(tone, 4, 48, QUARTER, 0.2);
+    is_shown(tone, 4, 48, ONE, 0.7);
+    is_shown(tone, 92, 48, ONE, 0.7);
+    is_shown(tone, 92, 48, QUARTER, 0.2);
+    is_shown(tone, 4, 4, 0x4400, 1);
+    is_shown(tone, 4, 4, RF_HALF_MOST, 1);
+    is_shown(tone, 4, 4, QUARTER / 2, shown(tone, 92, 92, QUARTER / 2));
+    free(tone);
+}
+
+/* More light is never shown darker. */
+static void tones_do_not_fall(void **state)
+{
+    struct rf_tone *tone;
+
+    (void)state;
+    for (int y = 0; y < SIDE; y++) {
+        for (int x = 0; x < SIDE; x++) {
+            const int i = (3 * x + 5 * y) % 3;
+
+            set(x, y, (uint16_t)(QUARTER + (HALF - QUARTER) * i),
+                i == 0   ? 0.4
+                : i == 1 ? 0.2
+                         : 0.8);
+        }
+    }
+    tone = fit(false);
+    for (int x = 5; x < SIDE; x += 17) {
+        for (int half = 64; half <= RF_HALF_MOST; half += 64) {
+            assert_true(shown(tone, x, x, half) >= shown(tone, x, x, half - 64));
+        }
+    }
+    is_shown(tone, 48, 48, HALF, 0.3);
+    free(tone);
+}
+
+/* Channels have curves of their own; by the brightest channel the others do not count, whichever it
+ * is, and keep their ratio to it. */
+static void by_the_brightest(void **state)
+{
+    const uint16_t own[3] = {0, 0, 0};
+    const uint8_t base[3] = {0, 0, 0};
+
+    (void)state;
+    for (int c = 0; c < 3; c++) {
+        struct rf_tone *tone;
+        uint16_t light[3] = {QUARTER, QUARTER, QUARTER};
+        uint8_t out[3];
+
+        light[c] = ONE;
+        for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+            codes[i] = i % 3 == c ? 180 : 10;
+            halves[i] = light[i % 3];
+        }
+        tone = fit(true);
+        assert_true(tone->by_brightest);
+        encode(tone, 48, 48, own, base, light, out);
+        assert_int_equal(out[c], 180);
+        assert_true(fabs(4 * (double)rf_tone_light(out[(c + 1) % 3]) / (double)rf_tone_light(180) -
+                         1) < 0.02);
+        free(tone);
+        tone = fit(false);
+        encode(tone, 48, 48, own, base, light, out);
+        for (int k = 0; k < 3; k++) {
+            assert_int_equal(out[k], k == c ? 180 : 10);
+        }
+        free(tone);
+    }
 }
 
 /* Light that is the pixel's own keeps its code, whatever the tones say; light that is all new has
  * the code of its tone, and between them the code's distance from the tone fades. */
 static void shown_as_the_photo_shows_it(void **state)
 {
-    const struct sample samples[] = {GREY(100, HALF, 1), GREY(200, ONE, 1)};
-    struct rf_tone *const tone = fit(samples, 2, false);
     const uint16_t own[3] = {HALF, HALF, HALF};
     const uint16_t near_by[3] = {HALF + 1, HALF, HALF}, other[3] = {ONE, 0xffff, ONE};
     const uint8_t base[3] = {90, 100, 110};
+    struct rf_tone *tone;
     uint8_t out[3];
 
     (void)state;
-    encode(tone, own, base, own, out);
+    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+        codes[i] = i / 3 % 2 ? 200 : 100;
+        halves[i] = i / 3 % 2 ? ONE : HALF;
+    }
+    tone = fit(false);
+    encode(tone, 48, 48, own, base, own, out);
     assert_memory_equal(out, base, 3);
-    encode(tone, own, base, near_by, out);
+    encode(tone, 48, 48, own, base, near_by, out);
     assert_memory_equal(out, base, 3);
-    encode(tone, own, base, other, out);
+    encode(tone, 48, 48, own, base, other, out);
     assert_int_equal(out[0], 200);
     assert_int_equal(out[1], 0); /* negative light, or none that is a number */
     assert_int_equal(out[2], 200);
@@ -160,8 +222,10 @@ static void shown_as_the_photo_shows_it(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_middle_half_counts),      cmocka_unit_test(straight_between),
-        cmocka_unit_test(tones_do_not_fall),           cmocka_unit_test(by_the_brightest),
+        cmocka_unit_test(tones_are_of_their_place),
+        cmocka_unit_test(few_pixels_take_the_photo_s),
+        cmocka_unit_test(tones_do_not_fall),
+        cmocka_unit_test(by_the_brightest),
         cmocka_unit_test(shown_as_the_photo_shows_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
