@@ -8,6 +8,8 @@
 
 #include <math.h>
 
+enum { FULL = 0x43ff /* the last half before 4 */ };
+
 float rf_tone_light(int code)
 {
     const double v = code / 255.0;
@@ -104,7 +106,10 @@ static uint8_t code_of(const struct rf_tone *tone, float shown, int threshold)
     return (uint8_t)(rounded < 255 ? rounded : 255);
 }
 
-/* Tones that were chosen pixel by pixel are not in the curves. A pixel keeps them as far as its
+/* Light that was refocused saturates at 4 times white, wide areas that are brighter, too: these are
+ * shown as bright as they are in the photo.
+ *
+ * Tones that were chosen pixel by pixel are not in the curves. A pixel keeps them as far as its
  * light is still its own: nothing shows where blur sets in. */
 void rf_tone_encode(const struct rf_tone *tone, const struct rf_tone_row *row)
 {
@@ -126,6 +131,9 @@ void rf_tone_encode(const struct rf_tone *tone, const struct rf_tone_row *row)
         }
         for (int c = 0; c < 3; c++) {
             light[c] = light[c] > RF_HALF_MOST ? 0 : light[c]; /* negative light and NaN, too */
+            if (light[c] >= FULL && own[c] > light[c]) {
+                light[c] = own[c];
+            }
         }
         show(tone, curves, &u, light, shown);
         show(tone, curves, &u, own, own_shown);

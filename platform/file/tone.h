@@ -13,7 +13,7 @@
 enum {
     RF_TONE_CELLS = 12,    /* along the longer side, at the most */
     RF_TONE_STEP = 256,    /* halves from knot to knot */
-    RF_TONE_MOST = 0x4400, /* 4, at which refocused light saturates: what is above counts as that */
+    RF_TONE_MOST = 0x4c00, /* 16: what is above counts as that */
     RF_TONE_KNOTS = RF_TONE_MOST / RF_TONE_STEP + 2
 };
 

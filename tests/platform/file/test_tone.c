@@ -107,7 +107,7 @@ static void tones_are_of_their_place(void **state)
 }
 
 /* A cell that has no pixel of a light shows it as the photo does elsewhere; what is brighter than
- * all is as bright as the brightest, and from 4 on all is alike. */
+ * all is as bright as the brightest. */
 static void few_pixels_take_the_photo_s(void **state)
 {
     struct rf_tone *tone;
@@ -126,8 +126,9 @@ static void few_pixels_take_the_photo_s(void **state)
     is_shown(tone, 4, 48, ONE, 0.7);
     is_shown(tone, 92, 48, ONE, 0.7);
     is_shown(tone, 92, 48, QUARTER, 0.2);
-    is_shown(tone, 4, 4, 0x4400, 1);
+    is_shown(tone, 4, 4, 0x4800, 1);
     is_shown(tone, 4, 4, RF_HALF_MOST, 1);
+    assert_true(shown(tone, 4, 4, 0x4400) < 0.95);
     is_shown(tone, 4, 4, QUARTER / 2, shown(tone, 92, 92, QUARTER / 2));
     free(tone);
 }
@@ -219,6 +220,26 @@ static void shown_as_the_photo_shows_it(void **state)
     free(tone);
 }
 
+/* Light that saturates at 4 times white is shown as the pixel's own, if that is more. */
+static void saturated_light_is_that_of_the_photo(void **state)
+{
+    const uint16_t bright[3] = {0x4800, 0x4800, 0x4200}, full[3] = {0x4400, 0x4400, 0x4400};
+    const uint8_t base[3] = {250, 250, 220};
+    struct rf_tone *tone;
+    uint8_t out[3];
+
+    (void)state;
+    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+        codes[i] = i / 3 % 2 ? 250 : 180;
+        halves[i] = i / 3 % 2 ? 0x4800 : ONE;
+    }
+    tone = fit(false);
+    encode(tone, 48, 48, bright, base, full, out);
+    assert_in_range(out[0], 249, 251);
+    assert_in_range(out[2], 200, 240); /* less than 4 times white of its own */
+    free(tone);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -227,6 +248,7 @@ int main(void)
         cmocka_unit_test(tones_do_not_fall),
         cmocka_unit_test(by_the_brightest),
         cmocka_unit_test(shown_as_the_photo_shows_it),
+        cmocka_unit_test(saturated_light_is_that_of_the_photo),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
