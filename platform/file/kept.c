@@ -9,6 +9,27 @@
 #include "png_chunks.h"
 #include "read.h"
 #include "reason.h"
+#ifdef RF_HAVE_XMP
+#include "xmp_parse.h"
+#endif
+
+/* Whether a packet by itself is damaged: readers of a JPEG that had it would refuse that. */
+static bool is_damaged(const struct rf_read *read, struct rf_bytes packet)
+{
+#ifdef RF_HAVE_XMP
+    struct refocus_reason unused;
+    const struct rf_read quiet = {.limits = read->limits, .reason = &unused};
+    struct rf_xmp xmp = {.items = 0};
+    const int status = rf_xmp_parse(&quiet, packet, &xmp);
+
+    rf_xmp_free(&xmp);
+    return status != REFOCUS_OK && status != REFOCUS_ERR_MEMORY;
+#else
+    (void)read;
+    (void)packet;
+    return false;
+#endif
+}
 
 void rf_keep_companion(struct rf_read *read, struct rf_bytes picture)
 {
@@ -24,7 +45,8 @@ int rf_keep(struct rf_read *read, enum rf_kept_kind kind, struct rf_bytes bytes)
     uint8_t *to;
     int status;
 
-    if (!read->picture_always || bytes.size == 0 || read->kept.bytes.data) {
+    if (!read->picture_always || bytes.size == 0 || read->kept.bytes.data ||
+        (kind == RF_KEPT_XMP && is_damaged(read, bytes))) {
         return REFOCUS_OK;
     }
     for (int i = 0; i < companions; i++) {
