@@ -125,8 +125,11 @@ static double area_of_chords(double radius)
 {
     double sum = 0;
 
-    for (double y = 0.25; y < radius; y += 0.5)
+    for (int i = 0; 0.5 * i + 0.25 < radius; i++) {
+        const double y = 0.5 * i + 0.25;
+
         sum += 2 * sqrt(radius * radius - y * y);
+    }
     return sum;
 }
 
@@ -245,8 +248,10 @@ static void store_light(struct rf_sprite *sprite, const double each[3], bool kno
 
         longest = rf_larger(longest, wide);
     }
-    for (; most * scale > INT16_MAX && longest << (job->shift + 1) <= INT16_MAX; scale /= 2)
+    while (most * scale > INT16_MAX && longest << (job->shift + 1) <= INT16_MAX) {
         job->shift++;
+        scale /= 2;
+    }
     sprite->times = 1;
     while (most * scale > (double)INT16_MAX * sprite->times && sprite->times < MOST_TIMES)
         sprite->times++;
