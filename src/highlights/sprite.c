@@ -11,13 +11,13 @@
 #include "support/compare.h"
 
 enum {
-    BLURRED = 128, /* Q7.8: a splatted highlight begins to have its light at this blur */
-    WHOLLY = 384,  /* Q7.8: it has all of its light from this blur on */
-    HEIGHTS = 64,  /* at which the area of a cut aperture is measured */
-    STEPS = 8,     /* by which that of a cut circle is */
-    FAINT = 128,   /* light of a run below this is rounded to 1/256 */
-    MOST_TIMES = 8,
-    SMALL = 1024, /* Q7.8: the area of discs is that of their chords up to here */
+    BLURRED = 128,  /* Q7.8: a splatted highlight begins to have its light at this blur */
+    WHOLLY = 384,   /* Q7.8: it has all of its light from this blur on */
+    HEIGHTS = 64,   /* at which the area of a cut aperture is measured */
+    STEPS = 8,      /* by which that of a cut circle is */
+    FAINT = 128,    /* light of a run below this is rounded to 1/256 */
+    MOST_TIMES = 8, /* a sprite is drawn so often at the most: means saturate before */
+    SMALL = 1024,   /* Q7.8: the area of discs is that of their chords up to here */
 };
 
 /* The place of a run, in half pixels from the middle of the photo, and the two circles that a lens
