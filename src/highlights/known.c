@@ -2,6 +2,7 @@
  * for it, and elsewhere, where much of the photo is brighter than white, left to the rays. */
 #include "highlights/known.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -109,19 +110,38 @@ static struct rf_highlight run_of(const struct patch *patch, struct rf_rect tile
     return run;
 }
 
+/* How many pixels above white one run has, from pixel `at` on: `most` or less. A run is drawn as if
+ * each of its pixels had their mean light: so the brightest is at most 2^`doublings` times as
+ * bright as the darkest, white included. */
+static int run_length(const struct patch *patch, int at, int most, int doublings)
+{
+    int count = 0, dark = INT_MAX, bright = 0;
+
+    for (; count < most && patch->any[at + count]; count++) {
+        int light = 0;
+
+        for (int c = 0; c < 3; c++)
+            light = rf_larger(light, RF_LIGHT_MAX + patch->excess[c][at + count]);
+        dark = rf_smaller(dark, light);
+        bright = rf_larger(bright, light);
+        if (bright >> doublings > dark)
+            break;
+    }
+    return count;
+}
+
 /* Counts the runs of a tile or, if `lists`, lists them. */
 static uint32_t take_runs(const struct listing *listing, const struct patch *patch,
-                          struct rf_rect tile, bool lists)
+                          struct rf_rect tile, int doublings, bool lists)
 {
     const int width = tile.x1 - tile.x0;
     uint32_t runs = 0;
 
     for (int y = 0; y < tile.y1 - tile.y0; y++)
-        for (int x = 0, count; x < width; x += count + 1) {
+        for (int x = 0, count; x < width; x += rf_larger(count, 1)) {
             struct rf_highlight run;
 
-            for (count = 0; x + count < width && patch->any[y * RF_TILE + x + count];)
-                count++;
+            count = run_length(patch, y * RF_TILE + x, width - x, doublings);
             if (!count)
                 continue;
             runs++;
@@ -150,43 +170,62 @@ static bool is_at_side(const struct rf_deep *photo, struct rf_rect tile)
     return !tile.x0 || !tile.y0 || tile.x1 == photo->image.width || tile.y1 == photo->image.height;
 }
 
-enum choice { LISTED, LARGE_BY_RAYS, ALL_BY_RAYS };
+/* How often a part's light may double within a run: the fewer, the more runs there are. */
+enum { MOST_DOUBLINGS = 10 };
 
-/* Lists the runs of a part, and leaves tiles that are above white as a whole, or all, to the rays:
- * the first choice that the list has room for. */
+struct choice {
+    int doublings; /* 1 to MOST_DOUBLINGS */
+    bool large_by_rays, all_by_rays;
+};
+
+/* Runs of a part of the photo, of tiles that are above white in part, and as a whole. */
+struct counts {
+    uint32_t some, whole;
+};
+
+/* Counts the runs of a part or, if `lists`, lists them, but of tiles that are left to the rays. */
+static struct counts go_through(const struct listing *listing, int part, struct choice choice,
+                                bool lists)
+{
+    const struct rf_deep *photo = listing->photo;
+    const int rows = (photo->image.height + RF_TILE - 1) / RF_TILE;
+    const int ty0 = part * (RF_HIGHLIGHT_ROWS / RF_TILE);
+    const int ty1 = rf_smaller(ty0 + RF_HIGHLIGHT_ROWS / RF_TILE, rows);
+    struct counts runs = {0, 0};
+    struct patch patch;
+
+    for (int ty = ty0; ty < ty1; ty++)
+        for (int tx = 0; tx < listing->tiles_x && !rf_cancelled(listing->exec); tx++) {
+            const struct rf_rect tile = tile_of(photo, tx, ty);
+            uint8_t *by_rays = &listing->highlights->by_rays[ty * listing->tiles_x + tx];
+            const int count = read_tile(photo, &patch, tile);
+            const bool whole = count == (tile.x1 - tile.x0) * (tile.y1 - tile.y0);
+
+            *by_rays = count && (choice.all_by_rays ||
+                                 (whole && (choice.large_by_rays || is_at_side(photo, tile))));
+            if (count && !*by_rays)
+                *(whole ? &runs.whole : &runs.some) +=
+                    take_runs(listing, &patch, tile, choice.doublings, lists);
+        }
+    return runs;
+}
+
+/* Lists the runs of a part: the first choice that the list has room for. */
 static void list_part(void *context, int item, int worker)
 {
     const struct listing *listing = context;
-    const struct rf_deep *photo = listing->photo;
-    struct rf_highlight_list *list = &listing->highlights->part[item];
-    const int rows = (photo->image.height + RF_TILE - 1) / RF_TILE;
-    const int ty0 = item * (RF_HIGHLIGHT_ROWS / RF_TILE);
-    const int ty1 = rf_smaller(ty0 + RF_HIGHLIGHT_ROWS / RF_TILE, rows);
-    uint32_t runs = 0,
-             of_large = 0; /* runs of tiles that are above white in part, and as a whole */
-    enum choice choice = LISTED;
-    struct patch patch;
+    const uint32_t capacity = listing->highlights->part[item].capacity;
+    struct choice choice = {1, false, false};
+    struct counts runs = go_through(listing, item, choice, false);
 
     (void)worker;
-    for (int pass = 0; pass < 2; pass++) {
-        for (int ty = ty0; ty < ty1; ty++)
-            for (int tx = 0; tx < listing->tiles_x && !rf_cancelled(listing->exec); tx++) {
-                const struct rf_rect tile = tile_of(photo, tx, ty);
-                uint8_t *by_rays = &listing->highlights->by_rays[ty * listing->tiles_x + tx];
-                const int pixels = (tile.x1 - tile.x0) * (tile.y1 - tile.y0);
-                const int count = read_tile(photo, &patch, tile);
-
-                *by_rays = count && choice >= (count < pixels            ? ALL_BY_RAYS
-                                               : is_at_side(photo, tile) ? LISTED
-                                                                         : LARGE_BY_RAYS);
-                if (count && !*by_rays)
-                    *(count == pixels ? &of_large : &runs) +=
-                        take_runs(listing, &patch, tile, pass > 0);
-            }
-        choice = runs > list->capacity              ? ALL_BY_RAYS
-                 : runs + of_large > list->capacity ? LARGE_BY_RAYS
-                                                    : LISTED;
+    while (runs.some + runs.whole > capacity && choice.doublings < MOST_DOUBLINGS) {
+        choice.doublings++;
+        runs = go_through(listing, item, choice, false);
     }
+    choice.large_by_rays = runs.some + runs.whole > capacity;
+    choice.all_by_rays = runs.some > capacity;
+    go_through(listing, item, choice, true);
 }
 
 void rf_list_known(const struct rf_executor *exec, const struct rf_deep *photo,

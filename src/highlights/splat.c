@@ -2,6 +2,7 @@
 #include "highlights/highlights.h"
 
 #include <assert.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -269,8 +270,24 @@ static struct rf_splat_run stack_of(const struct rf_visibility *tile,
     return run;
 }
 
+/* Whether the top or the bottom of a sprite lies in the tile or just beside it. */
+static bool has_end(const struct rf_disc_job *job)
+{
+    int least = INT_MAX, most = 0;
+
+    if (job->first > 0 || job->end < RF_TILE)
+        return true;
+    for (int y = 0; y < RF_TILE; y++) {
+        least = rf_smaller(least, job->right[y] - job->left[y]);
+        most = rf_larger(most, job->right[y] - job->left[y]);
+    }
+    return 2 * least < most;
+}
+
 /* Draws them as one where nothing hides them; else in parts, for each to see past that by other
- * ways. */
+ * ways. At the ends of a sprite some rows have no chord, and with the mean of all of them it would
+ * end in a point, which shows if it is as bright as known light may be: there each row is drawn by
+ * itself. */
 static void draw_stack(struct canvas *canvas, const struct rf_highlight *top,
                        struct rf_splat_run run, int layer)
 {
@@ -278,16 +295,22 @@ static void draw_stack(struct canvas *canvas, const struct rf_highlight *top,
     enum rf_hidden hidden;
     struct rf_sprite sprite;
     uint64_t clear = 0;
+    bool ends;
     int most;
 
     rf_sprite_set_layer(&run, canvas->splat, layer);
     if (!rf_sprite_make(&sprite, &canvas->tile, &run))
         return;
-    most = run.radius < PAIRS ? 1 : 2;
     hidden = rf_run_hidden(&canvas->tile, &sprite.job, &run, &clear);
-    if (hidden == RF_HIDDEN_NOWHERE)
+    if (hidden == RF_HIDDEN_WHOLLY)
+        return;
+    ends = canvas->splat->window.known && has_end(&sprite.job);
+    if (hidden == RF_HIDDEN_NOWHERE && !ends) {
         add_sprite(canvas, &sprite, &run);
-    for (int k = 0; hidden == RF_HIDDEN_PARTLY && k < top->rows; k += most) {
+        return;
+    }
+    most = ends || run.radius < PAIRS ? 1 : 2;
+    for (int k = 0; k < top->rows; k += most) {
         const int rows = rf_smaller(most, top->rows - k);
 
         draw_layer(canvas, stack_of(&canvas->tile, row, rows), layer, clear);

@@ -246,11 +246,67 @@ static void hardly_blurred(void **state)
         }
 }
 
+/* How much of the disc of a pixel at (x, y), of that radius, is in the pixel at (u, v). */
+static double covered(int x, int y, double radius, int u, int v)
+{
+    const double reach = radius - hypot(u - x, v - y) + 0.5;
+
+    return reach <= 0 ? 0 : reach >= 1 ? 1 : reach;
+}
+
+/* A flame brighter by far in its core than around it, `times` white there: its disc is round and
+ * where the core is, not spread as the flame. */
+static void expect_core(float times, float blur)
+{
+    enum { LEFT = CX - 5, TOP = CY - 5, SIDE = 15, CORE = 3 }; /* the core is at the left */
+    struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H), out;
+    const double pi = 3.14159265358979, each = 1 / (pi * (double)blur * (double)blur);
+    double worst = 0;
+
+    deep_fill(&photo, 0.0625f);
+    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+        const int x = i / 3 % SIDE, y = i / 3 / SIDE;
+        const bool core = x < CORE && y >= 6 && y < 6 + CORE;
+
+        deep_put(&photo, LEFT + x, TOP + y, i % 3, core ? times : 2);
+    }
+    out = render_flat(&photo, REFOCUS_FORMAT_RGB_FLOAT, blur, DISC);
+    for (int i = 0; i < W * H; i++) {
+        const int u = i % W, v = i / W;
+        double light = 0.0625, off;
+
+        for (int k = 0; k < SIDE * SIDE; k++) {
+            const int x = LEFT + k % SIDE, y = TOP + k / SIDE;
+
+            light += ((double)deep_get(&photo, x, y, 1) - 0.0625) * each *
+                     covered(x, y, (double)blur, u, v);
+        }
+        off = fabs((double)deep_get(&out, u, v, 1) - light);
+        worst = off > worst ? off : worst;
+    }
+    worst /= (double)times * CORE * CORE * each;
+    if (worst > 0.2)
+        fail_msg("at a blur of %g the disc of a core %g times white is off by %.2f of its light",
+                 (double)blur, (double)times, worst);
+    free(photo.memory);
+    free(out.memory);
+}
+
+static void flames(void **state)
+{
+    (void)state;
+    expect_core(16, 8);
+    expect_core(16, 20);
+    expect_core(100, 40);
+    expect_core(100, 60);
+    expect_core(100, 100);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(lamps), cmocka_unit_test(even_lamps),
-                                       cmocka_unit_test(large_areas), cmocka_unit_test(stripes),
-                                       cmocka_unit_test(hardly_blurred)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lamps),   cmocka_unit_test(even_lamps),     cmocka_unit_test(large_areas),
+        cmocka_unit_test(stripes), cmocka_unit_test(hardly_blurred), cmocka_unit_test(flames)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
