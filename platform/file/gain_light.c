@@ -97,20 +97,12 @@ int refocus_light_to_base(const struct refocus_light *light, const struct refocu
     } else {
         rf_dither_thresholds(thresholds);
     }
-    for (int32_t row = 0; row < to.height; row++) {
-        const struct rf_tone_row part = {
-            .own = light->pixels + 3 * ((size_t)(y + row) * (size_t)light->image.width + (size_t)x),
-            .base = light->photo->image->plane[0] + (y + row) * light->photo->image->stride[0] +
-                    3 * (ptrdiff_t)x,
-            .light = from.plane[0] + row * from.stride[0],
-            .out = to.plane[0] + row * to.stride[0],
-            .width = to.width,
-            .x = x,
-            .y = y + row,
-            .thresholds = thresholds + 8 * ((y + row) & 7),
-        };
-
-        rf_tone_encode(&light->tone, &part);
-    }
+    rf_tone_encode(&light->tone, &(struct rf_tone_part){.own = &light->image,
+                                                        .base = light->photo->image,
+                                                        .light = &from,
+                                                        .out = &to,
+                                                        .x = x,
+                                                        .y = y,
+                                                        .thresholds = thresholds});
     return REFOCUS_OK;
 }

@@ -32,23 +32,6 @@ static struct place place_of(int at, int size, int cells)
                           u > 0 ? u - (float)before : 0};
 }
 
-/* The curves of a row of pixels, read between those of two rows of cells. */
-static void blend_curves(const struct rf_tone *tone, int y, struct rf_tone_curves *row)
-{
-    const struct place v = place_of(y, tone->height, tone->down);
-
-    for (int x = 0; x < tone->across; x++) {
-        const struct rf_tone_curves *a = &tone->curves[v.before * tone->across + x];
-        const struct rf_tone_curves *b = &tone->curves[v.after * tone->across + x];
-
-        for (int c = 0; c < rf_tone_channels(tone); c++) {
-            for (int i = 0; i < RF_TONE_KNOTS; i++) {
-                row[x].shown[c][i] = a->shown[c][i] + v.part * (b->shown[c][i] - a->shown[c][i]);
-            }
-        }
-    }
-}
-
 static float read_curve(const float *shown, uint16_t light)
 {
     const uint16_t half = rf_tone_saturated(light);
@@ -58,42 +41,78 @@ static float read_curve(const float *shown, uint16_t light)
     return shown[0] + part * (shown[1] - shown[0]);
 }
 
-static float shown_of(const struct rf_tone_curves *row, const struct place *u, int c, uint16_t half)
+static float between(float a, float b, float part)
 {
-    const float a = read_curve(row[u->before].shown[c], half);
-    const float b = read_curve(row[u->after].shown[c], half);
-
-    return a + u->part * (b - a);
+    return a + part * (b - a);
 }
 
-static void show(const struct rf_tone *tone, const struct rf_tone_curves *row,
-                 const struct place *u, const uint16_t *light, float shown[3])
+/* The place of a pixel between four cells. */
+struct cells {
+    const struct rf_tone_curves *above, *below; /* rows of them */
+    struct place u, v;
+};
+
+static float shown_of(const struct cells *at, int c, uint16_t half)
 {
+    const int left = at->u.before, right = at->u.after;
+
+    return between(between(read_curve(at->above[left].shown[c], half),
+                           read_curve(at->above[right].shown[c], half), at->u.part),
+                   between(read_curve(at->below[left].shown[c], half),
+                           read_curve(at->below[right].shown[c], half), at->u.part),
+                   at->v.part);
+}
+
+static void show(const struct rf_tone *tone, int x, int y, const uint16_t *light, float shown[3])
+{
+    const struct place v = place_of(y, tone->height, tone->down);
+    const struct cells at = {&tone->curves[v.before * tone->across],
+                             &tone->curves[v.after * tone->across],
+                             place_of(x, tone->width, tone->across), v};
     float scale = 0;
 
     if (tone->by_brightest) {
         const uint16_t most = light[rf_tone_brightest(light)];
 
-        scale = most ? shown_of(row, u, 0, most) / rf_half_value(most) : 0;
+        scale = most ? shown_of(&at, 0, most) / rf_half_value(most) : 0;
     }
     for (int c = 0; c < 3; c++) {
         shown[c] =
-            tone->by_brightest ? scale * rf_half_value(light[c]) : shown_of(row, u, c, light[c]);
+            tone->by_brightest ? scale * rf_half_value(light[c]) : shown_of(&at, c, light[c]);
     }
 }
 
-/* How far light is still the pixel's own: 1 where it is, 0 from a change by a quarter on. */
-static float likeness(const uint16_t *own, const uint16_t *light)
+static const uint16_t *own_at(const struct rf_tone_part *part, int x, int y)
+{
+    const struct refocus_image *own = part->own;
+
+    return (const uint16_t *)(const void *)(own->plane[0] + (part->y + y) * own->stride[0]) +
+           3 * (ptrdiff_t)(part->x + x);
+}
+
+static const uint8_t *base_at(const struct rf_tone_part *part, int x, int y)
+{
+    return part->base->plane[0] + (part->y + y) * part->base->stride[0] +
+           3 * (ptrdiff_t)(part->x + x);
+}
+
+/* Light that was refocused may be at any address. */
+static void read_light(const struct rf_tone_part *part, int x, int y, uint16_t light[3])
+{
+    memcpy(light, part->light->plane[0] + y * part->light->stride[0] + 6 * (ptrdiff_t)x, 6);
+}
+
+/* By which part of it light is not the pixel's own, in the channel where it is the most. */
+static float change_of(const uint16_t *own, const uint16_t *light)
 {
     float most = 0;
 
     for (int c = 0; c < 3; c++) {
         const float a = rf_half_value(own[c]), b = rf_half_value(light[c]);
-        const float change = fabsf(a - b) / (fmaxf(a, b) + 0.01f);
 
-        most = change > most ? change : most;
+        most = fmaxf(most, fabsf(a - b) / (fmaxf(a, b) + 0.01f));
     }
-    return most < 0.25f ? 1 - 4 * most : 0;
+    return most;
 }
 
 static uint8_t code_of(const struct rf_tone *tone, float shown, int threshold)
@@ -106,41 +125,120 @@ static uint8_t code_of(const struct rf_tone *tone, float shown, int threshold)
     return (uint8_t)(rounded < 255 ? rounded : 255);
 }
 
-/* Light that was refocused saturates at 4 times white, wide areas that are brighter, too: these are
- * shown as bright as they are in the photo.
- *
- * Tones that were chosen pixel by pixel are not in the curves. A pixel keeps them as far as its
- * light is still its own: nothing shows where blur sets in. */
-void rf_tone_encode(const struct rf_tone *tone, const struct rf_tone_row *row)
+/* The pixels that are worked on at once, and two beside them on each side. */
+enum { REACH = 2, AROUND = (2 * REACH + 1) * (2 * REACH + 1) };
+enum { WIDE = 32, HIGH = 16, STRIDE = WIDE + 2 * REACH, ROWS = HIGH + 2 * REACH };
+
+struct patch {
+    float local[3][ROWS * STRIDE]; /* light that a pixel is shown with beyond the curves */
+    float kept[3][ROWS * STRIDE];  /* how much of that blurred light keeps */
+    float change[ROWS * STRIDE];
+};
+
+static int clamp(int value, int most)
 {
-    struct rf_tone_curves curves[RF_TONE_CELLS];
+    return value < 0 ? 0 : value > most ? most : value;
+}
 
-    blend_curves(tone, row->y, curves);
-    for (int x = 0; x < row->width; x++) {
-        const uint16_t *const own = row->own + 3 * x;
-        const uint8_t *const base = row->base + 3 * x;
-        uint8_t *const out = row->out + 3 * x;
-        const struct place u = place_of(row->x + x, tone->width, tone->across);
-        float shown[3], own_shown[3], like;
+/* Reads the pixels of a part around those from (x0, y0) on; beyond the part those at its sides. */
+static void read_patch(const struct rf_tone *tone, const struct rf_tone_part *part, int x0, int y0,
+                       struct patch *patch)
+{
+    for (int i = 0; i < ROWS * STRIDE; i++) {
+        const int x = clamp(x0 + i % STRIDE - REACH, part->light->width - 1);
+        const int y = clamp(y0 + i / STRIDE - REACH, part->light->height - 1);
         uint16_t light[3];
+        float shown[3], like;
 
-        memcpy(light, row->light + 6 * (ptrdiff_t)x, sizeof light);
-        if (memcmp(light, own, sizeof light) == 0) {
-            memcpy(out, base, 3);
-            continue;
-        }
+        read_light(part, x, y, light);
+        show(tone, part->x + x, part->y + y, own_at(part, x, y), shown);
+        patch->change[i] = change_of(own_at(part, x, y), light);
+        like = fmaxf(1 - 4 * patch->change[i], 0);
         for (int c = 0; c < 3; c++) {
-            light[c] = light[c] > RF_HALF_MOST ? 0 : light[c]; /* negative light and NaN, too */
-            if (light[c] >= FULL && own[c] > light[c]) {
-                light[c] = own[c];
+            patch->local[c][i] = tone->light[base_at(part, x, y)[c]] - shown[c];
+            patch->kept[c][i] = like * patch->local[c][i];
+        }
+    }
+}
+
+/* Makes values means of those around, from the first on: the mean around (x, y) comes to where the
+ * first of them was. */
+static void average(float *values)
+{
+    for (int i = 0; i < ROWS * STRIDE - 2 * REACH; i++) {
+        for (int k = 1; k <= 2 * REACH; k++) {
+            values[i] += values[i + k];
+        }
+    }
+    for (int i = 0; i < HIGH * STRIDE; i++) {
+        for (int k = 1; k <= 2 * REACH; k++) {
+            values[i] += values[i + k * STRIDE];
+        }
+        values[i] /= AROUND;
+    }
+}
+
+/* Light that was refocused saturates at 4 times white, wide areas that are brighter, too: these are
+ * shown as bright as they are in the photo. */
+static void show_pixel(const struct rf_tone *tone, const struct rf_tone_part *part, int x, int y,
+                       const float more[3])
+{
+    const uint16_t *const own = own_at(part, x, y);
+    uint8_t *const out = part->out->plane[0] + y * part->out->stride[0] + 3 * (ptrdiff_t)x;
+    float shown[3];
+    uint16_t light[3];
+
+    read_light(part, x, y, light);
+    if (memcmp(light, own, sizeof light) == 0) {
+        memcpy(out, base_at(part, x, y), 3);
+        return;
+    }
+    for (int c = 0; c < 3; c++) {
+        light[c] = light[c] > RF_HALF_MOST ? 0 : light[c]; /* negative light and NaN, too */
+        if (light[c] >= FULL && own[c] > light[c]) {
+            light[c] = own[c];
+        }
+    }
+    show(tone, part->x + x, part->y + y, light, shown);
+    for (int c = 0; c < 3; c++) {
+        out[c] = code_of(tone, shown[c] + more[c],
+                         part->thresholds[((part->y + y) & 7) * 8 + ((part->x + x) & 7)]);
+    }
+}
+
+/* Tones that were chosen pixel by pixel are not in the curves. What a pixel is shown with beyond
+ * them, it keeps where its light and that around it is its own, so that nothing shows where blur
+ * sets in; where it is nearly that, it takes the mean of what pixels around keep: light that is
+ * blurred is a pixel's own by chance along lines, at edges, which must not show, nor must what is
+ * coarse in the gain map. */
+static void show_patch(const struct rf_tone *tone, const struct rf_tone_part *part, int x0, int y0)
+{
+    struct patch patch;
+
+    read_patch(tone, part, x0, y0, &patch);
+    for (int c = 0; c < 3; c++) {
+        average(patch.kept[c]);
+    }
+    average(patch.change);
+    for (int y = 0; y < HIGH && y0 + y < part->light->height; y++) {
+        for (int x = 0; x < WIDE && x0 + x < part->light->width; x++) {
+            const int at = y * STRIDE + x, middle = at + REACH * STRIDE + REACH;
+            const float own = fmaxf(1 - 16 * patch.change[at], 0);
+            float more[3];
+
+            for (int c = 0; c < 3; c++) {
+                more[c] = between(patch.kept[c][at], patch.local[c][middle], own);
             }
+            show_pixel(tone, part, x0 + x, y0 + y, more);
         }
-        show(tone, curves, &u, light, shown);
-        show(tone, curves, &u, own, own_shown);
-        like = likeness(own, light);
-        for (int c = 0; c < 3; c++) {
-            out[c] = code_of(tone, shown[c] + like * (tone->light[base[c]] - own_shown[c]),
-                             row->thresholds[(row->x + x) & 7]);
+    }
+}
+
+void rf_tone_encode(const struct rf_tone *tone, const struct rf_tone_part *part)
+{
+    for (int y = 0; y < part->light->height; y += HIGH) {
+        for (int x = 0; x < part->light->width; x += WIDE) {
+            show_patch(tone, part, x, y);
         }
     }
 }

@@ -58,17 +58,15 @@ float rf_tone_light(int code);
 int rf_tone_fit(struct rf_tone *tone, const struct refocus_image *base,
                 const struct refocus_image *light, bool by_brightest);
 
-/* A row of refocused light, halves at any address, and its pixels before that. */
-struct rf_tone_row {
-    const uint16_t *own; /* light */
-    const uint8_t *base; /* codes of it */
-    const uint8_t *light;
-    uint8_t *out;
-    int width, x, y;           /* pixels; column and row of the first */
-    const uint8_t *thresholds; /* 8, 0 to 63, by column modulo 8 */
+/* A part of a photo that was refocused. */
+struct rf_tone_part {
+    const struct refocus_image *own, *base;  /* light and codes of the photo */
+    const struct refocus_image *light, *out; /* the part itself; halves are at any address */
+    int x, y;                                /* column and row of its first pixel */
+    const uint8_t *thresholds;               /* 0 to 63, 8 by 8, by row and column modulo 8 */
 };
 
 /* Pixels whose light did not change keep their code. */
-void rf_tone_encode(const struct rf_tone *tone, const struct rf_tone_row *row);
+void rf_tone_encode(const struct rf_tone *tone, const struct rf_tone_part *part);
 
 #endif

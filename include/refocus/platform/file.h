@@ -236,8 +236,10 @@ REFOCUS_API const struct refocus_image *refocus_light_image(const struct refocus
  * are measured in the photo, where both are known. Cells, 12 along its longer side, have curves of
  * their own, of each channel, or of the brightest where the map has one channel, and are read in
  * between in proportion (a bilateral grid: Chen, Paris, Durand 2007), as tones are chosen place by
- * place. Light from 4 times white on, at which refocused light saturates, is shown as the photo's
- * own where that is more. Pixels that nothing changed, byte by byte, have the photo's own codes.
+ * place. What a pixel of the photo has beyond its curves fades as its light changes, within a
+ * sixteenth, and its mean over 5 x 5 pixels within a quarter. Light from 4 times white on, at which
+ * refocused light saturates, is shown as the photo's own where that is more. Pixels that nothing
+ * changed, byte by byte, have the photo's own codes.
  *
  * @param refocused  REFOCUS_FORMAT_RGB_HALF, linear, 1 = white: as refocus_render() makes it of
  *                   the object's image

@@ -33,20 +33,40 @@ static struct rf_tone *fit(bool by_brightest)
     return tone;
 }
 
+/* Shows `count` pixels of a row from (x, y) on. */
+static void encode_row(const struct rf_tone *tone, int x, int y, int count, const uint16_t *own,
+                       const uint8_t *base, const uint16_t *light, uint8_t *out)
+{
+    static uint16_t owns[3 * SIDE * SIDE], lights[3 * SIDE];
+    static uint8_t bases[3 * SIDE * SIDE], thresholds[64];
+    const struct refocus_image own_image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB_HALF, owns, SIDE, SIDE, 6 * SIDE);
+    const struct refocus_image base_image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, bases, SIDE, SIDE, 3 * SIDE);
+    const struct refocus_image light_image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB_HALF, lights, count, 1, 6 * SIDE);
+    const struct refocus_image out_image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, count, 1, 3 * SIDE);
+    const struct rf_tone_part part = {.own = &own_image,
+                                      .base = &base_image,
+                                      .light = &light_image,
+                                      .out = &out_image,
+                                      .x = x,
+                                      .y = y,
+                                      .thresholds = thresholds};
+    const size_t samples = 3 * (size_t)count;
+
+    memset(thresholds, 31, sizeof thresholds);
+    memcpy(owns + 3 * (SIDE * y + x), own, samples * sizeof *own);
+    memcpy(bases + 3 * (SIDE * y + x), base, samples);
+    memcpy(lights, light, samples * sizeof *light);
+    rf_tone_encode(tone, &part);
+}
+
 static void encode(const struct rf_tone *tone, int x, int y, const uint16_t *own,
                    const uint8_t *base, const uint16_t *light, uint8_t *out)
 {
-    static const uint8_t thresholds[8] = {31, 31, 31, 31, 31, 31, 31, 31};
-    const struct rf_tone_row row = {.own = own,
-                                    .base = base,
-                                    .light = (const uint8_t *)light,
-                                    .out = out,
-                                    .width = 1,
-                                    .x = x,
-                                    .y = y,
-                                    .thresholds = thresholds};
-
-    rf_tone_encode(tone, &row);
+    encode_row(tone, x, y, 1, own, base, light, out);
 }
 
 /* The light that is shown of grey light at a place whose own is black. */
@@ -220,6 +240,80 @@ static void shown_as_the_photo_shows_it(void **state)
     free(tone);
 }
 
+/* Where blurred light is that of a pixel by chance, between others that it is not that of, nothing
+ * of the pixel's own tone shows. */
+static void light_by_chance(void **state)
+{
+    static const uint16_t light[9] = {ONE, ONE, ONE, HALF, HALF, HALF, ONE, ONE, ONE};
+    static const uint8_t base[9] = {90, 90, 90, 90, 90, 90, 90, 90, 90};
+    uint16_t own[9];
+    struct rf_tone *tone;
+    uint8_t out[9];
+
+    (void)state;
+    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+        codes[i] = i / 3 % 2 ? 200 : 100;
+        halves[i] = i / 3 % 2 ? ONE : HALF;
+    }
+    for (int i = 0; i < 9; i++) {
+        own[i] = HALF + 1;
+    }
+    tone = fit(false);
+    encode_row(tone, 48, 48, 3, own, base, light, out);
+    assert_in_range(out[4], 97, 101);
+    encode_row(tone, 48, 48, 1, own + 3, base + 3, light + 3, out);
+    assert_in_range(out[0], 89, 91);
+    free(tone);
+}
+
+/* A part is shown as it is in the whole photo, but for two pixels at its sides. */
+static void parts_are_shown_as_the_whole(void **state)
+{
+    enum { X = 13, Y = 7, WIDE = 70, HIGH = 60, SIDES = 2 };
+    static uint16_t lights[3 * SIDE * SIDE];
+    static uint8_t whole[3 * SIDE * SIDE], part[3 * SIDE * SIDE];
+    const struct refocus_image base =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, codes, SIDE, SIDE, 3 * SIDE);
+    const struct refocus_image own =
+        refocus_image_packed(REFOCUS_FORMAT_RGB_HALF, halves, SIDE, SIDE, 6 * SIDE);
+    const struct refocus_image light =
+        refocus_image_packed(REFOCUS_FORMAT_RGB_HALF, lights, SIDE, SIDE, 6 * SIDE);
+    const struct refocus_image cut = refocus_image_packed(
+        REFOCUS_FORMAT_RGB_HALF, lights + 3 * (SIDE * Y + X), WIDE, HIGH, 6 * SIDE);
+    const struct refocus_image shown =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, whole, SIDE, SIDE, 3 * SIDE);
+    const struct refocus_image shown_cut =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, part, WIDE, HIGH, 3 * SIDE);
+    static const uint8_t thresholds[64] = {7, 31, 60};
+    struct rf_tone *tone;
+    int kept = 0;
+
+    (void)state;
+    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+        const int noise = 7 * i % 61 + 5 * i % 17;
+
+        codes[i] = (uint8_t)(60 + i % 23 + noise);
+        halves[i] = (uint16_t)(HALF + 7 * noise);
+        lights[i] = (uint16_t)(halves[i] + i % 5 + (i / 3 % SIDE > 40 ? 100 * (i % 7) : 0));
+    }
+    tone = fit(false);
+    rf_tone_encode(tone, &(struct rf_tone_part){&own, &base, &light, &shown, 0, 0, thresholds});
+    rf_tone_encode(tone, &(struct rf_tone_part){&own, &base, &cut, &shown_cut, X, Y, thresholds});
+    for (int y = SIDES; y < HIGH - SIDES; y++) {
+        for (int x = SIDES; x < WIDE - SIDES; x++) {
+            const uint8_t *a = whole + 3 * (SIDE * (Y + y) + X + x), *b = part + 3 * (SIDE * y + x);
+
+            kept += abs(a[1] - codes[3 * (SIDE * (Y + y) + X + x) + 1]) < 2;
+            if (memcmp(a, b, 3) != 0) {
+                fail_msg("(%d, %d) of a part is %d %d %d, not %d %d %d", x, y, b[0], b[1], b[2],
+                         a[0], a[1], a[2]);
+            }
+        }
+    }
+    assert_in_range(kept, WIDE * HIGH / 4, WIDE * HIGH * 3 / 4); /* both ways of showing are seen */
+    free(tone);
+}
+
 /* Light that saturates at 4 times white is shown as the pixel's own, if that is more. */
 static void saturated_light_is_that_of_the_photo(void **state)
 {
@@ -248,6 +342,8 @@ int main(void)
         cmocka_unit_test(tones_do_not_fall),
         cmocka_unit_test(by_the_brightest),
         cmocka_unit_test(shown_as_the_photo_shows_it),
+        cmocka_unit_test(light_by_chance),
+        cmocka_unit_test(parts_are_shown_as_the_whole),
         cmocka_unit_test(saturated_light_is_that_of_the_photo),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
