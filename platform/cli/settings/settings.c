@@ -15,7 +15,7 @@ enum { LONGEST_NAME = 64, LONGEST_VALUE = 256 };
 /* Settings point into texts of the files that were read; all are freed at the end. */
 static json_t *kept;
 
-static void forget(void)
+void settings_forget(void)
 {
     json_decref(kept);
     kept = NULL;
@@ -25,7 +25,7 @@ static bool keep(json_t *root)
 {
     static bool at_exit;
 
-    if (!at_exit && atexit(forget) != 0)
+    if (!at_exit && atexit(settings_forget) != 0)
         return false;
     at_exit = true;
     if (!kept)
@@ -156,7 +156,7 @@ int settings_take(const struct command *command, const char *file, json_t *root,
 {
     const json_t *const version = json_object_get(root, "refocus");
 
-    forget();
+    settings_forget();
     if (!json_is_object(root) || (version && !is_version(version)))
         return not_settings(file);
     return set_members(command, file, root, settings);

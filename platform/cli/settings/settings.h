@@ -55,6 +55,9 @@ int settings_read(const struct command *command, const char *file, const char *b
  * forgotten. */
 int settings_take(const struct command *command, const char *file, json_t *root, void *settings);
 
+/* Forget the texts that were read, as is done when the program ends. */
+void settings_forget(void);
+
 /* Check before the work that a file of settings can be written there, and is none of the inputs. */
 int settings_check(const char *file, const char *const *inputs, int input_count);
 

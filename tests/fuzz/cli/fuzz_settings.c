@@ -26,8 +26,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     if (status != OPTIONS_PARSED && status != EXIT_FAILED)
         abort();
-    if (status != OPTIONS_PARSED)
-        return 0;
-    fuzz_check_values(&v);
+    if (status == OPTIONS_PARSED)
+        fuzz_check_values(&v);
+    settings_forget();
     return 0;
 }
