@@ -131,7 +131,7 @@ enum { WIDE = 32, HIGH = 16, STRIDE = WIDE + 2 * REACH, ROWS = HIGH + 2 * REACH 
 
 struct patch {
     float local[3][ROWS * STRIDE]; /* light that a pixel is shown with beyond the curves */
-    float kept[3][ROWS * STRIDE];  /* how much of that blurred light keeps */
+    float kept[3][ROWS * STRIDE];  /* the part of it that blurred light keeps */
     float change[ROWS * STRIDE];
 };
 

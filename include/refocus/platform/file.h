@@ -245,7 +245,7 @@ REFOCUS_API const struct refocus_image *refocus_light_image(const struct refocus
  *                   the object's image
  * @param x, y       column and row of the photo that its first pixel is
  * @param dither     of the other pixels: enum refocus_dither of <refocus/params.h>
- * @param out        REFOCUS_FORMAT_RGB8, of the same size
+ * @param out        REFOCUS_FORMAT_RGB8, of the same size, in other memory than `refocused`
  * @return REFOCUS_OK or REFOCUS_ERR_ARGUMENT. Thread-safe.
  */
 REFOCUS_API int refocus_light_to_base(const struct refocus_light *light,

@@ -33,6 +33,16 @@ static struct rf_tone *fit(bool by_brightest)
     return tone;
 }
 
+/* The tones of a photo whose pixels are white or half as bright, by turns. */
+static struct rf_tone *fit_two(void)
+{
+    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
+        codes[i] = i / 3 % 2 ? 200 : 100;
+        halves[i] = i / 3 % 2 ? ONE : HALF;
+    }
+    return fit(false);
+}
+
 /* Shows `count` pixels of a row from (x, y) on. */
 static void encode_row(const struct rf_tone *tone, int x, int y, int count, const uint16_t *own,
                        const uint8_t *base, const uint16_t *light, uint8_t *out)
@@ -224,11 +234,7 @@ static void shown_as_the_photo_shows_it(void **state)
     uint8_t out[3];
 
     (void)state;
-    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
-        codes[i] = i / 3 % 2 ? 200 : 100;
-        halves[i] = i / 3 % 2 ? ONE : HALF;
-    }
-    tone = fit(false);
+    tone = fit_two();
     encode(tone, 48, 48, own, base, own, out);
     assert_memory_equal(out, base, 3);
     encode(tone, 48, 48, own, base, near_by, out);
@@ -251,14 +257,10 @@ static void light_by_chance(void **state)
     uint8_t out[9];
 
     (void)state;
-    for (int i = 0; i < 3 * SIDE * SIDE; i++) {
-        codes[i] = i / 3 % 2 ? 200 : 100;
-        halves[i] = i / 3 % 2 ? ONE : HALF;
-    }
     for (int i = 0; i < 9; i++) {
         own[i] = HALF + 1;
     }
-    tone = fit(false);
+    tone = fit_two();
     encode_row(tone, 48, 48, 3, own, base, light, out);
     assert_in_range(out[4], 97, 101);
     encode_row(tone, 48, 48, 1, own + 3, base + 3, light + 3, out);
