@@ -150,6 +150,11 @@ other people's cameras (2 to 32 frames: insects, books, balls, a keyboard, hedge
 and patches before. The scores here stay within .1 dB (portrait up to +.1; two frames of fence -.2, three +.3), those of
 96 rendered stacks of eight scenes gain .02 in the mean; the scene that loses most is aloe, -.15 in the mean.
 
+Which end is far (`--order auto`): of 101 stacks of a light field camera, 5 to 11 frames, nearest first, edges turn 67,
+leave 31 as they are and are wrong in 3; of 17 other stacks (five cameras, three renderers) that show it, 15 are right and 2
+stay as given. The weights of votes and the bound of 1/20 were chosen by these: half of them and a bound of 1/32 had 4 wrong
+of 40 in the other half before votes had weights.
+
 Processor time of `refocus depth --focal-stack`, nine frames, with files read and written, x86-64: 2 megapixels
 4.5 s and 280 MB, 12 megapixels 19 s and 735 MB (a slow day; on another 2.9 and 10.4 s). By the clock with two threads,
 by turns with one thread for most of it, as it was before, medians of five and of two: 2.98 for 4.01 s, and 13.5 for

@@ -29,12 +29,15 @@ enum refocus_stack_align {
 
 /** The order of focus of frames without positions. */
 enum refocus_stack_order {
-    REFOCUS_STACK_ORDER_ADDED, /**< they follow each other as they are added, the farthest focus
-                                    first; the default */
-    REFOCUS_STACK_ORDER_FOUND, /**< sharpness tells it. No picture tells which of its ends is far:
-                                    of the order and its reverse the one is taken that has more
-                                    pairs of frames as they were added. Wrong where most blocks
-                                    hold two depths: a fence blurred over all that is behind it */
+    REFOCUS_STACK_ORDER_ADDED,  /**< they follow each other as they are added, the farthest focus
+                                     first; the default */
+    REFOCUS_STACK_ORDER_FOUND,  /**< sharpness tells it, and edges which of its ends is far (see
+                                     `direction` of the result); where they do not, of the order and
+                                     its reverse the one is taken that has more pairs of frames as
+                                     they were added. Wrong where most blocks hold two depths: a
+                                     fence blurred over all that is behind it */
+    REFOCUS_STACK_ORDER_EITHER, /**< they follow each other as they are added. Edges tell which end
+                                     is far; where they do not, it is the first */
     REFOCUS_STACK_ORDER_COUNT
 };
 
@@ -82,7 +85,8 @@ struct refocus_stack_result {
     float moved;    /**< receives how far the farthest corner of a frame was moved, in pixels */
     float disorder; /**< receives the share of measured samples whose sharpness has two peaks over
                          the frames: hardly any in a stack, most where the order or the positions
-                         are wrong. A stack that is reversed cannot be told from one that is not. */
+                         are wrong. A reversed order has no more than the right one: see `direction`
+                     */
     float moving;   /**< receives the share of the photo where something moved between the frames:
                          it is as in the reference, and its depth is filled from around it */
     float order_margin; /**< receives how sure an order is that was found: how much deeper the
@@ -97,7 +101,11 @@ struct refocus_stack_result {
     /** Receives the numbers of the frames, from 1, from the farthest focus to the nearest; 0 after
      *  them. */
     uint8_t order[REFOCUS_STACK_MOST_FRAMES];
-    uint32_t reserved_too; /**< 0 */
+    float direction; /**< receives which end of the order that frames were added in, or that was
+                          found, is far, by the edges between surfaces, which are as blurred as the
+                          nearer one is: -1 to 1. 1/20 and more: the first frame; -1/20 and less:
+                          the last, and the order is its reverse. In between edges do not tell. 0
+                          where there are few edges, and where the order was not to be told */
 };
 
 static inline struct refocus_stack_result refocus_stack_result_default(void)

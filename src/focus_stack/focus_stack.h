@@ -153,6 +153,10 @@ void rf_stack_costs(struct refocus_stack *stack);
 void rf_stack_aggregate(struct refocus_stack *stack);
 /* The least sum of each sample, between frames by a parabola. */
 void rf_stack_choose(struct refocus_stack *stack);
+/* Returns `direction` of stack.h, once depth is filled. */
+float rf_stack_direction(struct refocus_stack *stack);
+/* Frames without positions, and depth, become as if frames had been added in reverse. */
+void rf_stack_reverse(struct refocus_stack *stack);
 /* Depth beside a nearer surface, which windows of sharpness take for it, is filled once more. */
 void rf_stack_silhouettes(struct refocus_stack *stack);
 /* Depth that was not measured becomes that of the sure samples around it; votes go along rows and

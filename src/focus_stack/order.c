@@ -7,7 +7,8 @@
  *
  * where that is above 0, what lies in valleys, and a tenth of the sum of |p(b, k) - p(b, k + 1)|,
  * since neighbours are alike. Valleys of three frames with .2, .9 and .4 are 0 deep, with .9, .2
- * and .4 they are .2. An order and its reverse cost the same: no picture tells which end is far.
+ * and .4 they are .2. An order and its reverse cost the same: which end is far is told by edges,
+ * once there is depth (direction.c).
  *
  * The shortest path through all frames, by the second sum alone, comes near: each frame is its
  * start once, and parts of it are turned while that makes it shorter. From there and from the order

@@ -19,6 +19,7 @@ enum {
     PATHS = 8,
     BESIDE = 16,    /* aggregate.c */
     MEASURED = 128, /* confidence from here on */
+    TELLING = 20,   /* edges tell the direction from 1 / TELLING on */
 };
 
 static void lay_out(struct refocus_stack *s, struct rf_arena *arena)
@@ -310,7 +311,21 @@ static bool good_result(const struct refocus_stack *s, const struct refocus_stac
            (!r->confidence || rf_good_stride(r->confidence_stride, w, s->height)) &&
            (!r->disparity || (!((uintptr_t)r->disparity & 1) && !(r->disparity_stride & 1) &&
                               rf_good_stride(r->disparity_stride, 2 * w, s->height))) &&
-           !r->reserved && !r->reserved_too;
+           !r->reserved;
+}
+
+/* Puts the far end first, where the order is to be told and edges tell it. */
+static void direct(struct refocus_stack *s, struct refocus_stack_result *own)
+{
+    own->direction = 0;
+    if (s->order != REFOCUS_STACK_ORDER_ADDED && s->without_positions) {
+        own->direction = rf_stack_direction(s);
+        if (TELLING * own->direction <= -1)
+            rf_stack_reverse(s);
+    }
+    memset(own->order, 0, sizeof own->order);
+    for (int k = 0; k < s->count; k++)
+        own->order[k] = (uint8_t)s->frame[k].added;
 }
 
 static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
@@ -321,9 +336,6 @@ static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
         own->order_margin = rf_stack_find_order(s);
     s->still = reference_of(s);
     own->reference = s->frame[s->still].added;
-    memset(own->order, 0, sizeof own->order);
-    for (int k = 0; k < s->count; k++)
-        own->order[k] = (uint8_t)s->frame[k].added;
     rf_stack_align(s, s->still);
     own->alike = (float)s->alike;
     rf_stack_find_moving(s);
@@ -336,6 +348,7 @@ static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
     rf_stack_aggregate(s);
     rf_stack_choose(s);
     rf_stack_fill(s, false);
+    direct(s, own);
     if (s->count > 2)
         rf_stack_silhouettes(s);
     rf_stack_smooth(s);

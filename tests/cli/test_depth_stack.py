@@ -46,8 +46,9 @@ class DepthOfAStack(Case):
     def test_depth_and_photo(self):
         report = self.reports(*self.command, '-o', 'd.pgm', '--photo', 'all.ppm')
         self.assertEqual((report['width'], report['height']), (W, H))
-        self.assertEqual(report['evidence'], ['focus stack: 3 frames, moved by up to 0.0 pixels, '
-                                              'in the geometry of frame 2'])
+        self.assertEqual(report['evidence'], [
+            'focus stack: 3 frames, moved by up to 0.0 pixels, in the geometry of frame 2',
+            'focus stack: no edges show which end is far; the first is taken for it'])
         self.assertEqual(self.halves('d.pgm'), [0, 65535])
         photo = pictures.read_pnm('all.ppm')[2]
         right = sum(abs(photo[3 * (y * W + x)] - noise(x, y)) < 3 for y in range(H)
@@ -55,6 +56,43 @@ class DepthOfAStack(Case):
         self.assertGreater(right, 0.75 * W * H)
         self.succeeds(*self.command, '-o', 'c.ppm', '--view', 'confidence')
         os.remove('c.ppm')
+
+    def test_edges_show_which_end_is_far(self):
+        width, height = 96, 40
+        left, right = 36, 60  # of a bright bar
+
+        def frame(x, y, k):
+            def spread(radius, of):
+                span = range(-radius, radius + 1)
+                return sum(of(x + u, y + v) for u in span for v in span) / len(span) ** 2
+
+            def bar(x, y):
+                return 150 + noise(x, y) / 8 if left <= x < right else 0
+            covered = spread(2 - k, lambda x, y: left <= x < right)
+            behind = spread(k, lambda x, y: 40 + noise(x, y) / 8)
+            return (int(spread(2 - k, bar) + (1 - covered) * behind),) * 3
+
+        for k in range(FRAMES):
+            pictures.ppm(f'bar-{k}.ppm', width, height, lambda x, y: frame(x, y, k))
+        names = [f'bar-{k}.ppm' for k in range(FRAMES)]
+        for order, far in (names, 'first'), (names[::-1], 'last'):
+            report = self.reports('depth', '--focal-stack', *order, '--align', 'none', '-o',
+                                  'd.pgm')
+            self.assertEqual(report['evidence'][1], 'focus stack: edges show that the '
+                             f'{far} frame is focused farthest')
+            samples = pictures.read_pnm('d.pgm')[2]
+            for y in range(4, height - 4):
+                self.assertGreater(samples[y * width + 48], 60000)
+                self.assertLess(samples[y * width + 16], 9999)
+        self.warns('bar-1.ppm: frames are taken in the order 3 2 1, the farthest first', 'depth',
+                   '--focal-stack', *names[::-1], '--align', 'none', '-o', 'd.pgm', '--order',
+                   'found')
+        report = self.reports('depth', '--focal-stack', *names[::-1], '--align', 'none', '-o',
+                              'd.pgm', '--order', 'given')
+        self.assertEqual(len(report['evidence']), 1)
+        self.assertLess(pictures.read_pnm('d.pgm')[2][20 * width + 48], 9999)
+        for name in names:
+            os.remove(name)
 
     def test_positions_are_dioptres_in_any_order(self):
         self.succeeds(*self.command, '-o', 'd.pgm')
@@ -253,7 +291,8 @@ class DepthOfAStack(Case):
         self.assertEqual(report['evidence'][1], 'EXIF: the subject distances of the frames')
         report = self.reports('depth', '--focal-stack', names[0], *names, '--align', 'none', '-o',
                               'x.pgm')
-        self.assertEqual(len(report['evidence']), 1)
+        self.assertEqual(report['evidence'][1:], [
+            'focus stack: no edges show which end is far; the first is taken for it'])
         os.remove('x.pgm')
 
     def test_one_focus_and_two_apertures_are_no_stack(self):

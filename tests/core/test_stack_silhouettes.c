@@ -84,13 +84,17 @@ static void draw(int k)
     }
 }
 
-static void run(void)
+static const int far_first[FRAMES] = {0, 1, 2, 3, 4}, near_first[FRAMES] = {4, 3, 2, 1, 0};
+
+/* Frames are added in that order, with the positions of their focus or without. */
+static struct refocus_stack_result run_order(const int *order, uint32_t order_by, bool positions)
 {
     struct refocus_stack_params params = refocus_stack_params_default(W, H, FRAMES);
     struct refocus_stack_result result = refocus_stack_result_default();
     struct refocus_stack *stack = NULL;
 
     params.align = REFOCUS_STACK_ALIGN_NONE;
+    params.order = order_by;
     result.photo = photo;
     result.photo_stride = 3 * W;
     result.disparity = disparity;
@@ -100,11 +104,18 @@ static void run(void)
         const struct refocus_image image =
             refocus_image_packed(REFOCUS_FORMAT_RGB8, frame, W, H, 3 * W);
 
-        draw(k);
-        assert_int_equal(refocus_stack_add(stack, &image, k), REFOCUS_OK);
+        draw(order[k]);
+        assert_int_equal(refocus_stack_add(stack, &image, positions ? order[k] : (double)NAN),
+                         REFOCUS_OK);
     }
     assert_int_equal(refocus_stack_finish(stack, &result), REFOCUS_OK);
     refocus_stack_destroy(&stack);
+    return result;
+}
+
+static void run(void)
+{
+    run_order(far_first, REFOCUS_STACK_ORDER_ADDED, true);
 }
 
 /* Root mean square error, in codes, of what the photo shows of the background within the largest
@@ -127,18 +138,58 @@ static double error_beside(void)
     return sqrt(sum / all);
 }
 
-static void ends_at_silhouettes(void **state)
+/* How many pixels are on the wrong one of both surfaces. */
+static int misplaced(void)
 {
     int wrong = 0;
 
+    for (int i = 0; i < PIXELS; i++)
+        wrong += in_bar(i % W) != (disparity[i] > 32768);
+    return wrong;
+}
+
+static void ends_at_silhouettes(void **state)
+{
     (void)state;
     draw_surfaces(1);
     run();
-    for (int i = 0; i < PIXELS; i++)
-        wrong += in_bar(i % W) != (disparity[i] > 32768);
-    assert_true(wrong <
-                H); /* One pixel of a row of 320 is allowed; windows alone are wrong at 12. */
+    /* One pixel of a row of 320 is allowed; windows alone are wrong at 12. */
+    assert_true(misplaced() < H);
     assert_true(error_beside() < 2);
+}
+
+/* The bar's edge is as blurred as the bar is, whatever is brighter. */
+static void tells_which_end_is_far(void **state)
+{
+    static const int shuffled[FRAMES] = {3, 0, 4, 2, 1};
+    static const double brightness[] = {1, 0.08}; /* the bar's: more and less than what is behind */
+
+    (void)state;
+    for (size_t i = 0; i < sizeof brightness / sizeof *brightness; i++) {
+        struct refocus_stack_result result;
+
+        draw_surfaces(brightness[i]);
+        result = run_order(far_first, REFOCUS_STACK_ORDER_EITHER, false);
+        assert_true(result.direction > 0.1f);
+        assert_int_equal(result.order[0], 1);
+        assert_true(misplaced() < H);
+        result = run_order(near_first, REFOCUS_STACK_ORDER_EITHER, false);
+        assert_true(result.direction < -0.1f);
+        for (int k = 0; k < FRAMES; k++)
+            assert_int_equal(result.order[k], FRAMES - k);
+        assert_int_equal(result.reference, 3);
+        assert_true(misplaced() < H);
+        assert_true(error_beside() < 2);
+        result = run_order(shuffled, REFOCUS_STACK_ORDER_FOUND, false);
+        for (int k = 0; k < FRAMES; k++)
+            assert_int_equal(shuffled[result.order[k] - 1], k);
+        assert_true(misplaced() < H);
+    }
+    /* Frames with positions, and those that come far end first, are taken as they are. */
+    assert_true(run_order(near_first, REFOCUS_STACK_ORDER_EITHER, true).direction == 0);
+    assert_true(misplaced() < H);
+    assert_true(run_order(near_first, REFOCUS_STACK_ORDER_ADDED, false).direction == 0);
+    assert_true(misplaced() > PIXELS / 2);
 }
 
 /* The bar is five times as bright as white: none of its light that is blurred over the background
@@ -161,6 +212,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ends_at_silhouettes),
+        cmocka_unit_test(tells_which_end_is_far),
         cmocka_unit_test(leaves_no_disc_of_what_is_clipped),
     };
 

@@ -12,6 +12,8 @@
 #define LEAST_ALIKE 0.5
 /* An order that is found is doubtful where the next best one is no worse than this. */
 #define LEAST_ORDER_MARGIN 0.01
+/* Edges show which end is far from here on. */
+#define LEAST_DIRECTION (1 / 20.0)
 /* More of it is no order: 0.03 in stacks of nine frames as they were taken, 0.9 shuffled. */
 #define MOST_DISORDER 0.5
 
@@ -36,8 +38,12 @@ static const struct {
     const char *name, *summary;
 } orders[] = {
     [REFOCUS_STACK_ORDER_ADDED] = {"given", "the farthest focus first"},
-    [REFOCUS_STACK_ORDER_FOUND] = {"found", "found by their sharpness; which end is far is then as "
-                                            "given"},
+    [REFOCUS_STACK_ORDER_FOUND] = {"found",
+                                   "found by their sharpness; edges show which end is far, "
+                                   "else it is as given"},
+    [REFOCUS_STACK_ORDER_EITHER] = {"auto",
+                                    "as given, the farthest first or last: edges show which, "
+                                    "else first"},
 };
 
 const char *stack_order_name(uint32_t index)
@@ -274,7 +280,7 @@ int stack_judge(const struct refocus_stack_result *result, const char *name)
     return EXIT_DONE;
 }
 
-/* Tell where frames were put in another order than they were given in. */
+/* Tell of an order that was found where it is another one than frames were given in. */
 static void tell_order(const struct refocus_stack_result *result, const char *name, int count)
 {
     char list[4 * REFOCUS_STACK_MOST_FRAMES] = "";
@@ -290,16 +296,34 @@ static void tell_order(const struct refocus_stack_result *result, const char *na
     if (result->order_margin < (float)LEAST_ORDER_MARGIN)
         report_warning(name,
                        "frames are taken in the order %s, which is doubtful; give "
-                       "--positions, or the farthest first without --order",
+                       "--positions, or the farthest first and --order given",
                        list);
-    else
+    else if (fabs((double)result->direction) < LEAST_DIRECTION)
         report_warning(name,
                        "frames are taken in the order %s; whether it begins with the "
                        "farthest is not seen: give --positions if it does not",
                        list);
+    else
+        report_warning(name, "frames are taken in the order %s, the farthest first", list);
 }
 
-static int finish(struct input *input, struct refocus_stack *stack, const struct frames *frames)
+/* Why the first frame is taken for the farthest, or the last. */
+static const char *direction_of(const struct refocus_stack_result *result)
+{
+    return (double)result->direction >= LEAST_DIRECTION
+               ? "focus stack: edges show that the first frame is focused farthest"
+           : (double)result->direction <= -LEAST_DIRECTION
+               ? "focus stack: edges show that the last frame is focused farthest"
+               : "focus stack: no edges show which end is far; the first is taken for it";
+}
+
+static void add_evidence(struct refocus_photo_info *info, const char *text)
+{
+    snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH, "%s", text);
+}
+
+static int finish(struct input *input, struct refocus_stack *stack, const struct frames *frames,
+                  int order)
 {
     struct refocus_stack_result result = refocus_stack_result_default();
     const struct refocus_image *image = input->photo->image;
@@ -322,7 +346,7 @@ static int finish(struct input *input, struct refocus_stack *stack, const struct
     status = stack_judge(&result, input->photo_name);
     if (status != EXIT_DONE)
         return status;
-    if (isnan(frames->position[0]))
+    if (isnan(frames->position[0]) && order == REFOCUS_STACK_ORDER_FOUND)
         tell_order(&result, input->photo_name, frames->count);
     for (size_t i = 0; i < pixels; i++)
         input->report.unknown += input->confidence[i] < 128;
@@ -335,8 +359,9 @@ static int finish(struct input *input, struct refocus_stack *stack, const struct
                  "focus stack: something moves in %.1f %% of the picture, which is as in frame %d",
                  100 * (double)result.moving, result.reference);
     if (frames->of_files)
-        snprintf(input->made_info.evidence[input->made_info.evidence_count++], REFOCUS_INFO_LENGTH,
-                 "EXIF: the subject distances of the frames");
+        add_evidence(&input->made_info, "EXIF: the subject distances of the frames");
+    if (isnan(frames->position[0]) && order == REFOCUS_STACK_ORDER_EITHER)
+        add_evidence(&input->made_info, direction_of(&result));
     return EXIT_DONE;
 }
 
@@ -385,7 +410,7 @@ int input_read_stack(struct input *input, const char *const *files,
     set_range(input, &frames, settings);
     status = add_all(stack, &frames, input);
     if (status == EXIT_DONE)
-        status = finish(input, stack, &frames);
+        status = finish(input, stack, &frames, how->order);
     refocus_stack_destroy(&stack);
     return status;
 }

@@ -17,7 +17,7 @@ struct stack_settings {
 };
 #define STACK_SETTINGS_NONE                                                                        \
     {                                                                                              \
-        false, NULL, NAN, 0, REFOCUS_STACK_ORDER_ADDED, NULL                                       \
+        false, NULL, NAN, 0, REFOCUS_STACK_ORDER_EITHER, NULL                                      \
     }
 
 /* Rows for tables of options. */
@@ -27,7 +27,7 @@ struct stack_settings {
      .offset = offsetof(type, member.on),                                                          \
      .brief = "the FILEs show one view at 2 to 32 focus distances",                                \
      .help =                                                                                       \
-         "the FILEs show one view at 2 to 32 focus distances, the farthest first: depth, and a "   \
+         "the FILEs show one view at 2 to 32 focus distances, one after the other: depth, and a "  \
          "photo that is in focus everywhere, are made of them"},                                   \
         {.kind = OPTION_TEXT,                                                                      \
          .name = "--positions",                                                                    \
