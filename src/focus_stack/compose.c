@@ -96,8 +96,7 @@ struct line {
     const uint8_t *moving;
 };
 
-/* Whether a frame has the place x of a row. */
-static bool reaches(const struct refocus_stack *s, const struct rf_stack_line *line, int x)
+bool rf_stack_reaches(const struct refocus_stack *s, const struct rf_stack_line *line, int x)
 {
     const int64_t half = INT64_C(1) << 31, one = INT64_C(1) << 32;
     const int64_t px = line->x + x * line->dx + half, py = line->y + x * line->dy + half;
@@ -111,7 +110,8 @@ static int frame_with(const struct refocus_stack *s, const struct line *line, in
 {
     const int column = rf_stack_moving_column(s, x);
 
-    while (k != s->still && (!reaches(s, &line[k].at, x) || rf_stack_moves(line[k].moving, column)))
+    while (k != s->still &&
+           (!rf_stack_reaches(s, &line[k].at, x) || rf_stack_moves(line[k].moving, column)))
         k += k < s->still ? 1 : -1;
     return k;
 }
@@ -130,7 +130,7 @@ bool rf_stack_pixel(const struct refocus_stack *s, int k, int x, int y, uint8_t 
 {
     const struct rf_stack_line at = rf_stack_line(s, &s->frame[k], x, y, 1);
 
-    if (!reaches(s, &at, 0) ||
+    if (!rf_stack_reaches(s, &at, 0) ||
         rf_stack_moves(rf_stack_moving_row(s, k, y), rf_stack_moving_column(s, x)))
         return false;
     pixel_at(s, &s->frame[k], out, at.x, at.y);

@@ -192,7 +192,17 @@ void rf_stack_guide(struct refocus_stack *s, const struct rf_stack_line *line, i
            s->frame[k].rgb + 3 * ((size_t)v * (size_t)s->width + (size_t)u), 3);
 }
 
-/* The colour of the frame that costs least, where depth may change. */
+/* Whether frame k and those beside it in focus show the place of a sample. */
+static bool is_shown(const struct refocus_stack *s, const struct rf_stack_line *line, int k, int x)
+{
+    for (int i = k - 1; i <= k + 1; i++)
+        if (i >= 0 && i < s->count && !rf_stack_reaches(s, &line[i], x))
+            return false;
+    return true;
+}
+
+/* The colour of the frame that costs least, where depth may change. Beyond the border of a frame
+ * its sharpness is repeated: if the least cost is such a one's, or may be, nothing was measured. */
 static void guide_row(struct refocus_stack *s, int y)
 {
     struct rf_stack_line line[REFOCUS_STACK_MOST_FRAMES];
@@ -205,7 +215,10 @@ static void guide_row(struct refocus_stack *s, int y)
 
         for (int k = 1; k < s->depths; k++)
             best = cost[k] < cost[best] ? k : best;
-        rf_stack_guide(s, line, (best + s->sub / 2) / s->sub, x, y);
+        best = (best + s->sub / 2) / s->sub;
+        rf_stack_guide(s, line, best, x, y);
+        if (!is_shown(s, line, best, x))
+            s->sure[i] = 0;
     }
 }
 

@@ -186,6 +186,8 @@ struct rf_stack_line {
 struct rf_stack_line rf_stack_line(const struct refocus_stack *stack,
                                    const struct rf_stack_frame *frame, double x, double y,
                                    double step);
+/* Whether a frame shows place x of a line. */
+bool rf_stack_reaches(const struct refocus_stack *stack, const struct rf_stack_line *line, int x);
 /* The lines of a row of samples in all frames. */
 void rf_stack_sample_lines(const struct refocus_stack *stack, struct rf_stack_line *line, int y);
 /* The guide of a sample becomes what frame k shows there. */

@@ -113,6 +113,29 @@ static void undoes_breathing_and_shake(void **state)
     }
 }
 
+/* The frame that is focused on the right surface does not show its right end, and ends where that
+ * is flat: the other frames, which show texture out of focus there, are not taken for sharp. */
+static void measures_nothing_beyond_the_border(void **state)
+{
+    static const struct scene scenes[] = {
+        {.left = 0, .right = 4, .flat = 1, .shift_x = 14},
+        {.left = 0, .right = 4, .flat = 1, .shift_x = 14, .noise = 2},
+        {.left = 0, .right = 4, .flat = 1, .shift_x = 10}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+        const double d = scenes[i].right / (FRAMES - 1);
+        int wrong = 0;
+
+        draw(&scenes[i]);
+        run(NULL, NULL, REFOCUS_STACK_ALIGN_SIMILARITY);
+        for (int y = 20; y < 76; y++)
+            for (int x = 132; x < W; x++)
+                wrong += fabs(disparity[y * W + x] / 65535.0 - d) > 0.1;
+        assert_true(wrong < 12 * 56 / 10);
+    }
+}
+
 /* The first frame is sharp on the left, but shows nothing of the first six columns, nor the second
  * one of the first three: these are as in the reference, not smeared from beside. */
 static void covers_the_border(void **state)
@@ -319,6 +342,7 @@ int main(void)
         cmocka_unit_test(takes_positions),
         cmocka_unit_test(tells_disorder),
         cmocka_unit_test(undoes_breathing_and_shake),
+        cmocka_unit_test(measures_nothing_beyond_the_border),
         cmocka_unit_test(covers_the_border),
         cmocka_unit_test(fills_what_is_flat),
         cmocka_unit_test(is_smooth_where_nothing_is_measured),
