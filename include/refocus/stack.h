@@ -174,6 +174,10 @@ REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refo
  * in place of the above, by the best of six rho. Two frames have one rho for all of the photo:
  * their focus should be on the nearest and the farthest surface.
  *
+ * Frames of another exposure or white than the reference's get those of it, a channel's gain being
+ * the median over blocks of the picture, 24 across, of the ratio of mean light (sRGB), of blocks
+ * that are neither dark nor clipped nor vary by more than 3/10; differences below 1/50 are left.
+ *
  * Where the mean of colour over a window, a tenth of the photo wide, is another one than in the
  * reference, something has moved: such a frame is not used there, and depth is filled from around
  * it. A blur wider than the window may be taken for movement; what moves and has the colour of what

@@ -131,6 +131,8 @@ void rf_stack_measure_colour(const struct refocus_stack *stack, struct rf_stack_
 /* How far the farthest corner is moved, in pixels. */
 double rf_similarity_reach(const struct rf_similarity *s, int width, int height);
 
+/* Frames that are aligned get the exposure of the reference. */
+void rf_stack_match_exposure(struct refocus_stack *stack);
 /* Finds what moves, in frames that are aligned. */
 void rf_stack_find_moving(struct refocus_stack *stack);
 /* A row of the photo in the mask of what moves in a frame; NULL: nothing moves. */

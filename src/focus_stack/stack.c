@@ -338,6 +338,7 @@ static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
     own->reference = s->frame[s->still].added;
     rf_stack_align(s, s->still);
     own->alike = (float)s->alike;
+    rf_stack_match_exposure(s);
     rf_stack_find_moving(s);
     s->sub = rf_stack_sub(s->count);
     if ((s->count - 1) * s->sub >= s->labels) /* more frames were announced than came */

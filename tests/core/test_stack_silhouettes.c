@@ -16,6 +16,7 @@ enum { W = 320, H = 120, FRAMES = 5, RADIUS = 8, LEFT = 140, RIGHT = 180, PIXELS
 static double light[2][PIXELS]; /* linear: the background's and the bar's */
 static uint8_t frame[3 * PIXELS], photo[3 * PIXELS];
 static uint16_t disparity[PIXELS];
+static double exposure[FRAMES] = {1, 1, 1, 1, 1};
 
 static bool in_bar(int x)
 {
@@ -80,7 +81,7 @@ static void draw(int k)
         const double back = spread(0, i % W, i / W, RADIUS * away, &whole);
         const double bar = spread(1, i % W, i / W, RADIUS * (1 - away), &coverage);
 
-        memset(frame + 3 * i, code_of(bar + (1 - coverage) * back), 3);
+        memset(frame + 3 * i, code_of(exposure[k] * (bar + (1 - coverage) * back)), 3);
     }
 }
 
@@ -192,6 +193,29 @@ static void tells_which_end_is_far(void **state)
     assert_true(misplaced() > PIXELS / 2);
 }
 
+/* A camera that measures the light for each frame: tones are those of the reference. */
+static void matches_exposures(void **state)
+{
+    static const double metered[FRAMES] = {0.85, 1.1, 1, 0.9, 1.2};
+    const double even[FRAMES] = {1, 1, 1, 1, 1};
+    struct refocus_stack_result result;
+
+    (void)state;
+    draw_surfaces(1);
+    memcpy(exposure, metered, sizeof exposure);
+    result = run_order(far_first, REFOCUS_STACK_ORDER_ADDED, true);
+    assert_int_equal(result.reference, 3);
+    assert_true(result.moving == 0);
+    assert_true(misplaced() < H);
+    assert_true(error_beside() < 3); /* 8 without */
+    for (int y = 8; y < H; y += 16) {
+        const int i = y * W + (LEFT + RIGHT) / 2;
+
+        assert_in_range(photo[3 * i], code_of(light[1][i]) - 2, code_of(light[1][i]) + 2);
+    }
+    memcpy(exposure, even, sizeof exposure);
+}
+
 /* The bar is five times as bright as white: none of its light that is blurred over the background
  * stays there, although nobody knows how much it is. */
 static void leaves_no_disc_of_what_is_clipped(void **state)
@@ -213,6 +237,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ends_at_silhouettes),
         cmocka_unit_test(tells_which_end_is_far),
+        cmocka_unit_test(matches_exposures),
         cmocka_unit_test(leaves_no_disc_of_what_is_clipped),
     };
 
