@@ -17,7 +17,7 @@
 enum {
     ACROSS = 24, /* blocks across and down at the most */
     BLOCKS = ACROSS * ACROSS,
-    LEAST_BLOCKS = 24, /* what fewer tell is chance */
+    LEAST_BLOCKS = 24, /* fewer may tell so by chance */
     LEAST_SIDE = 16,   /* pixels of a block that are looked at, across and down, or more */
     CLIPPED = 243,     /* codes from here on count as clipped, 1 / FEW of a block at the most */
     DARK = 4096 / 100, /* light below which a block tells nothing, Q12 */
