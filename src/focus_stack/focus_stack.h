@@ -164,6 +164,8 @@ void rf_stack_silhouettes(struct refocus_stack *stack);
 /* Depth that was not measured becomes that of the sure samples around it; votes go along rows and
  * then columns, or columns first. */
 void rf_stack_fill(struct refocus_stack *stack, bool columns_first);
+/* Depth along silhouettes loses its combs and teeth. */
+void rf_stack_median(struct refocus_stack *stack);
 /* Depth that was not measured becomes smooth between what was. */
 void rf_stack_smooth(struct refocus_stack *stack);
 

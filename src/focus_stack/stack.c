@@ -352,6 +352,8 @@ static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
     direct(s, own);
     if (s->count > 2)
         rf_stack_silhouettes(s);
+    if (s->count > 3)
+        rf_stack_median(s);
     rf_stack_smooth(s);
     write_rows(s, own);
     own->moving = (float)((double)s->moving / ((double)s->columns * s->rows));
