@@ -196,7 +196,8 @@ REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refo
  * Windows of sharpness take the silhouette of a surface for part of what is behind. So where depths
  * that are a quarter of all apart lie within 8 samples (not with two frames), edges of the frame
  * that is focused on the nearer one count, and votes are counted once more, those for the nearer
- * side by half.
+ * side by half. With more than three frames depth along silhouettes is then the median of 9 x 9
+ * samples, weighted by how alike their colours are (Ma et al. 2013).
  *
  * In the photo, the blur of nearer surfaces lies over what is in focus behind. With F and A the
  * light and the coverage of the pixels around, each spread over its circle of confusion, a pixel
