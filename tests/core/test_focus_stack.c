@@ -132,7 +132,7 @@ static void measures_nothing_beyond_the_border(void **state)
         for (int y = 20; y < 76; y++)
             for (int x = 132; x < W; x++)
                 wrong += fabs(disparity[y * W + x] / 65535.0 - d) > 0.1;
-        assert_true(wrong < 12 * 56 / 10);
+        assert_true(wrong < 12 * 56 / 20);
     }
 }
 
