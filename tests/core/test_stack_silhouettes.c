@@ -212,7 +212,7 @@ static void tells_which_end_is_far(void **state)
             assert_int_equal(shuffled[result.order[k] - 1], k);
         assert_true(misplaced() < H);
     }
-    /* Frames with positions, and those that come far end first, are taken as they are. */
+    /* Frames with positions, and those that are said to come far end first, stay as they are. */
     assert_true(run_order(near_first, REFOCUS_STACK_ORDER_EITHER, true).direction == 0);
     assert_true(misplaced() < H);
     assert_true(run_order(near_first, REFOCUS_STACK_ORDER_ADDED, false).direction == 0);
