@@ -43,7 +43,7 @@ SINKS = {'window': ['window'], 'v4l2:/dev/video9': ['v4l2:/dev/none'],
          'raw:FILE[,FORMAT]': ['raw:out.raw'] + ['raw:out.raw,' + name for name in RAW],
          'frames-%04d.png': ['out-%d.png', 'out-%d.jpg', 'out-%d.ppm'], 'null': ['null']}
 REFUSED_SINKS = {'v4l2:/dev/none': (1, 'it is not there'),
-                 'pipewire:none': (1, 'no PipeWire runs for this user')}
+                 'pipewire:none': (1, 'no PipeWire runs for this user|modules are missing; install')}
 os.environ['PIPEWIRE_REMOTE'] = 'no such socket'
 
 HAS_OPENCV = b'OpenCV' in subprocess.run([REFOCUS, '--version'], capture_output=True).stdout
@@ -238,7 +238,7 @@ def check_run(camera, form, out, args, refused):
         lines = done.stderr.decode().splitlines()
         if refused:
             if (done.returncode, len(lines), done.stdout) != (refused[0], 1, b'') or \
-                    not re.match(r'refocus: .+: .+', lines[0]) or refused[1] not in lines[0]:
+                    not re.match(r'refocus: .+: .+', lines[0]) or not re.search(refused[1], lines[0]):
                 return 'exit %d, %r; not refused with %d, %r' % (done.returncode, lines, *refused)
             return None
         if done.returncode != 0 or lines:
