@@ -6,6 +6,7 @@ Scenes are those in examples/data, unless REFOCUS_SCENES names a folder; path-tr
 camera are taken from the folder that REFOCUS_CAMERA_SCENES names, if it is there."""
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -33,15 +34,43 @@ def views(folder):
             if gt['K'] == K and not gt['blades'] and (folder / gt['file']).is_file()]
 
 
-def score(refocus, folder, photo, depth):
-    """Mean PSNR over the focus distances."""
+def score(refocus, folder, photo, depth, lens=lambda focus: (focus, K)):
+    """Mean PSNR over the focus distances; `lens` gives focus and K on the scale of the depth."""
     psnr = []
     for focus, reference in views(folder):
+        at, blur = lens(focus)
         report = json.loads(run(refocus, 'compare', photo, '--depth', depth, '--reference',
-                                reference, '--focus', focus, '--blur', K, '--methods', 'sweep',
-                                '--depth-edges', 'as-given', '--json'))
+                                reference, '--focus', min(max(at, 0), 1), '--blur', blur,
+                                '--methods', 'sweep', '--depth-edges', 'as-given', '--json'))
         psnr += [m['psnr'] for m in report['methods'] if m['method'] == 'sweep']
     return sum(psnr) / len(psnr)
+
+
+def aperture_rows(refocus, folder, work):
+    """The pinhole's photo and a reference, focused on the nearest or the farthest surface."""
+    pinhole, exact = folder / 'allfocus.png', folder / 'disparity.png'
+    pair, depth = [work / 'narrow.jpg', work / 'wide.jpg'], work / 'depth.png'
+    nearest = max(focus for focus, _ in views(folder))
+    lines = []
+    for focus, reference in views(folder):
+        if focus not in (0, nearest):
+            continue
+        which = 'nearest' if focus else 'farthest'
+        for picture, jpeg in zip((pinhole, reference), pair):
+            run(refocus, 'render', picture, '--depth', exact, '--blur', 0, '--jpeg-quality', 95,
+                '-o', jpeg)
+        report = json.loads(run(refocus, 'depth', '--focal-stack', *pair, '--in-focus', which,
+                                '-o', depth, '--json'))
+        blur = float(re.search(r'up to ([0-9.]+) pixels$', report['evidence'][-1])[1])
+
+        def lens(at, end=focus, blur=blur):
+            return (1 - K * (end - at) / blur if end else K * at / blur), blur
+        scores = [score(refocus, folder, pinhole, exact),
+                  score(refocus, folder, pinhole, depth, lens)]
+        lines.append([folder.name, which, *('%.2f' % s for s in scores), '%.0f' % blur,
+                      '%.1f' % (K * (focus or 1))])
+        print(*lines[-1], file=sys.stderr, flush=True)
+    return lines
 
 
 def row(refocus, folder, what, frames, work, *options):
@@ -90,7 +119,7 @@ def main():
     refocus = Path(arguments[0]).resolve() / 'platform/cli/refocus'
     folders, where = pages.scenes(SCENES)
     camera = os.environ.get('REFOCUS_CAMERA_SCENES')
-    lines, few, photos = [], [], []
+    lines, few, photos, apertures = [], [], [], []
     with tempfile.TemporaryDirectory() as name:
         work = Path(name)
         for folder in folders:
@@ -107,10 +136,12 @@ def main():
                 frames = [stack / 'static' / f'{k}.jpg' for k in range(FRAMES)]
             few += [row(refocus, folder, f'{len(numbers)} of them', [frames[k] for k in numbers],
                         work, '--reference', 1) for numbers in FEW]
+            apertures += aperture_rows(refocus, folder, work)
             if stack_photos.HERE:
                 photos += stack_photos.photos(refocus, folder, 'path-traced' if stack and
                                               stack.is_dir() else 'rendered', frames, work)
-    text = TEXT % (where, table(HEAD, lines), table(HEAD, few), table(PHOTO_HEAD, photos))
+    text = TEXT % (where, table(HEAD, lines), table(HEAD, few), table(PHOTO_HEAD, photos),
+                   table(APERTURES_HEAD, apertures))
     if '--check' in sys.argv:
         pages.check(PAGE, text, 'tests/pages.sh BUILD stack')
     else:
@@ -119,6 +150,8 @@ def main():
 
 HEAD = ('scene', 'stack', 'PSNR, both exact', 'PSNR, pinhole as JPEG', 'PSNR, depth of the stack',
         'PSNR, photo of the stack', 'PSNR, both of the stack')
+APERTURES_HEAD = ('scene', 'in focus', 'PSNR, exact depth', 'PSNR, depth of the pair', 'blur found',
+                  'blur of the whole range')
 PHOTO_HEAD = ('scene', 'stack', 'photo', 'PSNR', 'PSNR, luminance', 'PSNR, everywhere')
 TEXT = '''# Depth and photo of a focus stack
 
@@ -179,6 +212,20 @@ The photo in focus everywhere beside the pinhole's, ten pixels and more away fro
 With *exact depth* each pixel is of the frame that is focused nearest to it: no choice of frames is
 better. Its colour and that of enfuse are interpolated from half the size, that of the stack follows luma. `enfuse` 4.2 with
 `--exposure-weight=0 --saturation-weight=0 --contrast-weight=1 --hard-mask`.
+
+%s
+
+Two frames of one focus and several apertures (`--in-focus`): the pinhole's photo and the path-traced one at K = 20,
+focused on the nearest surface of the references or on the farthest, both as JPEGs of quality 95. The depth of the pair is
+refocused with the pinhole's photo; its blur is the K of its range, in pixels, beside that from the focus to the other end of
+the disparities, where there need be no surface. Surfaces nearer than the nearest focus are taken for such as lie
+behind it. Constants were chosen by these and six pairs with noise: squares and absolute differences, windows of 5 or of 1,
+9 and 17, noise of 16 to 256 and half and double the price of steps lie within .15 dB in the mean, so that the choice tells
+little of the scenes. Without means that are made the same nightlights loses 5 dB, without the bound for what is clipped
+.2 in the mean. 18 real pairs of cameras (f/16 with f/2.8 or f/1.8; not in the repository) showed how to align, how samples grow
+and what is clipped; their depth looks right but for leaves that the wind moved, two pairs whose camera moved between the
+shots, and what is beside places that the wide aperture overexposed. Tried and left out: discs that leave out what is nearer,
+in a second pass (+.5 dB on fence, -.6 on portrait).
 
 %s'''
 

@@ -10,9 +10,14 @@
  * (Huber's function), so that what moves has little say. Sums are integers; the few steps in double
  * precision are single operations that IEEE rounds alike everywhere.
  *
+ * Frames of several apertures differ by more: what is out of focus is another picture. There
+ * residuals beyond that bound do not count, so that what is in focus decides. Wide apertures give
+ * less light to the corners: the gain may fall off with the squared distance from the middle.
+ *
  * Where frames are not alike after that, a camera has moved by more than the coarsest picture lets
  * a step see: then all shifts of that picture are looked at first.
  */
+#include "focus_stack/align.h"
 #include "focus_stack/focus_stack.h"
 
 #include <math.h>
@@ -20,9 +25,7 @@
 #include <string.h>
 
 enum {
-    UNKNOWNS = 6, /* e, f, gain, bias */
-    STEPS = 10,   /* at each level */
-    BORDER = 2,
+    STEPS = 10,      /* at each level */
     LEAST_SIDE = 16, /* least side of a level that is used */
     SEARCHED = 32,   /* least side of a level whose shifts are looked at */
 };
@@ -33,25 +36,13 @@ enum {
 /* A shift is taken that makes them alike at least so much: below, it fits by chance. */
 #define LEAST_ALIKE 0.5
 
-/* A level of two pictures; c is about its middle. */
-struct level {
-    const uint16_t *reference, *frame;
-    int16_t *warped; /* -1: outside of the frame */
-    int width, height;
-};
-
-struct sums {
-    int64_t left[UNKNOWNS][UNKNOWNS], right[UNKNOWNS];
-    int64_t residual, pixels;
-};
-
 static double middle(int size)
 {
     return 0.5 * (size - 1);
 }
 
 /* Samples of the frame where the similarity puts those of the reference. */
-static void warp(const struct level *l, const struct rf_similarity *s)
+static void warp(const struct rf_align_level *l, const struct rf_similarity *s)
 {
     const double mx = middle(l->width), my = middle(l->height);
     const int64_t dx = llrint(s->c[0] * 65536), dy = llrint(s->c[1] * 65536);
@@ -78,75 +69,6 @@ static void warp(const struct level *l, const struct rf_similarity *s)
                                16);
         }
     }
-}
-
-static void add_pixel(struct sums *sums, const struct level *l, int x, int y, int clamp)
-{
-    const ptrdiff_t i = (ptrdiff_t)y * l->width + x, w = l->width;
-    const uint16_t *r = l->reference + i;
-    const int16_t *f = l->warped + i;
-    int32_t row[UNKNOWNS], residual;
-
-    if (f[0] < 0 || f[-1] < 0 || f[1] < 0 || f[-w] < 0 || f[w] < 0)
-        return;
-    /* Four times the gradient, and twice the place. */
-    const int gx = f[1] - f[-1] + r[1] - r[-1], gy = f[w] - f[-w] + r[w] - r[-w];
-    const int px = 2 * x - (l->width - 1), py = 2 * y - (l->height - 1);
-
-    residual = r[0] - f[0];
-    row[0] = (gx * px + gy * py) / 8;
-    row[1] = (gy * px - gx * py) / 8;
-    row[2] = gx;
-    row[3] = gy;
-    row[4] = r[0];
-    row[5] = 64;
-    sums->residual += abs(residual);
-    sums->pixels++;
-    residual = residual < -clamp ? -clamp : residual > clamp ? clamp : residual;
-    for (int a = 0; a < UNKNOWNS; a++) {
-        for (int b = 0; b <= a; b++)
-            sums->left[a][b] += (int64_t)row[a] * row[b];
-        sums->right[a] += (int64_t)row[a] * residual;
-    }
-}
-
-static void add_up(struct sums *sums, const struct level *l, int clamp)
-{
-    memset(sums, 0, sizeof *sums);
-    for (int y = BORDER; y < l->height - BORDER; y++)
-        for (int x = BORDER; x < l->width - BORDER; x++)
-            add_pixel(sums, l, x, y, clamp);
-}
-
-/* Gauss's elimination with the diagonal as pivots: the matrix is symmetric and positive. */
-static bool solve(const struct sums *sums, double out[UNKNOWNS])
-{
-    double m[UNKNOWNS][UNKNOWNS + 1];
-
-    for (int a = 0; a < UNKNOWNS; a++) {
-        for (int b = 0; b < UNKNOWNS; b++)
-            m[a][b] = (double)(b <= a ? sums->left[a][b] : sums->left[b][a]);
-        m[a][UNKNOWNS] = (double)sums->right[a];
-    }
-    for (int a = 0; a < UNKNOWNS; a++) {
-        /* Less than 1e-9 of what it was: the picture does not say. */
-        if (!(m[a][a] > 1e-9 * (double)sums->left[a][a]))
-            return false;
-        for (int b = a + 1; b < UNKNOWNS; b++) {
-            const double factor = m[b][a] / m[a][a];
-
-            for (int c = a; c <= UNKNOWNS; c++)
-                m[b][c] = m[b][c] - factor * m[a][c];
-        }
-    }
-    for (int a = UNKNOWNS - 1; a >= 0; a--) {
-        double value = m[a][UNKNOWNS];
-
-        for (int c = a + 1; c < UNKNOWNS; c++)
-            value = value - m[a][c] * out[c];
-        out[a] = value / m[a][a];
-    }
-    return true;
 }
 
 /* first, then second: places go through `second` before. */
@@ -180,28 +102,28 @@ double rf_similarity_reach(const struct rf_similarity *s, int width, int height)
 }
 
 /* Mean of the absolute residuals, in codes of Q4, or -1 where the pictures hardly overlap. */
-static double residual_of(const struct level *l, const struct rf_similarity *s, struct sums *sums,
-                          int clamp)
+static double residual_of(const struct rf_align_level *l, const struct rf_similarity *s,
+                          struct rf_align_sums *sums, int clamp)
 {
     warp(l, s);
-    add_up(sums, l, clamp);
+    rf_align_add_up(sums, l, clamp);
     return 4 * sums->pixels > (int64_t)l->width * l->height
                ? (double)sums->residual / (double)sums->pixels
                : -1;
 }
 
 /* Improves a similarity at one level; returns whether it makes sense. */
-static bool refine(const struct level *l, struct rf_similarity *s)
+static bool refine(const struct rf_align_level *l, struct rf_similarity *s)
 {
     int clamp = INT16_MAX;
 
     for (int i = 0; i < STEPS; i++) {
         struct rf_similarity step = {{1, 0}, {0, 0}};
-        double x[UNKNOWNS], mean;
-        struct sums sums;
+        double x[RF_ALIGN_UNKNOWNS], mean;
+        struct rf_align_sums sums;
 
         mean = residual_of(l, s, &sums, clamp);
-        if (mean < 0 || !solve(&sums, x))
+        if (mean < 0 || !rf_align_solve(&sums, l->unknowns, x))
             return false;
         clamp = (int)(3 * mean) + 8;
         /* row[0] is 4 * 2 / 8 = 1 of the derivative, row[2] four of it. */
@@ -218,15 +140,18 @@ static bool refine(const struct level *l, struct rf_similarity *s)
     return true;
 }
 
-static struct level level_of(const struct refocus_stack *s, const struct rf_stack_frame *reference,
-                             const struct rf_stack_frame *frame, int i)
+static struct rf_align_level level_of(const struct refocus_stack *s,
+                                      const struct rf_stack_frame *reference,
+                                      const struct rf_stack_frame *frame, int i)
 {
     /* Frames before the reference and behind it are aligned at the same time. */
-    const struct level l = {.reference = reference->small[i],
-                            .frame = frame->small[i],
-                            .warped = frame > reference ? (int16_t *)s->moved : s->sum,
-                            .width = s->width / s->small_by >> i,
-                            .height = s->height / s->small_by >> i};
+    const struct rf_align_level l = {.reference = reference->small[i],
+                                     .frame = frame->small[i],
+                                     .warped = frame > reference ? (int16_t *)s->moved : s->sum,
+                                     .width = s->width / s->small_by >> i,
+                                     .height = s->height / s->small_by >> i,
+                                     .unknowns =
+                                         RF_ALIGN_UNKNOWNS - (s->kind == REFOCUS_STACK_FOCUS)};
 
     return l;
 }
@@ -239,7 +164,7 @@ static void rescale(struct rf_similarity *s, double by)
 }
 
 /* Correlation of a frame with its neighbour at a similarity of places in the finest picture. */
-static double likeness(const struct level *finest, const struct rf_similarity *s)
+static double likeness(const struct rf_align_level *finest, const struct rf_similarity *s)
 {
     warp(finest, s);
     return rf_stack_correlation(finest->reference, finest->warped, finest->width, finest->width,
@@ -251,7 +176,7 @@ static void refine_from(const struct refocus_stack *s, const struct rf_stack_fra
                         const struct rf_stack_frame *frame, int first, struct rf_similarity *found)
 {
     for (int i = first; i >= 0; i--) {
-        const struct level l = level_of(s, reference, frame, i);
+        const struct rf_align_level l = level_of(s, reference, frame, i);
         struct rf_similarity at_level = *found;
 
         if (l.width < LEAST_SIDE || l.height < LEAST_SIDE)
@@ -270,10 +195,10 @@ static struct rf_similarity between(const struct refocus_stack *s,
                                     const struct rf_stack_frame *reference,
                                     const struct rf_stack_frame *frame)
 {
-    const struct level finest = level_of(s, reference, frame, 0);
+    const struct rf_align_level finest = level_of(s, reference, frame, 0);
     const struct rf_similarity none = {{1, 0}, {0, 0}};
     struct rf_similarity found = none, shifted;
-    struct sums sums;
+    struct rf_align_sums sums;
     double alike;
     int coarsest = RF_STACK_LEVELS - 1;
 
@@ -291,7 +216,7 @@ static struct rf_similarity between(const struct refocus_stack *s,
            (finest.width >> coarsest < SEARCHED || finest.height >> coarsest < SEARCHED))
         coarsest--;
 
-    const struct level coarse = level_of(s, reference, frame, coarsest);
+    const struct rf_align_level coarse = level_of(s, reference, frame, coarsest);
 
     shifted = none;
     rf_stack_best_shift(coarse.reference, coarse.frame, coarse.width, coarse.height, shifted.t);
@@ -309,7 +234,7 @@ static struct rf_similarity between(const struct refocus_stack *s,
 void rf_stack_warp(const struct refocus_stack *s, const struct rf_stack_frame *frame, int level,
                    const uint16_t *in, int16_t *out)
 {
-    struct level l = level_of(s, frame, frame, level);
+    struct rf_align_level l = level_of(s, frame, frame, level);
     struct rf_similarity similarity = frame->from_reference;
 
     l.frame = in;
@@ -338,7 +263,7 @@ static double likeness_of(const struct refocus_stack *s, const struct rf_stack_f
     double most = 0;
 
     for (int i = 0; i < RF_STACK_LEVELS - 1; i++) {
-        const struct level l = level_of(s, reference, frame, i);
+        const struct rf_align_level l = level_of(s, reference, frame, i);
         struct rf_similarity at_level = *found;
 
         rescale(&at_level, 1.0 / (1 << i));

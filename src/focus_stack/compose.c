@@ -161,6 +161,35 @@ void rf_stack_compose_row(const struct refocus_stack *s, uint8_t *out, const uin
     }
 }
 
+/* Apertures have fewer samples than pixels: a pixel gets the depth of the four samples around it,
+ * weighted by how near they are and how alike in colour (Kopf et al. 2007). */
+static void upsample_row(const struct refocus_stack *s, uint16_t *depth, int y)
+{
+    enum { EDGE = 8 * 8, MOST = 1 << 12 }; /* squared codes that halve a weight; weights, Q4 */
+    const uint8_t *pixel = s->frame[0].rgb + 3 * (ptrdiff_t)y * s->width;
+    const int py = (2 * y + 1) * 128 / s->reduced - 128; /* Q8 samples */
+
+    for (int x = 0; x < s->width; x++, pixel += 3) {
+        const int px = (2 * x + 1) * 128 / s->reduced - 128;
+        uint64_t sum = 0, weights = 0;
+
+        for (int i = 0; i < 4; i++) {
+            const int u = i & 1 ? px & 255 : 256 - (px & 255);
+            const int v = i & 2 ? py & 255 : 256 - (py & 255);
+            const int column = rf_stack_clamp((px >> 8) + (i & 1), s->columns - 1);
+            const int row = rf_stack_clamp((py >> 8) + (i >> 1), s->rows - 1);
+            const size_t at = (size_t)row * (size_t)s->columns + (size_t)column;
+            const int d = rf_stack_difference(pixel, s->guide + 3 * at);
+            const uint64_t weight =
+                (uint64_t)(u * v + 1) * (uint64_t)(MOST * EDGE / (EDGE + d * d));
+
+            sum += weight * s->depth[at];
+            weights += weight;
+        }
+        depth[x] = (uint16_t)(sum / weights);
+    }
+}
+
 void rf_stack_depth_row(const struct refocus_stack *s, uint16_t *depth, uint8_t *sure, int y)
 {
     const int row = rf_stack_clamp(y / s->reduced, s->rows - 1);
@@ -172,4 +201,6 @@ void rf_stack_depth_row(const struct refocus_stack *s, uint16_t *depth, uint8_t 
         depth[x] = (uint16_t)(in[column] / s->sub);
         sure[x] = s->sure[(size_t)row * (size_t)s->columns + (size_t)column];
     }
+    if (s->kind != REFOCUS_STACK_FOCUS && s->reduced > 1)
+        upsample_row(s, depth, y);
 }

@@ -7,7 +7,8 @@ enum {
     BAND = 64, /* rows that a worker takes at a time */
     SQUARES = 3,
     /* Squares of sharpness, in quarters of a squared code: */
-    NOISE = 1600, /* 20 codes of second differences: texture that noise hides */
+    NOISE = 1600,     /* 20 codes of second differences: texture that noise hides */
+    ERROR_NOISE = 64, /* 4 codes of what a blur is wrong by, which noise and rounding make */
     /* The least sharp frame in parts of the sharpest, Q8, since noise is alike in all frames: */
     SURE = 64,    /* depth is sure down from here; */
     UNSURE = 128, /* depth is unknown up from here */
@@ -75,15 +76,15 @@ static uint32_t square(uint16_t sharpness)
 
 static uint32_t *columns_of(const struct refocus_stack *s, int worker, int i, int k)
 {
-    return s->column + (size_t)((worker * SQUARES + i) * s->most + k) * (size_t)s->columns;
+    return s->column + (size_t)((worker * SQUARES + i) * s->planes + k) * (size_t)s->columns;
 }
 
 /* The sums of columns move from row y - 1 to row y, or are begun there. */
 static void add_row(const struct refocus_stack *s, int worker, int y, bool begin)
 {
     for (int i = 0; i < SQUARES; i++)
-        for (int k = 0; k < s->count; k++) {
-            const uint16_t *in = s->frame[k].sharpness;
+        for (int k = 0; k < s->planes; k++) {
+            const uint16_t *in = s->plane[k];
             const size_t w = (size_t)s->columns;
             uint32_t *restrict sum = columns_of(s, worker, i, k);
             const int first = begin ? y - reach[i] : y + reach[i];
@@ -117,16 +118,33 @@ static void add_costs(const struct refocus_stack *s, uint8_t *cost, const uint32
         cost[k] = (uint8_t)(cost[k] + (uint64_t)(most - mean[k]) * 85 / (most + NOISE));
 }
 
-static uint8_t sure_of(const struct refocus_stack *s, const uint32_t *mean)
+/* Costs by mean squares of errors: 0 of the least one, below 85. */
+static void add_error_costs(const struct refocus_stack *s, uint8_t *cost, const uint32_t *mean)
 {
-    uint64_t least = mean[0], most = mean[0];
+    uint32_t least = mean[0], most = mean[0];
 
-    for (int k = 1; k < s->count; k++) {
+    for (int k = 1; k < s->planes; k++) {
         least = mean[k] < least ? mean[k] : least;
         most = mean[k] > most ? mean[k] : most;
     }
 
-    const uint64_t noise = 2 * s->noise > NOISE / 4 ? 2 * s->noise : NOISE / 4;
+    const uint64_t scale = (UINT64_C(85) << 24) / (most + ERROR_NOISE);
+
+    for (int k = 0; k < s->planes; k++)
+        cost[k] = (uint8_t)(cost[k] + ((mean[k] - least) * scale >> 24));
+}
+
+static uint8_t sure_of(const struct refocus_stack *s, const uint32_t *mean)
+{
+    uint64_t least = mean[0], most = mean[0], noise = ERROR_NOISE;
+
+    for (int k = 1; k < s->planes; k++) {
+        least = mean[k] < least ? mean[k] : least;
+        most = mean[k] > most ? mean[k] : most;
+    }
+    if (s->kind == REFOCUS_STACK_FOCUS)
+        noise = 2 * s->noise > NOISE / 4 ? 2 * s->noise : NOISE / 4;
+
     const int ratio = (int)((least + noise) * 256 / (most + noise));
 
     return (uint8_t)rf_stack_clamp(255 * (UNSURE - ratio) / (UNSURE - SURE), 255);
@@ -152,7 +170,7 @@ static void cost_row(struct refocus_stack *s, int worker, int y)
         uint64_t sum[REFOCUS_STACK_MOST_FRAMES] = {0};
         uint32_t mean[REFOCUS_STACK_MOST_FRAMES];
 
-        for (int k = 0; k < s->count; k++) {
+        for (int k = 0; k < s->planes; k++) {
             column[k] = columns_of(s, worker, i, k);
             for (int x = -r - 1; x < r; x++)
                 sum[k] += column[k][rf_stack_clamp(x, w - 1)];
@@ -160,12 +178,14 @@ static void cost_row(struct refocus_stack *s, int worker, int y)
         for (int x = 0; x < w; x++) {
             const int right = rf_stack_clamp(x + r, w - 1), left = rf_stack_clamp(x - r - 1, w - 1);
 
-            for (int k = 0; k < s->count; k++) {
+            for (int k = 0; k < s->planes; k++) {
                 sum[k] += column[k][right];
                 sum[k] -= column[k][left];
                 mean[k] = mean_of(sum[k], i);
             }
-            if (s->sub > 1)
+            if (s->kind != REFOCUS_STACK_FOCUS)
+                add_error_costs(s, cost + (size_t)x * (size_t)n, mean);
+            else if (s->sub > 1)
                 rf_stack_model_costs(s, cost + (size_t)x * (size_t)n, mean);
             else
                 add_costs(s, cost + (size_t)x * (size_t)n, mean);
@@ -222,6 +242,16 @@ static void guide_row(struct refocus_stack *s, int y)
     }
 }
 
+/* The colour of the frame of the narrowest aperture. */
+static void guide_by_narrowest(struct refocus_stack *s, int y)
+{
+    struct rf_stack_line line[REFOCUS_STACK_MOST_FRAMES];
+
+    rf_stack_sample_lines(s, line, y);
+    for (int x = 0; x < s->columns; x++)
+        rf_stack_guide(s, line, 0, x, y);
+}
+
 static void cost_band(void *context, int band, int worker)
 {
     struct refocus_stack *const s = context;
@@ -230,17 +260,25 @@ static void cost_band(void *context, int band, int worker)
     for (int y = begin; y < end; y++) {
         add_row(s, worker, y, y == begin);
         cost_row(s, worker, y);
-        rf_stack_leave_out(s, y);
-        guide_row(s, y);
+        if (s->kind == REFOCUS_STACK_FOCUS) {
+            rf_stack_leave_out(s, y);
+            guide_row(s, y);
+        } else {
+            guide_by_narrowest(s, y);
+        }
     }
+}
+
+void rf_stack_sharpness(struct refocus_stack *s)
+{
+    for (int k = 0; k < s->count; k++) {
+        move(s, &s->frame[k]);
+        s->plane[k] = s->frame[k].sharpness;
+    }
+    s->planes = s->count;
 }
 
 void rf_stack_costs(struct refocus_stack *s)
 {
-    for (int k = 0; k < s->count; k++)
-        move(s, &s->frame[k]);
-    rf_stack_find_noise(s);
-    if (s->sub > 1)
-        rf_stack_model(s);
     rf_pool_run(s->pool, cost_band, s, (s->rows + BAND - 1) / BAND);
 }

@@ -19,6 +19,10 @@ enum {
     RF_STACK_MODELS = 6,
     RF_STACK_GREY = 4096, /* stands for 0 in `colour`, more than any difference below it */
     RF_STACK_LEVELS = 4,  /* pictures that frames are aligned by, each half the last */
+    RF_STACK_RADII = 24,  /* labels of apertures: radii of blur from 0 on, in samples */
+    RF_STACK_MARGIN =
+        24, /* samples by which frames go on beyond their border, RADII at the least */
+    RF_STACK_LONGER = 960, /* samples along the longer side, at the most */
 };
 
 struct rf_transfer;
@@ -54,7 +58,7 @@ struct refocus_stack {
     int most, count, reference;
     int still; /* the reference in the order of positions, once the stack is finished */
     bool finished, without_positions;
-    uint32_t align, order;
+    uint32_t align, order, kind;
     double alike;      /* the least correlation of neighbours once they are aligned */
     atomic_int moving; /* samples where something moves */
     int threads;
@@ -75,7 +79,16 @@ struct refocus_stack {
     int16_t *path;    /* rf_stack_path(): what reaches the last row and the next, each way */
     size_t path_size; /* elements, of one way */
     uint32_t *column; /* sums of a column, for each worker, square and frame */
-    uint16_t *depth;  /* a sample each, Q8 frames */
+    /* Labels cost by these planes, each in the geometry of the reference: sharpness of the frames,
+     * or errors of blur. */
+    const uint16_t *plane[REFOCUS_STACK_MOST_FRAMES];
+    int planes;
+    /* Apertures have these, too: */
+    uint16_t *error; /* a plane for each radius, Q4 codes, in the memory of `sum` */
+    uint32_t *table; /* summed areas of a frame and its margin */
+    uint16_t *code;  /* Q4, of Q12 light */
+    int farthest;    /* depth that is the end of the range, Q8 labels */
+    uint16_t *depth; /* a sample each, Q8 labels */
     uint8_t *sure;
     uint16_t *depth_row; /* one row of the photo for each worker */
     uint8_t *sure_row;
@@ -108,6 +121,11 @@ static inline int16_t *rf_stack_path(const struct refocus_stack *stack, int way)
 
 /* Luminance, sharpness and the small pictures of a frame that has its pixels. */
 void rf_stack_measure(struct refocus_stack *stack, struct rf_stack_frame *frame);
+
+/* Depth of frames of one focus and several apertures; sets `blur` and `order_margin`. */
+void rf_stack_apertures(struct refocus_stack *stack, struct refocus_stack_result *result);
+/* Finds `error`, the planes of RF_STACK_RADII labels, of frames that are aligned. */
+void rf_stack_blur_errors(struct refocus_stack *stack);
 
 /* Puts frames without positions in the order of their focus; returns order_margin of stack.h. */
 float rf_stack_find_order(struct refocus_stack *stack);
@@ -149,12 +167,16 @@ void rf_stack_model_costs(const struct refocus_stack *stack, uint8_t *cost, cons
 /* Finds `noise`, from samples that show nothing else, once frames lie on each other; 0: there is
  * hardly any. */
 void rf_stack_find_noise(struct refocus_stack *stack);
-/* Costs, guide and confidence, from the sharpness. */
+/* Sharpness of the frames as the reference sees it becomes what labels cost by. */
+void rf_stack_sharpness(struct refocus_stack *stack);
+/* Costs, guide and confidence, from the planes. */
 void rf_stack_costs(struct refocus_stack *stack);
 /* Adds up the costs along eight directions. */
 void rf_stack_aggregate(struct refocus_stack *stack);
 /* The least sum of each sample, between frames by a parabola. */
 void rf_stack_choose(struct refocus_stack *stack);
+/* Returns `disorder` of stack.h, from sharpness that has been moved to the reference. */
+float rf_stack_disorder(const struct refocus_stack *stack);
 /* Returns `direction` of stack.h, once depth is filled. */
 float rf_stack_direction(struct refocus_stack *stack);
 /* Frames without positions, and depth, become as if frames had been added in reverse. */

@@ -49,13 +49,20 @@ static void lay_out(struct refocus_stack *s, struct rf_arena *arena)
     s->sum = rf_arena_take(arena, samples * labels, 2);
     s->path_size = (size_t)(longer * PATHS * (labels + BESIDE));
     s->path = rf_arena_take(arena, longer * PATHS * (labels + BESIDE), 2 * 2);
-    s->column = rf_arena_take(arena, (uint64_t)s->columns * SQUARES * (uint64_t)s->most,
+    s->column = rf_arena_take(arena, (uint64_t)s->columns * SQUARES * (uint64_t)s->planes,
                               4 * (uint64_t)s->threads);
     s->depth = rf_arena_take(arena, samples, 2);
     s->sure = rf_arena_take(arena, samples, 1);
     s->depth_row = rf_arena_take(arena, (uint64_t)s->width, 2 * (uint64_t)s->threads);
     s->sure_row = rf_arena_take(arena, (uint64_t)s->width, (uint64_t)s->threads);
     s->transfer = rf_arena_take(arena, 1, sizeof *s->transfer);
+    if (s->kind != REFOCUS_STACK_FOCUS) {
+        const uint64_t more = 2 * RF_STACK_MARGIN + 1;
+
+        s->table =
+            rf_arena_take(arena, (uint64_t)s->columns + more, 4 * ((uint64_t)s->rows + more));
+        s->code = rf_arena_take(arena, RF_LIGHT_MAX + 1, 2);
+    }
 }
 
 static bool good(const struct refocus_stack_params *p)
@@ -64,7 +71,8 @@ static bool good(const struct refocus_stack_params *p)
            p->height <= REFOCUS_MAX_SIDE && p->frames >= REFOCUS_STACK_LEAST_FRAMES &&
            p->frames <= REFOCUS_STACK_MOST_FRAMES && p->reference >= 0 &&
            p->reference <= p->frames && p->threads >= 0 && p->threads <= RF_MAX_THREADS &&
-           p->align < REFOCUS_STACK_ALIGN_COUNT && p->order < REFOCUS_STACK_ORDER_COUNT;
+           p->align < REFOCUS_STACK_ALIGN_COUNT && p->order < REFOCUS_STACK_ORDER_COUNT &&
+           p->kind < REFOCUS_STACK_KIND_COUNT && (p->kind == REFOCUS_STACK_FOCUS || !p->reference);
 }
 
 /* The least whole number by which both sides are divided to leave at most so many samples. */
@@ -85,11 +93,19 @@ static void size(struct refocus_stack *s, const struct refocus_stack_params *p)
     s->reference = p->reference;
     s->align = p->align;
     s->order = p->order;
+    s->kind = p->kind;
     s->threads = rf_thread_count(p->threads);
     s->sub = rf_stack_sub(p->frames);
-    const int depths = (p->frames - 1) * s->sub + 1;
+    s->planes = s->kind == REFOCUS_STACK_FOCUS ? p->frames : RF_STACK_RADII;
+    const int depths =
+        s->kind == REFOCUS_STACK_FOCUS ? (p->frames - 1) * s->sub + 1 : RF_STACK_RADII;
     s->labels = depths <= 24 ? (depths + 7) / 8 * 8 : REFOCUS_STACK_MOST_FRAMES;
     s->reduced = reduction(p->width, p->height, RF_STACK_MOST_SAMPLES);
+    if (s->kind != REFOCUS_STACK_FOCUS) {
+        const int longer = p->width > p->height ? p->width : p->height;
+
+        s->reduced = (longer + RF_STACK_LONGER - 1) / RF_STACK_LONGER;
+    }
     s->columns = (p->width + s->reduced - 1) / s->reduced;
     s->rows = (p->height + s->reduced - 1) / s->reduced;
     s->small_by = reduction(p->width, p->height, SMALL_PIXELS);
@@ -143,6 +159,8 @@ void refocus_stack_destroy(struct refocus_stack **stack)
 static bool position_fits(const struct refocus_stack *s, double position)
 {
     if (isinf(position) || (s->count && isnan(position) != s->without_positions))
+        return false;
+    if (s->kind != REFOCUS_STACK_FOCUS && (isnan(position) ? s->most > 2 : position <= 0))
         return false;
     for (int k = 0; k < s->count && !isnan(position); k++)
         if (s->frame[k].position == position)
@@ -214,8 +232,19 @@ static int reference_of(const struct refocus_stack *s)
     return s->reference ? -1 : s->count / 2;
 }
 
+/* Labels of apertures are distances from the end that is in focus. */
+static uint16_t disparity_of_blur(const struct refocus_stack *s, int depth)
+{
+    const int away = 65535 * rf_stack_clamp(depth, s->farthest) / s->farthest;
+
+    return (uint16_t)(s->kind == REFOCUS_STACK_APERTURE_NEAREST ? 65535 - away : away);
+}
+
 uint16_t rf_stack_disparity(const struct refocus_stack *s, int depth)
 {
+    if (s->kind != REFOCUS_STACK_FOCUS)
+        return disparity_of_blur(s, depth);
+
     const int k = rf_stack_clamp(depth >> 8, s->count - 2);
     const double first = s->frame[0].position, range = s->frame[s->count - 1].position - first;
     const double below = s->frame[k].position, above = s->frame[k + 1].position;
@@ -241,8 +270,11 @@ static void write_row(void *context, int y, int worker)
     int measured = 0;
 
     rf_stack_depth_row(s, depth, sure, y);
-    if (r->photo)
+    if (r->photo && s->kind == REFOCUS_STACK_FOCUS)
         rf_stack_compose_row(s, r->photo + y * r->photo_stride, depth, y);
+    else if (r->photo)
+        memcpy(r->photo + y * r->photo_stride, s->frame[0].rgb + 3 * (ptrdiff_t)y * s->width,
+               3 * (size_t)s->width);
     if (r->confidence)
         memcpy(r->confidence + y * r->confidence_stride, sure, (size_t)s->width);
     for (int x = 0; x < s->width; x++)
@@ -261,46 +293,9 @@ static void write_rows(struct refocus_stack *s, struct refocus_stack_result *r)
     struct rows rows = {.stack = s, .result = r};
 
     rf_pool_run(s->pool, write_row, &rows, s->height);
-    if (r->photo)
+    if (r->photo && s->kind == REFOCUS_STACK_FOCUS)
         rf_stack_decontaminate(s, &(struct rf_stack_photo){r->photo, r->photo_stride});
     r->measured = (float)((double)rows.measured / ((double)s->width * s->height));
-}
-
-/* Whether the sharpness of a sample has two peaks, and less than half of them between. */
-static bool has_two_peaks(const struct refocus_stack *s, size_t i)
-{
-    int most = 0, left = 0;
-
-    for (int k = 0; k < s->count; k++)
-        most = s->frame[k].sharpness[i] > most ? s->frame[k].sharpness[i] : most;
-    for (int k = 0; k < s->count; k++) {
-        const int here = s->frame[k].sharpness[i];
-        int right = 0;
-
-        for (int j = k + 1; j < s->count; j++)
-            right = s->frame[j].sharpness[i] > right ? s->frame[j].sharpness[i] : right;
-        const int lower = left < right ? left : right;
-
-        if (2 * here < lower && 3 * lower > most)
-            return true;
-        left = here > left ? here : left;
-    }
-    return false;
-}
-
-/* The share of samples with two peaks of those that are sure; each thirteenth is looked at. */
-static float disorder_of(const struct refocus_stack *s)
-{
-    enum { APART = 13 };
-    const size_t samples = (size_t)s->columns * (size_t)s->rows;
-    int all = 0, wrong = 0;
-
-    for (size_t i = 0; i < samples; i += APART)
-        if (s->sure[i] >= MEASURED) {
-            all++;
-            wrong += has_two_peaks(s, i);
-        }
-    return all ? (float)wrong / (float)all : 0;
 }
 
 static bool good_result(const struct refocus_stack *s, const struct refocus_stack_result *r)
@@ -311,7 +306,7 @@ static bool good_result(const struct refocus_stack *s, const struct refocus_stac
            (!r->confidence || rf_good_stride(r->confidence_stride, w, s->height)) &&
            (!r->disparity || (!((uintptr_t)r->disparity & 1) && !(r->disparity_stride & 1) &&
                               rf_good_stride(r->disparity_stride, 2 * w, s->height))) &&
-           !r->reserved;
+           !r->reserved && !r->reserved_too;
 }
 
 /* Puts the far end first, where the order is to be told and edges tell it. */
@@ -323,29 +318,27 @@ static void direct(struct refocus_stack *s, struct refocus_stack_result *own)
         if (TELLING * own->direction <= -1)
             rf_stack_reverse(s);
     }
-    memset(own->order, 0, sizeof own->order);
-    for (int k = 0; k < s->count; k++)
-        own->order[k] = (uint8_t)s->frame[k].added;
 }
 
-static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
+static void find_depth(struct refocus_stack *s, struct refocus_stack_result *own)
 {
-    s->finished = true;
     own->order_margin = 1;
     if (s->order == REFOCUS_STACK_ORDER_FOUND && s->without_positions)
         own->order_margin = rf_stack_find_order(s);
     s->still = reference_of(s);
-    own->reference = s->frame[s->still].added;
     rf_stack_align(s, s->still);
-    own->alike = (float)s->alike;
     rf_stack_match_exposure(s);
     rf_stack_find_moving(s);
     s->sub = rf_stack_sub(s->count);
     if ((s->count - 1) * s->sub >= s->labels) /* more frames were announced than came */
         s->sub = 1;
     s->depths = (s->count - 1) * s->sub + 1;
+    rf_stack_sharpness(s);
+    rf_stack_find_noise(s);
+    if (s->sub > 1)
+        rf_stack_model(s);
     rf_stack_costs(s);
-    own->disorder = disorder_of(s);
+    own->disorder = rf_stack_disorder(s);
     rf_stack_aggregate(s);
     rf_stack_choose(s);
     rf_stack_fill(s, false);
@@ -355,6 +348,21 @@ static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
     if (s->count > 3)
         rf_stack_median(s);
     rf_stack_smooth(s);
+    own->blur = 0;
+}
+
+static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
+{
+    s->finished = true;
+    if (s->kind == REFOCUS_STACK_FOCUS)
+        find_depth(s, own);
+    else
+        rf_stack_apertures(s, own);
+    own->reference = s->frame[s->still].added;
+    own->alike = (float)s->alike;
+    memset(own->order, 0, sizeof own->order);
+    for (int k = 0; k < s->count; k++)
+        own->order[k] = (uint8_t)s->frame[k].added;
     write_rows(s, own);
     own->moving = (float)((double)s->moving / ((double)s->columns * s->rows));
     own->moved = 0;

@@ -46,7 +46,7 @@ class Usage(Case):
                       '--low-memory --parallax --region --jobs --format --resize --jpeg-quality --config --preset --settings --save-settings --strip --editable --no-editable --transfer --white -h --help --help-all',
             'depth': '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --full '
                      '--orient-depth --depth-edges --upsample --estimate --network --input-size --input-mean --input-scale '
-                     '--far-is-large --match --strokes --focal-stack --positions --reference --align --order --photo --stereo-file --side-by-side --view '
+                     '--far-is-large --match --strokes --focal-stack --positions --reference --align --order --in-focus --photo --stereo-file --side-by-side --view '
                      '--focus-at --blur --json -h --help --help-all',
             'stack': '-o --output --photo --keep --camera --steps --range --average --settle --size '
                      '--dry-run --json -h --help --help-all',

@@ -19,10 +19,11 @@ def noise(x, y):
     return (x * 7919 + y * 104729 + x * y * 31) * 2654435761 >> 16 & 255
 
 
-def mean(x, y, radius):
+def mean(x, y, radius, grain=1):
     """The texture through a lens: the mean of a square."""
     span = range(-radius, radius + 1)
-    return sum(noise(x + u, y + v) for u in span for v in span) // len(span) ** 2
+    return sum(noise((x + u) // grain, (y + v) // grain) for u in span
+               for v in span) // len(span) ** 2
 
 
 class DepthOfAStack(Case):
@@ -295,27 +296,85 @@ class DepthOfAStack(Case):
             'focus stack: no edges show which end is far; the first is taken for it'])
         os.remove('x.pgm')
 
-    def test_one_focus_and_two_apertures_are_no_stack(self):
+    def apertures(self, f_numbers, distance=4):
+        """Photos of one focus, the left half in it, the right one blurred the more the wider."""
         names = []
-        for k, f_number in enumerate((2, 8)):
-            if self.run_it('render', f'{k}.ppm', '--depth', 'depth.pgm', '--blur', '0', '-o',
-                           'j.jpg').returncode:
+        for f_number in f_numbers:
+            radius = 8 // f_number - 1
+            pictures.ppm('a.ppm', W, H, lambda x, y: (
+                mean(x, y, 0 if x < W // 2 else radius),) * 3)
+            if self.run_it('render', 'a.ppm', '--depth', 'depth.pgm', '--blur', '0',
+                           '--jpeg-quality', '100', '-o', 'j.jpg').returncode:
                 self.skipTest('a build without JPEG')
             tiff = struct.pack('<2sHIHHHIIIHHHIIHHIIIIIII', b'II', 42, 8, 1, 0x8769, 4, 1, 26, 0,
-                               2, 0x829d, 5, 1, 56, 0x9206, 5, 1, 64, 0, f_number, 1, 4, 1)
+                               2, 0x829d, 5, 1, 56, 0x9206, 5, 1, 64, 0, f_number, 1, distance, 1)
             jpeg = pictures.read_bytes('j.jpg')
-            names.append(f'aperture-{k}.jpg')
+            names.append(f'aperture-{f_number}.jpg')
             with open(names[-1], 'wb') as file:
                 file.write(jpeg[:2] + b'\xff\xe1' + struct.pack('>H', len(tiff) + 8) +
                            b'Exif\0\0' + tiff + jpeg[2:])
-        info = self.reports('info', names[1])
+        return names
+
+    def test_one_focus_and_several_apertures(self):
+        names = self.apertures((2, 4, 8))
+        info = self.reports('info', names[2])
         self.assertEqual((info['subject_distance'], info['f_number']), (4, 8))
-        self.fails(1, 'aperture-0.jpg: the frames have one focus and several apertures, which do '
-                   'not tell the side of the focus; give frames of different focus', 'depth',
-                   '--focal-stack', *names, '-o', 'x.pgm')
-        self.reports('depth', '--focal-stack', names[0], names[0], '2.ppm', '--align', 'none',
-                     '-o', 'x.pgm')
-        os.remove('x.pgm')
+        report = self.reports('depth', '--focal-stack', *names, '--align', 'none', '-o', 'd.pgm',
+                              '--photo', 'sharp.ppm')
+        self.assertEqual(report['evidence'][:2], [
+            'focus stack: 3 frames, moved by up to 0.0 pixels, in the geometry of frame 3',
+            'EXIF: the f-numbers of the frames, 2 to 8'])
+        self.assertRegex(report['evidence'][2], '^apertures: the nearest surface is taken to be in '
+                         r'focus, and the widest one blurs the others by up to [234]\.\d pixels$')
+        near, far = self.halves('d.pgm')
+        self.assertGreater(near, 60000)
+        self.assertLess(far, 20000)
+        self.succeeds('render', names[2], '--depth', 'depth.pgm', '--blur', '0', '-o', 'same.ppm')
+        self.assertEqual(pictures.read_pnm('sharp.ppm'), pictures.read_pnm('same.ppm'))
+        self.reports('depth', '--focal-stack', *names, '--align', 'none', '-o', 'd.pgm',
+                     '--in-focus', 'farthest')
+        far, near = self.halves('d.pgm')
+        self.assertLess(far, 5000)
+        self.assertGreater(near, 45000)
+
+    def test_apertures_that_exif_does_not_tell(self):
+        names = self.apertures((2, 8), distance=0)
+        for given in names, names[::-1]:
+            report = self.reports('depth', '--focal-stack', *given, '--align', 'none', '-o',
+                                  'd.pgm')
+            self.assertIn('EXIF: the f-numbers of the frames, 2 to 8', report['evidence'])
+        # Without EXIF the sharper one is the photo, and frames are of several focus if not asked.
+        for k in range(2):
+            pictures.ppm(f'a-{k}.ppm', W, H, lambda x, y: (
+                mean(x, y, 0 if x < W // 2 else 3 * k, grain=3),) * 3)
+        for given, frame in ((0, 1), 1), ((1, 0), 2):
+            report = self.reports('depth', '--focal-stack', *(f'a-{k}.ppm' for k in given),
+                                  '--in-focus', 'nearest', '--align', 'none', '-o', 'd.pgm')
+            self.assertEqual(report['evidence'][0], 'focus stack: 2 frames, moved by up to 0.0 '
+                             f'pixels, in the geometry of frame {frame}')
+            near, far = self.halves('d.pgm')
+            self.assertGreater(near - far, 40000)
+        report = self.reports('depth', '--focal-stack', 'a-0.ppm', 'a-1.ppm', '--align', 'none',
+                              '-o', 'd.pgm')
+        self.assertFalse([e for e in report['evidence'] if e.startswith('apertures')])
+        os.remove('d.pgm')
+
+    def test_refuses_what_are_no_apertures(self):
+        two, eight = self.apertures((2, 8))
+        command = ['depth', '--focal-stack', '--in-focus', 'nearest', '-o', 'x.pgm']
+        self.fails(1, f'{two}: two frames have an aperture of f/2; give each its own', *command,
+                   two, two)
+        self.fails(1, f'{two}: not all frames tell their f-numbers; give two frames, or photos '
+                   'with EXIF', *command, two, eight, '0.ppm')
+        for option, value in ('--positions', '1,2'), ('--reference', '1'), ('--order', 'found'):
+            self.fails(2, f'{option}: frames of --in-focus differ in their apertures; leave it out',
+                       *command, two, eight, option, value)
+        self.fails(2, '--reference: frames differ in their apertures, and the photo is that of the '
+                   'smallest one; leave it out', 'depth', '--focal-stack', two, eight, '-o',
+                   'x.pgm', '--reference', '1')
+        pictures.ppm('flat.ppm', W, H, lambda x, y: (90, 90, 90))
+        self.fails(1, 'flat.ppm: no blur of the sharper frame is like the other one; give frames '
+                   'of one focus and different apertures', *command, 'flat.ppm', 'flat.ppm')
 
     def test_says_when_the_order_is_wrong(self):
         for k in range(5):

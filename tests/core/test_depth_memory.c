@@ -229,21 +229,23 @@ static int filter(void)
     return status;
 }
 
-static int make_of_stack(void)
+static int make_of_kind(uint32_t kind)
 {
-    const struct refocus_stack_params params = refocus_stack_params_default(W, H, 3);
+    struct refocus_stack_params params = refocus_stack_params_default(W, H, 3);
     struct refocus_stack_result result = refocus_stack_result_default();
     struct refocus_stack *made = (struct refocus_stack *)out;
     const struct refocus_image image = photo();
-    int status = refocus_stack_create(&made, &params);
+    int status;
 
+    params.kind = kind;
+    status = refocus_stack_create(&made, &params);
     assert_int_equal(made == NULL, status != REFOCUS_OK);
     result.disparity = out;
     result.disparity_stride = 2 * W;
     for (int i = 0; i < 3 && status == REFOCUS_OK; i++) {
         const long before = failing.calls;
 
-        status = refocus_stack_add(made, &image, i);
+        status = refocus_stack_add(made, &image, i + 1);
         if (status == REFOCUS_OK && i == 2)
             status = refocus_stack_finish(made, &result);
         assert_int_equal(failing.calls, before); /* all memory is taken at creation */
@@ -251,6 +253,16 @@ static int make_of_stack(void)
     refocus_stack_destroy(&made);
     assert_null(made);
     return status;
+}
+
+static int make_of_stack(void)
+{
+    return make_of_kind(REFOCUS_STACK_FOCUS);
+}
+
+static int make_of_apertures(void)
+{
+    return make_of_kind(REFOCUS_STACK_APERTURE_NEAREST);
 }
 
 static int is_untouched(void)
@@ -346,6 +358,7 @@ static void failing_stack(void **state)
 {
     (void)state;
     fail_each(make_of_stack, 2, 1);
+    fail_each(make_of_apertures, 2, 1);
 }
 
 int main(void)

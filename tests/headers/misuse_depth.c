@@ -374,7 +374,8 @@ static void stacking(void)
                                  BAD(refocus_stack_params, align, REFOCUS_STACK_ALIGN_COUNT),
                                  BAD(refocus_stack_params, order, REFOCUS_STACK_ORDER_COUNT),
                                  BAD(refocus_stack_params, threads, -1),
-                                 BAD(refocus_stack_params, threads, 65)};
+                                 BAD(refocus_stack_params, threads, 65),
+                                 BAD(refocus_stack_params, kind, REFOCUS_STACK_KIND_COUNT)};
     const struct refocus_stack_params good = RETURNS(refocus_stack_params_default, W, 16, 2);
     struct refocus_stack_result result = RETURNS(refocus_stack_result_default, );
     static uint8_t pixels[3 * W * 16];

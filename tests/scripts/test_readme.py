@@ -94,8 +94,9 @@ class Readme(unittest.TestCase):
                 file.write(texture(width, height, shift))
             cls.make('render', name + '.ppm', '--depth', 'depth.pgm', '--blur', '0', '-o',
                      name + '.jpg')
-        for name, focus in (('far', '0'), ('middle', '0.5'), ('near', '1')):
-            cls.make('render', 'left.ppm', '--depth', 'depth.pgm', '--focus', focus, '--blur', '6',
+        for name, focus, blur in (('far', '0', '6'), ('middle', '0.5', '6'), ('near', '1', '6'),
+                                  ('small-aperture', '1', '0'), ('wide-aperture', '1', '6')):
+            cls.make('render', 'left.ppm', '--depth', 'depth.pgm', '--focus', focus, '--blur', blur,
                      '-o', name + '.jpg')
         cls.make('depth', 'photo.jpg', '--depth', 'depth.pgm', '--full', '--near', '1', '--far',
                  '9', '-o', 'with-depth.jpg')

@@ -343,6 +343,7 @@ static int check_stack(const struct settings *settings, const char *const *files
 {
     static const char *const of_others[] = {"--full",    "--upsample", "--depth-edges",
                                             "--strokes", "--match",    NULL};
+    static const char *const of_focus[] = {"--positions", "--reference", "--order", NULL};
     int count = 0, status = EXIT_DONE;
 
     while (files[count])
@@ -360,6 +361,9 @@ static int check_stack(const struct settings *settings, const char *const *files
                               count);
     status = options_refuse(&depth_command, argc, argv, of_others,
                             "it is not for depth of a focus stack; leave it out");
+    if (status == EXIT_DONE && settings->stack.in_focus != IN_FOCUS_AUTO)
+        status = options_refuse(&depth_command, argc, argv, of_focus,
+                                "frames of --in-focus differ in their apertures; leave it out");
     if (status == EXIT_DONE && settings->stack.photo)
         status = output_check(settings->stack.photo, OUTPUT_PICTURE, NULL, files, count);
     if (status == EXIT_DONE)

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include "commands/depth_stack.h"
-#include "inputs/standard.h"
 #include "line/report.h"
 
 /* A share of measured pixels below this is no depth. */
@@ -56,157 +55,28 @@ const char *stack_order_summary(uint32_t index)
     return index < sizeof orders / sizeof *orders ? orders[index].summary : NULL;
 }
 
-struct frames {
-    const char *const *file;
-    int count, reference; /* the latter from 0 on */
-    double position[REFOCUS_STACK_MOST_FRAMES];
-    bool no_unit;  /* positions are not dioptres */
-    bool of_files; /* positions are distances of EXIF */
+static const struct {
+    const char *name, *summary;
+} in_focus[] = {
+    [IN_FOCUS_AUTO] = {"auto", "the focus differs, unless EXIF tells of one focus and several "
+                               "apertures: then it is on the nearest surface"},
+    [IN_FOCUS_NEAREST] = {"nearest", "the aperture differs, and the nearest surface is in focus"},
+    [IN_FOCUS_FARTHEST] = {"farthest", "the aperture differs, and the farthest one is"},
 };
 
-/* ----- positions ----- */
-
-static int take_position(struct frames *frames, int *n, double position)
+const char *stack_in_focus_name(uint32_t index)
 {
-    if (!(position >= 0) || position > 1e6)
-        return report_failure(EXIT_WRONG, "--positions",
-                              "%g is no focus in dioptres; give numbers from 0 to 1e6", position);
-    for (int k = 0; k < *n && k < REFOCUS_STACK_MOST_FRAMES; k++)
-        if (frames->position[k] == position)
-            return report_failure(EXIT_WRONG, "--positions",
-                                  "%g is there twice; give each frame its own", position);
-    if (*n < REFOCUS_STACK_MOST_FRAMES)
-        frames->position[*n] = position;
-    ++*n;
-    return EXIT_DONE;
+    return index < sizeof in_focus / sizeof *in_focus ? in_focus[index].name : NULL;
 }
 
-static int positions_of_text(struct frames *frames, const char *text, int *n)
+const char *stack_in_focus_summary(uint32_t index)
 {
-    for (const char *at = text;;) {
-        char *end;
-        const double position = strtod(at, &end);
-
-        if (end == at || (*end && *end != ','))
-            return report_failure(EXIT_WRONG, "--positions",
-                                  "'%s' is no list of numbers; give dioptres with commas, such as "
-                                  "0.2,0.5,1, or a .json file",
-                                  text);
-        const int status = take_position(frames, n, position);
-        if (status != EXIT_DONE)
-            return status;
-        if (!*end)
-            return EXIT_DONE;
-        at = end + 1;
-    }
-}
-
-/* A list of numbers, or an object with one as "positions", whose "dioptres" may be false. */
-static int positions_of_file(struct frames *frames, const char *file, int *n)
-{
-    json_error_t error;
-    json_t *json = json_load_file(file, JSON_REJECT_DUPLICATES, &error);
-    json_t *list = json_is_object(json) ? json_object_get(json, "positions") : json, *value;
-    size_t i;
-    int status = EXIT_DONE;
-
-    if (!json)
-        return report_failure(EXIT_FAILED, file, "%s", error.text);
-    if (!json_is_array(list)) {
-        json_decref(json);
-        return report_failure(EXIT_FAILED, file,
-                              "it holds no positions; give [0.2, 0.5, 1] or "
-                              "{\"positions\": [0.2, 0.5, 1]}, in dioptres");
-    }
-    frames->no_unit = json_is_false(json_object_get(json, "dioptres"));
-    json_array_foreach(list, i, value)
-    {
-        status = json_is_number(value)
-                     ? take_position(frames, n, json_number_value(value))
-                     : report_failure(EXIT_FAILED, file, "position %zu is no number; give dioptres",
-                                      i + 1);
-        if (status != EXIT_DONE)
-            break;
-    }
-    json_decref(json);
-    return status;
-}
-
-static bool is_json(const char *text)
-{
-    const char *dot = strrchr(text, '.');
-
-    return dot && strcmp(dot, ".json") == 0;
-}
-
-/* By the distances that all files name in their EXIF, else by none. What cannot be read is told
- * when it is read for its pixels. Frames that name one distance and several apertures are refused:
- * how their blur compares tells how far a surface is from the focus, but not on which side. */
-static int positions_of_files(struct frames *frames)
-{
-    double first_distance = NAN, first_aperture = NAN;
-    bool known = true, same = true, apertures = false;
-
-    for (int k = 0; k < frames->count && (known || same); k++) {
-        struct refocus_reason ignored;
-        struct refocus_photo *photo = NULL;
-        const bool read = standard_photo(&photo, frames->file[k], &ignored) == REFOCUS_OK;
-        const double distance = read ? photo->info->subject_distance : 0;
-        const double aperture = read ? photo->info->f_number : 0;
-
-        first_distance = k ? first_distance : distance;
-        first_aperture = k ? first_aperture : aperture;
-        same = same && distance > 0 && distance == first_distance && aperture > 0;
-        apertures = apertures || aperture != first_aperture;
-        known = known && distance > 0;
-        frames->position[k] = known ? 1 / distance : NAN;
-        for (int j = 0; j < k && known; j++)
-            known = frames->position[j] != frames->position[k];
-        refocus_photo_free(&photo);
-    }
-    if (same && apertures)
-        return report_failure(EXIT_FAILED, frames->file[0],
-                              "the frames have one focus and several apertures, which do not tell "
-                              "the side of the focus; give frames of different focus");
-    for (int k = 0; k < frames->count && !known; k++)
-        frames->position[k] = NAN;
-    frames->of_files = known;
-    return EXIT_DONE;
-}
-
-static int read_positions(struct frames *frames, const char *text)
-{
-    int n = 0, status;
-
-    for (int k = 0; k < frames->count; k++)
-        frames->position[k] = NAN;
-    if (!text)
-        return positions_of_files(frames);
-    status =
-        is_json(text) ? positions_of_file(frames, text, &n) : positions_of_text(frames, text, &n);
-    if (status == EXIT_DONE && n != frames->count)
-        return report_failure(EXIT_WRONG, "--positions",
-                              "%d positions for %d frames; give one for each", n, frames->count);
-    return status;
-}
-
-/* The frame in the middle of the focus: as many lie before it as the library counts. */
-static int middle_of(const struct frames *frames)
-{
-    for (int k = 0; k < frames->count; k++) {
-        int before = 0;
-
-        for (int j = 0; j < frames->count; j++)
-            before += frames->position[j] < frames->position[k];
-        if (before == frames->count / 2)
-            return k;
-    }
-    return frames->count / 2;
+    return index < sizeof in_focus / sizeof *in_focus ? in_focus[index].summary : NULL;
 }
 
 /* ----- frames ----- */
 
-static int add(struct refocus_stack *stack, const struct frames *frames, int k)
+static int add(struct refocus_stack *stack, const struct stack_frames *frames, int k)
 {
     struct input other;
     int status = input_read_photo(&other, frames->file[k], "a photo");
@@ -227,7 +97,7 @@ static int add(struct refocus_stack *stack, const struct frames *frames, int k)
     return status;
 }
 
-static int add_all(struct refocus_stack *stack, const struct frames *frames,
+static int add_all(struct refocus_stack *stack, const struct stack_frames *frames,
                    const struct input *input)
 {
     for (int k = 0; k < frames->count; k++) {
@@ -246,7 +116,7 @@ static int add_all(struct refocus_stack *stack, const struct frames *frames,
 
 /* ----- result ----- */
 
-static void set_range(struct input *input, const struct frames *frames,
+static void set_range(struct input *input, const struct stack_frames *frames,
                       const struct depth_settings *settings)
 {
     double least = frames->position[0], most = least;
@@ -255,7 +125,7 @@ static void set_range(struct input *input, const struct frames *frames,
         least = fmin(least, frames->position[k]);
         most = fmax(most, frames->position[k]);
     }
-    if (!isnan(most) && !frames->no_unit) {
+    if (!isnan(most) && !frames->no_unit && frames->kind == REFOCUS_STACK_FOCUS) {
         input->report.near_m = 1 / most;
         input->report.far_m = least > 0 ? 1 / least : INFINITY;
     }
@@ -322,8 +192,39 @@ static void add_evidence(struct refocus_photo_info *info, const char *text)
     snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH, "%s", text);
 }
 
-static int finish(struct input *input, struct refocus_stack *stack, const struct frames *frames,
-                  int order)
+static int judge_apertures(const struct refocus_stack_result *result, const char *name)
+{
+    if (result->measured < (float)LEAST_MEASURED)
+        return report_failure(EXIT_FAILED, name,
+                              "no blur of the sharper frame is like the other one; give frames of "
+                              "one focus and different apertures");
+    if (result->alike < (float)LEAST_ALIKE)
+        report_warning(name, "not all frames lie on each other: the camera moved too far, or they "
+                             "show different places; depth is wrong there");
+    return EXIT_DONE;
+}
+
+static void tell_apertures(struct refocus_photo_info *info, const struct stack_frames *frames,
+                           const struct refocus_stack_result *result)
+{
+    double least = frames->position[0], most = least;
+
+    for (int k = 1; k < frames->count; k++) {
+        least = fmin(least, frames->position[k]);
+        most = fmax(most, frames->position[k]);
+    }
+    if (frames->of_files)
+        snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH,
+                 "EXIF: the f-numbers of the frames, %.3g to %.3g", 1 / most, 1 / least);
+    snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH,
+             "apertures: the %s surface is taken to be in focus, and the widest one blurs the "
+             "others by up to %.1f pixels",
+             frames->kind == REFOCUS_STACK_APERTURE_NEAREST ? "nearest" : "farthest",
+             (double)result->blur);
+}
+
+static int finish(struct input *input, struct refocus_stack *stack,
+                  const struct stack_frames *frames, int order)
 {
     struct refocus_stack_result result = refocus_stack_result_default();
     const struct refocus_image *image = input->photo->image;
@@ -343,10 +244,12 @@ static int finish(struct input *input, struct refocus_stack *stack, const struct
     report_progress("comparing", 0.6);
     if (refocus_stack_finish(stack, &result))
         return report_failure(EXIT_FAILED, input->photo_name, "the stack cannot be finished");
-    status = stack_judge(&result, input->photo_name);
+    status = frames->kind == REFOCUS_STACK_FOCUS ? stack_judge(&result, input->photo_name)
+                                                 : judge_apertures(&result, input->photo_name);
     if (status != EXIT_DONE)
         return status;
-    if (isnan(frames->position[0]) && order == REFOCUS_STACK_ORDER_FOUND)
+    if (isnan(frames->position[0]) && order == REFOCUS_STACK_ORDER_FOUND &&
+        frames->kind == REFOCUS_STACK_FOCUS)
         tell_order(&result, input->photo_name, frames->count);
     for (size_t i = 0; i < pixels; i++)
         input->report.unknown += input->confidence[i] < 128;
@@ -358,6 +261,10 @@ static int finish(struct input *input, struct refocus_stack *stack, const struct
         snprintf(input->made_info.evidence[input->made_info.evidence_count++], REFOCUS_INFO_LENGTH,
                  "focus stack: something moves in %.1f %% of the picture, which is as in frame %d",
                  100 * (double)result.moving, result.reference);
+    if (frames->kind != REFOCUS_STACK_FOCUS) {
+        tell_apertures(&input->made_info, frames, &result);
+        return EXIT_DONE;
+    }
     if (frames->of_files)
         add_evidence(&input->made_info, "EXIF: the subject distances of the frames");
     if (isnan(frames->position[0]) && order == REFOCUS_STACK_ORDER_EITHER)
@@ -384,23 +291,29 @@ int input_read_stack(struct input *input, const char *const *files,
 {
     struct refocus_stack_params params;
     struct refocus_stack *stack = NULL;
-    struct frames frames = {.file = files};
+    struct stack_frames frames = {.file = files};
     int status;
 
     while (files[frames.count])
         frames.count++;
-    status = read_positions(&frames, how->positions);
+    status = stack_frames_read(&frames, how->positions, how->in_focus);
     if (status != EXIT_DONE)
         return status;
-    frames.reference = isnan(how->reference) ? middle_of(&frames) : (int)how->reference - 1;
+    frames.reference =
+        isnan(how->reference) ? stack_frames_reference(&frames) : (int)how->reference - 1;
     status = input_read_photo(input, files[frames.reference], "a photo");
     if (status != EXIT_DONE)
         return status;
     begin(input);
     params = refocus_stack_params_default(input->width, input->height, frames.count);
+    if (frames.kind != REFOCUS_STACK_FOCUS && !isnan(how->reference))
+        return report_failure(EXIT_WRONG, "--reference",
+                              "frames differ in their apertures, and the photo is that of the "
+                              "smallest one; leave it out");
     params.reference = isnan(how->reference) ? 0 : frames.reference + 1;
     params.align = (uint32_t)how->align;
     params.order = (uint32_t)how->order;
+    params.kind = frames.kind;
     status = refocus_stack_create(&stack, &params);
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, files[frames.reference], "%s",

@@ -3,6 +3,7 @@
 #define RF_CLI_DEPTH_STACK_H
 
 #include <refocus/stack.h>
+#include "commands/stack_frames.h"
 #include "inputs/inputs.h"
 #include "outputs/outputs.h"
 
@@ -13,11 +14,12 @@ struct stack_settings {
     double reference;      /* frame whose geometry the result has, from 1 on; NAN: the middle one */
     int align;             /* enum refocus_stack_align */
     int order;             /* enum refocus_stack_order */
+    int in_focus;          /* enum in_focus */
     const char *photo;     /* receives the photo as well, or NULL */
 };
 #define STACK_SETTINGS_NONE                                                                        \
     {                                                                                              \
-        false, NULL, NAN, 0, REFOCUS_STACK_ORDER_EITHER, NULL                                      \
+        false, NULL, NAN, 0, REFOCUS_STACK_ORDER_EITHER, IN_FOCUS_AUTO, NULL                       \
     }
 
 /* Rows for tables of options. */
@@ -25,10 +27,10 @@ struct stack_settings {
     {.kind = OPTION_FLAG,                                                                          \
      .name = "--focal-stack",                                                                      \
      .offset = offsetof(type, member.on),                                                          \
-     .brief = "the FILEs show one view at 2 to 32 focus distances",                                \
+     .brief = "the FILEs show one view at 2 to 32 focus distances, or apertures",                  \
      .help =                                                                                       \
-         "the FILEs show one view at 2 to 32 focus distances, one after the other: depth, and a "  \
-         "photo that is in focus everywhere, are made of them"},                                   \
+         "the FILEs show one view at 2 to 32 focus distances, one after the other, or at several " \
+         "apertures: depth, and a photo that is in focus everywhere, are made of them"},           \
         {.kind = OPTION_TEXT,                                                                      \
          .name = "--positions",                                                                    \
          .argument = "LIST",                                                                       \
@@ -62,6 +64,16 @@ struct stack_settings {
          .summary = stack_order_summary,                                                           \
          .help = "order of focus of frames without positions",                                     \
          .needs = "--focal-stack"},                                                                \
+        {.kind = OPTION_CHOICE,                                                                    \
+         .name = "--in-focus",                                                                     \
+         .argument = "WHICH",                                                                      \
+         .offset = offsetof(type, member.in_focus),                                                \
+         .choice = stack_in_focus_name,                                                            \
+         .summary = stack_in_focus_summary,                                                        \
+         .help = "what is in focus in frames of one focus and several apertures, whose f-numbers " \
+                 "EXIF tells; of two without, the sharper one has the smaller aperture, and is "   \
+                 "the photo",                                                                      \
+         .needs = "--focal-stack"},                                                                \
     {                                                                                              \
         .kind = OPTION_TEXT, .name = "--photo", .argument = "FILE",                                \
         .offset = offsetof(type, member.photo),                                                    \
@@ -77,6 +89,9 @@ const char *stack_align_summary(uint32_t index);
 /* Likewise of --order. */
 const char *stack_order_name(uint32_t index);
 const char *stack_order_summary(uint32_t index);
+/* Likewise of --in-focus. */
+const char *stack_in_focus_name(uint32_t index);
+const char *stack_in_focus_summary(uint32_t index);
 
 /* Read the frames, one after the other, and make the input of them: its photo is in focus
  * everywhere. The list of files ends with NULL. Returns an exit code and prints why. */
