@@ -1,6 +1,7 @@
 /* stereo.cpp: depth is computed from two pictures by OpenCV's semi-global matching, both ways. */
 #include "guard.hpp"
 #include "module.hpp"
+#include "stereo_order.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,7 @@ namespace
 {
 
 const float none = std::numeric_limits<float>::quiet_NaN();
+const float sure = 0.15f; /* a vote on the order from which it counts */
 
 /* Matches of a to b with a[x] ~ b[x - d], d from least on; NaN where there is none. */
 cv::Mat match(const cv::Mat &a, const cv::Mat &b, int least, int count)
@@ -129,11 +131,15 @@ void find_range(const cv::Mat &disparity, double scale, search &s)
     s.count = ((int)std::ceil(high + margin) - s.least + 15) / 16 * 16;
 }
 
-search look(const cv::Mat &left, const cv::Mat &right)
+/* Disparities below 0 are those of pictures that do not look straight ahead, and of pairs in the
+ * other order, which have as many below as others have above. */
+search look(const cv::Mat &left, const cv::Mat &right, bool either)
 {
     enum { WIDTH = 400, ROWS = 5 };
     const double scale = std::max(1.0, left.cols / (double)WIDTH);
-    const int width = cvRound(left.cols / scale), count = std::max(32, width / 3 / 16 * 16);
+    const int width = cvRound(left.cols / scale), third = std::max(32, width / 3 / 16 * 16);
+    const int below = third / 3 / 16 * 16, least = either ? below - third : -below;
+    const int count = either ? -2 * least : third;
     search best = {0, 0, 0, -1};
     cv::Mat a, b, disparity, kept;
 
@@ -141,8 +147,7 @@ search look(const cv::Mat &left, const cv::Mat &right)
     cv::resize(right, b, a.size(), 0, 0, cv::INTER_AREA);
     for (int i = 0; i <= 2 * ROWS; i++) { /* 0, 1, -1, 2, -2, ... */
         const int offset = i % 2 ? (i + 1) / 2 : -i / 2;
-        const float matched =
-            match_both(a, shifted(b, offset), -count / 3 / 16 * 16, count, disparity);
+        const float matched = match_both(a, shifted(b, offset), least, count, disparity);
 
         if (matched > best.matched + 0.01f) {
             best.matched = matched;
@@ -178,6 +183,25 @@ int refine(const cv::Mat &left, const cv::Mat &right, const search &s, int reach
     return best;
 }
 
+/* Votes of both pictures, which are as large as their disparities: those of the first one have been
+ * checked, and those of the second one are now. It is a first one when it is mirrored. */
+refocus_cv::order_votes votes(const refocus_image *first, const refocus_image *second, int offset,
+                              const cv::Mat &disparity, const cv::Mat &back, const cv::Mat &raw)
+{
+    refocus_cv::order_votes votes;
+    cv::Mat photo, mirrored, other;
+
+    cv::resize(refocus_cv::view(first), photo, disparity.size(), 0, 0, cv::INTER_AREA);
+    refocus_cv::add_order_votes(photo, disparity, votes);
+    cv::resize(refocus_cv::view(second), photo, disparity.size(), 0, 0, cv::INTER_AREA);
+    cv::flip(offset ? shifted(photo, offset) : photo, photo, 1);
+    cv::flip(back, mirrored, 1);
+    cv::flip(raw, other, 1);
+    check(mirrored, other);
+    refocus_cv::add_order_votes(photo, mirrored, votes);
+    return votes;
+}
+
 /* As far as the caller's struct goes; there may be none. */
 int write_report(refocus_stereo_report *report, const refocus_stereo_report *own)
 {
@@ -206,7 +230,7 @@ int stereo(const refocus_image *left, const refocus_image *right,
         cv::resize(a, a, size, 0, 0, cv::INTER_AREA);
         cv::resize(b, b, size, 0, 0, cv::INTER_AREA);
     }
-    search s = look(a, b);
+    search s = look(a, b, params->order == REFOCUS_STEREO_ORDER_SEEN);
     if (s.matched < params->least_match / 2)
         return refocus_cv::fail(reason, REFOCUS_ERR_NO_DEPTH,
                                 "the two pictures do not match row by row; give a rectified pair, "
@@ -219,6 +243,7 @@ int stereo(const refocus_image *left, const refocus_image *right,
     match_pair(a, b, s.least, s.count, disparity, back);
     raw = disparity.clone();
     const float matched = check(disparity, back);
+    const float order = refocus_cv::order_of(votes(left, right, s.offset, disparity, back, raw));
     if (matched < params->least_match)
         return refocus_cv::fail(reason, REFOCUS_ERR_NO_DEPTH,
                                 "too few pixels of the two pictures match; give a rectified pair, "
@@ -236,6 +261,9 @@ int stereo(const refocus_image *left, const refocus_image *right,
         filled.copyTo(disparity, ~(disparity == disparity) & (filled >= s.least) &
                                      (filled <= s.least + s.count));
     }
+    if (params->order == REFOCUS_STEREO_RIGHT_FIRST ||
+        (params->order == REFOCUS_STEREO_ORDER_SEEN && order <= -sure))
+        disparity = -disparity;
     disparity *= scale;
     cv::resize(disparity, full, cv::Size(left->width, left->height), 0, 0, cv::INTER_NEAREST);
     double least = 0, greatest = 0;
@@ -246,8 +274,8 @@ int stereo(const refocus_image *left, const refocus_image *right,
                                 "more than one shift; give a left and a right one");
     for (int y = 0; y < full.rows; y++)
         std::copy_n(full.ptr<float>(y), full.cols, out + (size_t)y * (size_t)full.cols);
-    const refocus_stereo_report found = {sizeof found, (float)(s.offset * scale), (float)least,
-                                         (float)greatest, matched};
+    const refocus_stereo_report found = {
+        sizeof found, (float)(s.offset * scale), (float)least, (float)greatest, matched, order};
     write_report(report, &found);
     return REFOCUS_OK;
 }
@@ -277,7 +305,8 @@ int refocus_cv_stereo(const struct refocus_image *left, const struct refocus_ima
     right = &own_right;
     params = &own;
     if (!refocus_cv::good_photo(left) || !refocus_cv::good_photo(right) || params->max_side < 64 ||
-        params->method > REFOCUS_STEREO_WLS || !disparity)
+        params->method > REFOCUS_STEREO_WLS || params->order > REFOCUS_STEREO_ORDER_SEEN ||
+        !disparity)
         return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT, "not two pictures");
     if (left->width != right->width || left->height != right->height)
         return refocus_cv::fail(reason, REFOCUS_ERR_ARGUMENT,

@@ -38,7 +38,7 @@ class Usage(Case):
     def test_help_lists_every_option(self):
         options = {
             'render': self.PAPERS + self.CONTROLS +
-                      '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match '
+                      '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order '
                       '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --focus --focus-at --focus-rectangle '
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
@@ -46,19 +46,19 @@ class Usage(Case):
                       '--low-memory --parallax --region --jobs --format --resize --jpeg-quality --config --preset --settings --save-settings --strip --editable --no-editable --transfer --white -h --help --help-all',
             'depth': '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --full '
                      '--orient-depth --depth-edges --upsample --estimate --network --input-size --input-mean --input-scale '
-                     '--far-is-large --match --strokes --focal-stack --positions --reference --align --order --in-focus --photo --stereo-file --side-by-side --view '
+                     '--far-is-large --match --pair-order --strokes --focal-stack --positions --reference --align --order --in-focus --photo --stereo-file --side-by-side --view '
                      '--focus-at --blur --json -h --help --help-all',
             'stack': '-o --output --photo --keep --camera --steps --range --average --settle --size '
                      '--dry-run --json -h --help --help-all',
             'sheet': self.PAPERS + self.CONTROLS +
-                     '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match '
+                     '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order '
                      '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --kind --focuses --blurs --f-numbers --apertures --sigmas '
                      '--cell-width --region --focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --f-number --focal-length --sensor-width --method --rays --iterations '
                      '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin --fill '
                      '--threads --cpu --json --config --preset --settings --save-settings -h --help --help-all',
             'pull': self.PAPERS + self.CONTROLS +
-                    '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match '
+                    '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order '
                     '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
                     '--wiggle '
                     '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
@@ -66,7 +66,7 @@ class Usage(Case):
                     '--sigma --highlights --mirror --background --no-thin --fill --threads --cpu --json '
                     '--config --preset --settings --save-settings -h --help --help-all',
             'view': self.PAPERS + self.CONTROLS +
-                    '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match '
+                    '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order '
                     '--upsample --depth-edges --orient-depth --matte --strokes --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality '
                     '--aperture --blend --sigma --highlights --mirror --background --no-thin --fill --threads '
@@ -363,6 +363,9 @@ class Limits(Case):
         self.fails(2, '--match: it is for stereo pairs; give RIGHT, --side-by-side or '
                    '--stereo-file, or leave it out', *depth, '--depth', 'depth.pgm', '--match',
                    'plain')
+        self.fails(2, '--pair-order: it is for stereo pairs; give RIGHT, --side-by-side or '
+                   '--stereo-file, or leave it out', *depth, '--depth', 'depth.pgm', '--pair-order',
+                   'auto')
         self.fails(2, '--depth-unit: it is for depth that is read from a file; leave it out',
                    *depth, '--stereo-file', '--depth-unit', 'mm')
         self.fails(2, "--upsample: depth of a stereo pair has the photo's size; leave it out",

@@ -62,6 +62,37 @@ class Ways(Case):
         self.fails(1, re.compile(r'^refocus: no.onnx: '), 'render', 'red.ppm', '--estimate',
                    'no.onnx', '-o', 'new.ppm')
 
+    def test_which_picture_is_the_left_one(self):
+        if not self.opencv:
+            self.skipTest('this build has no OpenCV')
+        rng = random.Random(3)
+        noise = [[rng.randrange(120) for _ in range(300)] for _ in range(128)]
+
+        def seen(x, y, shift):
+            """A bright square, whose texture moves with it, before a dark wall."""
+            near = 60 <= x + (20 if shift else 0) < 160 and 24 <= y < 104
+            return noise[y][x + 20 + ((20 if near else 4) if shift else 0)] + (130 if near else 0)
+        for name, shift in ('dark-left.ppm', 0), ('dark-right.ppm', 1):
+            pictures.ppm(name, 240, 128, lambda x, y, s=shift: (seen(x, y, s),) * 3)
+        pictures.ppm('crossed.ppm', 480, 128, lambda x, y: (seen(x % 240, y, x < 240),) * 3)
+        tells = 'stereo: what only one picture shows tells that the %s one comes first'
+        given = 'stereo: the order of the pictures is as it was given'
+        for files, order, says, at in (
+                (('dark-left.ppm', 'dark-right.ppm'), 'auto', tells % 'left', 110),
+                (('dark-right.ppm', 'dark-left.ppm'), 'auto', tells % 'right', 90),
+                (('crossed.ppm', '--side-by-side'), 'auto', tells % 'right', 90),
+                (('crossed.ppm', '--side-by-side'), 'right-first', given, 90)):
+            report = self.reports('depth', *files, '--pair-order', order, '-o', 'seen.pgm')
+            self.assertIn(says, report['evidence'])
+            samples = pictures.read_pnm('seen.pgm')[2]
+            self.assertGreater(samples[64 * 240 + at], samples[12 * 240 + at] + 30000)
+        self.succeeds('depth', 'crossed.ppm', '--side-by-side', '--pair-order', 'left-first', '-o',
+                      'seen.pgm')
+        samples = pictures.read_pnm('seen.pgm')[2]
+        self.assertLess(samples[64 * 240 + 90], samples[12 * 240 + 90] - 30000)
+        for name in 'dark-left.ppm', 'dark-right.ppm', 'crossed.ppm', 'seen.pgm':
+            os.remove(name)
+
     def test_refused(self):
         twice = ('depth is given twice; give one of --depth, --estimate, --stereo and '
                  '--stereo-file')

@@ -42,7 +42,8 @@ static void stereo_pairs(void)
 {
     const struct misuse bad[] = {
         BAD(refocus_stereo_params, struct_size, 0), BAD(refocus_stereo_params, max_side, INT32_MIN),
-        BAD(refocus_stereo_params, max_side, 0), BAD(refocus_stereo_params, method, UINT32_MAX)};
+        BAD(refocus_stereo_params, max_side, 0), BAD(refocus_stereo_params, method, UINT32_MAX),
+        BAD(refocus_stereo_params, order, 3)};
     static uint8_t pixels[3 * 64 * 32];
     const struct refocus_image photo =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, 64, 32, 3 * 64);

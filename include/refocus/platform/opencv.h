@@ -34,6 +34,14 @@ enum refocus_stereo_method {
                                      refocus-ximgproc */
 };
 
+/** The picture of a pair that comes first. */
+enum refocus_stereo_order {
+    REFOCUS_STEREO_LEFT_FIRST = 0,  /**< the left one */
+    REFOCUS_STEREO_RIGHT_FIRST = 1, /**< the right one */
+    REFOCUS_STEREO_ORDER_SEEN =
+        2, /**< stripes that only one of them shows tell, else the left one */
+};
+
 /** Stereo matching. Start from refocus_stereo_params_default(). */
 struct refocus_stereo_params {
     uint32_t struct_size; /**< sizeof(struct refocus_stereo_params) */
@@ -42,6 +50,7 @@ struct refocus_stereo_params {
     float least_match;    /**< share of pixels that has to agree from left and right,
                                else the pair is refused; default 0.3 */
     uint32_t method;      /**< enum refocus_stereo_method */
+    uint32_t order;       /**< enum refocus_stereo_order */
 };
 
 static inline struct refocus_stereo_params refocus_stereo_params_default(void)
@@ -61,6 +70,11 @@ struct refocus_stereo_report {
     float vertical_offset; /**< pixels that the right picture lies lower; undone */
     float least, greatest; /**< disparities found, pixels of the left picture */
     float matched;         /**< share of pixels that agree from left and right */
+    float order; /**< the picture that comes first, by what only one of them shows: -1 to 1. The
+                    left one above 0, from 3/20 on surely; the right one below, to -3/20 surely; 0
+                      where there is little of it, or it has no colour of its own (drawn dots).
+                    Where the right one is taken for the first, signs of `least` and `greatest` are
+                    such that what is nearer has more */
 };
 
 static inline struct refocus_stereo_report refocus_stereo_report_default(void)
@@ -73,12 +87,17 @@ static inline struct refocus_stereo_report refocus_stereo_report_default(void)
 }
 
 /**
- * Disparities of a rectified stereo pair, in pixels of the left picture: a point at x
- * in it is at x - disparity in the right one. Semi-global matching (Hirschmueller
+ * Disparities of a rectified stereo pair, in pixels of the first picture: a point at x
+ * in it is at x - disparity in the second one, or at x + disparity if that is the left one.
+ * Semi-global matching (Hirschmueller
  * 2008), both ways; where they disagree by more than a pixel there is NaN. The range of
  * disparities and a small vertical offset are found at a reduced size.
  *
- * @param left, right  RGB8, of the same size, at least 64 x 32
+ * Beside a nearer surface each picture shows a stripe of what is behind that the other one does
+ * not: the left picture on its left. Pairs in the other order have their stripes on the wrong side,
+ * and stripes have the colour of what is behind.
+ *
+ * @param left, right  RGB8, of the same size, at least 64 x 32; the first one and the second one
  * @param disparity    receives width x height floats, larger = nearer
  * @param report       receives what was found, all 0 on an error; only its struct_size is read;
  *                     may be NULL

@@ -84,6 +84,7 @@ static const struct option options[] = {
     STACK_OPTIONS(struct settings, stack),
     STEREO_FILE_OPTION(struct settings, stereo, "FILE holds both pictures of a stereo pair"),
     {MATCH_OPTION(struct settings, stereo, "how a stereo pair is matched")},
+    {PAIR_ORDER_OPTION(struct settings, stereo)},
     {.kind = OPTION_FLAG,
      .name = "--side-by-side",
      .offset = offsetof(struct settings, side_by_side),
@@ -317,12 +318,16 @@ static int check_ways(const struct settings *settings, const char *const *files,
     static const char *const of_read[] = {"--depth-unit", "--invalid", "--speckle", "--upsample",
                                           NULL};
     const bool pair = is_made(settings, files) && !settings->model && !settings->stack.on;
+    static const char *const of_pairs[] = {"--match", "--pair-order", NULL};
+    int status = EXIT_DONE;
     const bool nothing = settings->strokes && !settings->depth.file && !is_made(settings, files);
 
-    if (!pair && options_given(&depth_command, argc, argv, "--match"))
-        return report_failure(EXIT_WRONG, "--match",
-                              "it is for stereo pairs; give RIGHT, --side-by-side or "
-                              "--stereo-file, or leave it out");
+    if (!pair)
+        status = options_refuse(&depth_command, argc, argv, of_pairs,
+                                "it is for stereo pairs; give RIGHT, --side-by-side or "
+                                "--stereo-file, or leave it out");
+    if (status != EXIT_DONE)
+        return status;
     if (is_made(settings, files) && settings->depth.unit)
         return report_failure(EXIT_WRONG, "--depth-unit",
                               "it is for depth that is read from a file; leave it out");
@@ -341,8 +346,8 @@ static int check_ways(const struct settings *settings, const char *const *files,
 static int check_stack(const struct settings *settings, const char *const *files, int argc,
                        char **argv)
 {
-    static const char *const of_others[] = {"--full",    "--upsample", "--depth-edges",
-                                            "--strokes", "--match",    NULL};
+    static const char *const of_others[] = {
+        "--full", "--upsample", "--depth-edges", "--strokes", "--match", "--pair-order", NULL};
     static const char *const of_focus[] = {"--positions", "--reference", "--order", NULL};
     int count = 0, status = EXIT_DONE;
 

@@ -51,8 +51,9 @@ const char *gain_map_summary(uint32_t index);
          .offset = offsetof(type, member.right),                                                   \
          .help = "depth of the photo and the right picture of its stereo pair"},                   \
         STEREO_FILE_OPTION(type, member.stereo, NULL),                                             \
+        {MATCH_OPTION(type, member.stereo, NULL), .needs = "--stereo,--stereo-file"},              \
     {                                                                                              \
-        MATCH_OPTION(type, member.stereo, NULL), .needs = "--stereo,--stereo-file"                 \
+        PAIR_ORDER_OPTION(type, member.stereo), .needs = "--stereo,--stereo-file"                  \
     }
 #define DEPTH_EDGES_OPTION(type, member)                                                           \
     {                                                                                              \

@@ -61,6 +61,42 @@ static int load(const struct opencv **cv, const char *what)
     return *cv ? EXIT_DONE : report_failure(EXIT_FAILED, what, "%s", why);
 }
 
+/* Words of --pair-order. */
+static const struct {
+    const char *name, *summary;
+    uint32_t order; /* enum refocus_stereo_order */
+} orders[] = {
+    {"auto", "what only one picture shows tells, else it is the left one",
+     REFOCUS_STEREO_ORDER_SEEN},
+    {"left-first", "the left one", REFOCUS_STEREO_LEFT_FIRST},
+    {"right-first", "the right one, as where eyes are crossed to see depth",
+     REFOCUS_STEREO_RIGHT_FIRST},
+};
+
+const char *ways_order(uint32_t index)
+{
+    return index < sizeof orders / sizeof *orders ? orders[index].name : NULL;
+}
+
+const char *ways_order_summary(uint32_t index)
+{
+    return index < sizeof orders / sizeof *orders ? orders[index].summary : NULL;
+}
+
+static const char *order_evidence(const struct refocus_stereo_params *params,
+                                  const struct refocus_stereo_report *report)
+{
+    const double sure = 3 / 20.0; /* platform/opencv.h */
+
+    if (params->order != REFOCUS_STEREO_ORDER_SEEN)
+        return "the order of the pictures is as it was given";
+    return (double)report->order >= sure
+               ? "what only one picture shows tells that the left one comes first"
+           : (double)report->order <= -sure
+               ? "what only one picture shows tells that the right one comes first"
+               : "nothing tells which picture is the left one; the first is taken for it";
+}
+
 static int match(struct input *input, const char *right, const struct stereo_settings *how,
                  const struct depth_settings *settings)
 {
@@ -74,6 +110,7 @@ static int match(struct input *input, const char *right, const struct stereo_set
     int status = load(&cv, right ? right : left);
 
     params.method = (uint32_t)how->method;
+    params.order = orders[how->order].order;
     if (status == EXIT_DONE && (right || how->within))
         status = read_right(&input->side, right ? right : left, right == NULL);
     if (status != EXIT_DONE)
@@ -101,7 +138,9 @@ static int match(struct input *input, const char *right, const struct stereo_set
              "lower, %.0f %% of the pixels agree from both sides",
              (double)report.least, (double)report.greatest, (double)report.vertical_offset,
              100.0 * (double)report.matched);
-    input->made_info.evidence_count = 1;
+    snprintf(input->made_info.evidence[1], REFOCUS_INFO_LENGTH, "stereo: %s",
+             order_evidence(&params, &report));
+    input->made_info.evidence_count = 2;
     take(input, samples, input->photo->image->width, input->photo->image->height, settings);
     return EXIT_DONE;
 }

@@ -22,12 +22,16 @@ struct network_settings {
 struct stereo_settings {
     bool within; /* both pictures are in the one file */
     int method;  /* enum refocus_stereo_method */
+    int order;   /* ways_order() */
 };
 
 /* Words of --network and --match; NULL ends them. */
 const char *ways_network(uint32_t index);
 const char *ways_match(uint32_t index);
 const char *ways_match_summary(uint32_t index);
+/* Likewise of --pair-order. */
+const char *ways_order(uint32_t index);
+const char *ways_order_summary(uint32_t index);
 
 /* Rows for tables of options: `model` is a text, `network` and `stereo` are the settings above,
  * short_help is a line of --help or NULL. */
@@ -87,5 +91,9 @@ const char *ways_match_summary(uint32_t index);
     .kind = OPTION_CHOICE, .name = "--match", .brief = short_help, .argument = "HOW",              \
     .offset = offsetof(type, stereo.method), .choice = ways_match, .summary = ways_match_summary,  \
     .help = "how a stereo pair is matched"
+#define PAIR_ORDER_OPTION(type, stereo)                                                            \
+    .kind = OPTION_CHOICE, .name = "--pair-order", .argument = "HOW",                              \
+    .offset = offsetof(type, stereo.order), .choice = ways_order, .summary = ways_order_summary,   \
+    .help = "which picture of a stereo pair is the first one"
 
 #endif

@@ -42,6 +42,21 @@ static void make_pair(uint8_t *left, uint8_t *right, int lower)
             }
 }
 
+/* The square is bright, and the wall dark, also where one picture alone shows it. */
+static void make_colours(uint8_t *left, uint8_t *right)
+{
+    make_pair(left, right, 0);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            for (int c = 0; c < 3; c++) {
+                uint8_t *const a = left + 3 * (y * W + x) + c, *const b =
+                                                                   right + 3 * (y * W + x) + c;
+
+                *a = (uint8_t)(*a / 2 + (disparity_at(x, y) == NEAR ? 128 : 0));
+                *b = (uint8_t)(*b / 2 + (disparity_at(x + NEAR, y) == NEAR ? 128 : 0));
+            }
+}
+
 static struct refocus_image picture(uint8_t *pixels)
 {
     return refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
@@ -70,6 +85,64 @@ static void stereo(void **state)
         assert_in_range(known, W * H * 7 / 10, W * H);
         assert_in_range(good, known * 97 / 100, known);
     }
+}
+
+/* The median disparity of the square in the first picture, and that of the wall. */
+static void medians(const float *d, int square_left, float *near, float *far)
+{
+    int more = 0, below = 0;
+
+    *near = d[100 * W + square_left + 50];
+    *far = d[20 * W + 200];
+    for (int y = 65; y < 145; y++)
+        for (int x = square_left + 5; x < square_left + 95; x++) {
+            more += d[y * W + x] > *near + 1;
+            below += d[y * W + x] < *near - 1;
+        }
+    assert_in_range(more + below, 0, 72); /* 1 of 100 */
+}
+
+static void stereo_order(void **state)
+{
+    static uint8_t left[3 * W * H], right[3 * W * H];
+    static float d[W * H];
+    const struct refocus_image a = picture(left), b = picture(right);
+    struct refocus_stereo_params params = refocus_stereo_params_default();
+    struct refocus_stereo_report report = refocus_stereo_report_default();
+    struct refocus_cv_reason reason;
+    float near, far;
+
+    (void)state;
+    make_colours(left, right);
+    for (params.order = 0; params.order <= REFOCUS_STEREO_ORDER_SEEN; params.order++) {
+        const int turned = params.order == REFOCUS_STEREO_RIGHT_FIRST;
+
+        assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &report, &reason), REFOCUS_OK);
+        medians(d, 120, &near, &far);
+        assert_true(fabsf(near - (float)(turned ? -NEAR : NEAR)) <= 1);
+        assert_true(fabsf(far - (float)(turned ? -FAR : FAR)) <= 1);
+        assert_true(report.order > 0.5f);
+    }
+    for (params.order = 0; params.order <= REFOCUS_STEREO_ORDER_SEEN; params.order++) {
+        const int turned = params.order == REFOCUS_STEREO_LEFT_FIRST;
+
+        assert_int_equal(refocus_cv_stereo(&b, &a, &params, d, &report, &reason), REFOCUS_OK);
+        medians(d, 120 - NEAR, &near, &far);
+        assert_true(fabsf(near - (float)(turned ? -NEAR : NEAR)) <= 1);
+        assert_true(fabsf(far - (float)(turned ? -FAR : FAR)) <= 1);
+        assert_true(report.order < -0.5f);
+    }
+    /* All of one colour: nothing tells. */
+    params.order = REFOCUS_STEREO_ORDER_SEEN;
+    make_pair(left, right, 0);
+    for (int i = 0; i < 3 * W * H; i++) {
+        left[i] = (uint8_t)(112 + left[i] / 8);
+        right[i] = (uint8_t)(112 + right[i] / 8);
+    }
+    assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &report, &reason), REFOCUS_OK);
+    assert_true(fabsf(report.order) < 0.15f);
+    medians(d, 120, &near, &far);
+    assert_true(fabsf(near - NEAR) <= 1);
 }
 
 static void stereo_refuses(void **state)
@@ -443,6 +516,7 @@ static void estimates_of_any_size(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(stereo),
+                                       cmocka_unit_test(stereo_order),
                                        cmocka_unit_test(stereo_refuses),
                                        cmocka_unit_test(estimate),
                                        cmocka_unit_test(estimator),
