@@ -2,6 +2,7 @@
 #include "guard.hpp"
 #include "module.hpp"
 #include "stereo_order.hpp"
+#include "stereo_rectify.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -99,19 +100,12 @@ float match_both(const cv::Mat &left, const cv::Mat &right, int least, int count
     return check(out, back);
 }
 
-cv::Mat shifted(const cv::Mat &image, int down)
-{
-    cv::Mat out;
-    const cv::Mat move = (cv::Mat_<double>(2, 3) << 1, 0, 0, 0, 1, -down);
-
-    cv::warpAffine(image, out, move, image.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
-    return out;
-}
-
 /* The range to search at full size is found at a reduced one. */
 struct search {
-    int offset, least, count;
-    float matched;
+    refocus_cv::misalignment apart;
+    int least = 0, count = 0;
+    float matched = -1;
+    cv::Mat disparity;
 };
 
 /* Ends of the range that holds all but the outermost thousandth. */
@@ -140,53 +134,38 @@ search look(const cv::Mat &left, const cv::Mat &right, bool either)
     const int width = cvRound(left.cols / scale), third = std::max(32, width / 3 / 16 * 16);
     const int below = third / 3 / 16 * 16, least = either ? below - third : -below;
     const int count = either ? -2 * least : third;
-    search best = {0, 0, 0, -1};
-    cv::Mat a, b, disparity, kept;
+    search best;
+    cv::Mat a, b, disparity;
 
     cv::resize(left, a, cv::Size(width, cvRound(left.rows / scale)), 0, 0, cv::INTER_AREA);
     cv::resize(right, b, a.size(), 0, 0, cv::INTER_AREA);
-    for (int i = 0; i <= 2 * ROWS; i++) { /* 0, 1, -1, 2, -2, ... */
-        const int offset = i % 2 ? (i + 1) / 2 : -i / 2;
-        const float matched = match_both(a, shifted(b, offset), least, count, disparity);
+    for (int i = 0; i <= 2 * ROWS + 1; i++) { /* 0, 1, -1, 2, -2, ...; then turned and scaled */
+        refocus_cv::misalignment apart = best.apart;
+
+        if (i > 2 * ROWS && !find_misalignment(a, b, best.disparity, 3, apart))
+            break;
+        if (i <= 2 * ROWS)
+            apart.down = i % 2 ? (i + 1) / 2 : -i / 2;
+        const float matched = match_both(a, straightened(b, apart), least, count, disparity);
 
         if (matched > best.matched + 0.01f) {
             best.matched = matched;
-            best.offset = offset;
-            kept = disparity.clone();
+            best.apart = apart;
+            best.disparity = disparity.clone();
         }
     }
-    best.offset = cvRound(best.offset * scale);
+    best.apart.down *= scale;
     if (best.matched > 0)
-        find_range(kept, scale, best);
-    return best;
-}
-
-/* The offset to the pixel, in a strip of full size. */
-int refine(const cv::Mat &left, const cv::Mat &right, const search &s, int reach)
-{
-    const int rows = std::min(left.rows, 240), from = (left.rows - rows) / 2;
-    int best = s.offset;
-    float most = -1;
-    cv::Mat disparity;
-
-    for (int i = 0; i <= 2 * reach; i++) {
-        const int offset = s.offset + (i % 2 ? (i + 1) / 2 : -i / 2);
-        const float matched = match_both(left.rowRange(from, from + rows),
-                                         shifted(right, offset).rowRange(from, from + rows),
-                                         s.least, s.count, disparity);
-
-        if (matched > most + 0.005f) {
-            most = matched;
-            best = offset;
-        }
-    }
+        find_range(best.disparity, scale, best);
+    cv::resize(best.disparity * scale, best.disparity, left.size(), 0, 0, cv::INTER_NEAREST);
     return best;
 }
 
 /* Votes of both pictures, which are as large as their disparities: those of the first one have been
  * checked, and those of the second one are now. It is a first one when it is mirrored. */
-refocus_cv::order_votes votes(const refocus_image *first, const refocus_image *second, int offset,
-                              const cv::Mat &disparity, const cv::Mat &back, const cv::Mat &raw)
+refocus_cv::order_votes votes(const refocus_image *first, const refocus_image *second,
+                              const refocus_cv::misalignment &apart, const cv::Mat &disparity,
+                              const cv::Mat &back, const cv::Mat &raw)
 {
     refocus_cv::order_votes votes;
     cv::Mat photo, mirrored, other;
@@ -194,7 +173,7 @@ refocus_cv::order_votes votes(const refocus_image *first, const refocus_image *s
     cv::resize(refocus_cv::view(first), photo, disparity.size(), 0, 0, cv::INTER_AREA);
     refocus_cv::add_order_votes(photo, disparity, votes);
     cv::resize(refocus_cv::view(second), photo, disparity.size(), 0, 0, cv::INTER_AREA);
-    cv::flip(offset ? shifted(photo, offset) : photo, photo, 1);
+    cv::flip(straightened(photo, apart), photo, 1);
     cv::flip(back, mirrored, 1);
     cv::flip(raw, other, 1);
     check(mirrored, other);
@@ -214,6 +193,7 @@ int stereo(const refocus_image *left, const refocus_image *right,
            const refocus_stereo_params *params, float *out, refocus_stereo_report *report,
            refocus_cv_reason *reason)
 {
+    enum { ROUNDS = 2 };
     const double scale = std::max(1.0, left->width / (double)params->max_side);
     const cv::Size size(cvRound(left->width / scale), std::max(1, cvRound(left->height / scale)));
     const rf_ximgproc *const contrib =
@@ -235,15 +215,14 @@ int stereo(const refocus_image *left, const refocus_image *right,
         return refocus_cv::fail(reason, REFOCUS_ERR_NO_DEPTH,
                                 "the two pictures do not match row by row; give a rectified pair, "
                                 "left before right");
-    if (a.cols > 400)
-        s.offset = refine(a, b, s, (a.cols + 799) / 800);
-    if (s.offset)
-        b = shifted(b, s.offset);
+    for (int i = 0; i < ROUNDS; i++)
+        find_misalignment(a, b, s.disparity, 2 + a.cols / 400, s.apart);
+    b = straightened(b, s.apart);
     cv::Mat back, raw;
     match_pair(a, b, s.least, s.count, disparity, back);
     raw = disparity.clone();
     const float matched = check(disparity, back);
-    const float order = refocus_cv::order_of(votes(left, right, s.offset, disparity, back, raw));
+    const float order = refocus_cv::order_of(votes(left, right, s.apart, disparity, back, raw));
     if (matched < params->least_match)
         return refocus_cv::fail(reason, REFOCUS_ERR_NO_DEPTH,
                                 "too few pixels of the two pictures match; give a rectified pair, "
@@ -275,7 +254,8 @@ int stereo(const refocus_image *left, const refocus_image *right,
     for (int y = 0; y < full.rows; y++)
         std::copy_n(full.ptr<float>(y), full.cols, out + (size_t)y * (size_t)full.cols);
     const refocus_stereo_report found = {
-        sizeof found, (float)(s.offset * scale), (float)least, (float)greatest, matched, order};
+        sizeof found, (float)(s.apart.down * scale), (float)least,       (float)greatest, matched,
+        order,        (float)s.apart.turn,           (float)s.apart.grow};
     write_report(report, &found);
     return REFOCUS_OK;
 }

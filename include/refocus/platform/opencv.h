@@ -67,7 +67,7 @@ static inline struct refocus_stereo_params refocus_stereo_params_default(void)
 /** The result of the matching. Start from refocus_stereo_report_default(). */
 struct refocus_stereo_report {
     uint32_t struct_size;  /**< sizeof(struct refocus_stereo_report), set by the caller */
-    float vertical_offset; /**< pixels that the right picture lies lower; undone */
+    float vertical_offset; /**< pixels that the second picture lies lower in its middle; undone */
     float least, greatest; /**< disparities found, pixels of the left picture */
     float matched;         /**< share of pixels that agree from left and right */
     float order; /**< the picture that comes first, by what only one of them shows: -1 to 1. The
@@ -75,6 +75,8 @@ struct refocus_stereo_report {
                       where there is little of it, or it has no colour of its own (drawn dots).
                     Where the right one is taken for the first, signs of `least` and `greatest` are
                     such that what is nearer has more */
+    float turn;  /**< radians that the second picture is turned by, from right to down; undone */
+    float grow;  /**< part of its size that the second picture is larger by; undone */
 };
 
 static inline struct refocus_stereo_report refocus_stereo_report_default(void)
@@ -89,9 +91,11 @@ static inline struct refocus_stereo_report refocus_stereo_report_default(void)
 /**
  * Disparities of a rectified stereo pair, in pixels of the first picture: a point at x
  * in it is at x - disparity in the second one, or at x + disparity if that is the left one.
- * Semi-global matching (Hirschmueller
- * 2008), both ways; where they disagree by more than a pixel there is NaN. The range of
- * disparities and a small vertical offset are found at a reduced size.
+ * Semi-global matching (Hirschmueller 2008), both ways; where they disagree by more than a pixel
+ * there is NaN. The range of disparities is found at a reduced size.
+ *
+ * Pictures need not be rectified to the pixel: a shift, a turn and another scale of the second one,
+ * by a fiftieth at the most, are told by patches of the first one, and undone.
  *
  * Beside a nearer surface each picture shows a stripe of what is behind that the other one does
  * not: the left picture on its left. Pairs in the other order have their stripes on the wrong side,

@@ -134,13 +134,17 @@ static int match(struct input *input, const char *right, const struct stereo_set
                               reason.text[0] ? reason.text : refocus_strerror(status));
     }
     snprintf(input->made_info.evidence[0], REFOCUS_INFO_LENGTH,
-             "stereo: disparities %.1f to %.1f pixels, right picture %.0f pixels "
-             "lower, %.0f %% of the pixels agree from both sides",
-             (double)report.least, (double)report.greatest, (double)report.vertical_offset,
-             100.0 * (double)report.matched);
-    snprintf(input->made_info.evidence[1], REFOCUS_INFO_LENGTH, "stereo: %s",
+             "stereo: disparities %.1f to %.1f pixels, %.0f %% of the pixels agree from both "
+             "sides",
+             (double)report.least, (double)report.greatest, 100.0 * (double)report.matched);
+    snprintf(input->made_info.evidence[1], REFOCUS_INFO_LENGTH,
+             "stereo: the second picture is %.1f pixels lower, turned by %.2f degrees and %.2f %% "
+             "larger, which is undone",
+             (double)report.vertical_offset, (double)report.turn * 180 / acos(-1),
+             100.0 * (double)report.grow);
+    snprintf(input->made_info.evidence[2], REFOCUS_INFO_LENGTH, "stereo: %s",
              order_evidence(&params, &report));
-    input->made_info.evidence_count = 2;
+    input->made_info.evidence_count = 3;
     take(input, samples, input->photo->image->width, input->photo->image->height, settings);
     return EXIT_DONE;
 }

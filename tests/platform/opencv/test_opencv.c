@@ -145,6 +145,57 @@ static void stereo_order(void **state)
     assert_true(fabsf(near - NEAR) <= 1);
 }
 
+/* The light of a wall or a square at any place: sums of sines. */
+static uint8_t sines_at(double x, double y, int near)
+{
+    double sum = near ? 150 : 100;
+
+    for (int i = 1; i <= 6; i++)
+        sum += 14 * sin((0.13 * i + 0.2 * near) * x + 0.4 * i * i) * sin(0.21 * i * y + 0.9 * i) +
+               6 * sin(0.37 * i * x - 0.29 * i * y + near);
+    return (uint8_t)(sum < 0 ? 0 : sum > 255 ? 255 : sum);
+}
+
+/* Cameras that are turned about their axes and of other focal lengths. */
+static void stereo_unrectified(void **state)
+{
+    static const double apart[][3] = {{0, 0, 0}, {2, 0.012, 0}, {-1, 0, -0.01}, {1, -0.01, 0.008}};
+    static uint8_t left[3 * W * H], right[3 * W * H];
+    static float d[W * H];
+    const struct refocus_image a = picture(left), b = picture(right);
+    const struct refocus_stereo_params params = refocus_stereo_params_default();
+    struct refocus_stereo_report report = refocus_stereo_report_default();
+    struct refocus_cv_reason reason;
+
+    (void)state;
+    for (size_t n = 0; n < sizeof apart / sizeof *apart; n++) {
+        const double down = apart[n][0], turn = apart[n][1], grow = apart[n][2];
+        int known = 0, good = 0;
+
+        for (int i = 0; i < W * H; i++) {
+            const double u = i % W - (W - 1) / 2.0, v = i / W - (H - 1) / 2.0 - down;
+            const double size = (1 + grow) * (1 + grow) + turn * turn;
+            const double x = ((1 + grow) * u + turn * v) / size + (W - 1) / 2.0;
+            const double y = ((1 + grow) * v - turn * u) / size + (H - 1) / 2.0;
+            const int near = x + NEAR >= 120 && x + NEAR < 220 && y >= 60 && y < 150;
+
+            memset(left + 3 * i, sines_at(i % W, i / W, disparity_at(i % W, i / W) == NEAR), 3);
+            memset(right + 3 * i, sines_at(x + (near ? NEAR : FAR), y, near), 3);
+        }
+        assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &report, &reason), REFOCUS_OK);
+        assert_true(fabs((double)report.vertical_offset - down) < 0.15);
+        assert_true(fabs((double)report.turn - turn) < 0.001);
+        assert_true(fabs((double)report.grow - grow) < 0.001);
+        assert_true(n || (report.vertical_offset == 0 && report.turn == 0 && report.grow == 0));
+        for (int i = 0; i < W * H; i++) {
+            known += !isnan(d[i]);
+            good += fabsf(d[i] - (float)disparity_at(i % W, i / W)) <= 1;
+        }
+        assert_in_range(known, W * H * 7 / 10, W * H);
+        assert_in_range(good, known * 96 / 100, known);
+    }
+}
+
 static void stereo_refuses(void **state)
 {
     static uint8_t left[3 * W * H], right[3 * W * H];
@@ -517,6 +568,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(stereo),
                                        cmocka_unit_test(stereo_order),
+                                       cmocka_unit_test(stereo_unrectified),
                                        cmocka_unit_test(stereo_refuses),
                                        cmocka_unit_test(estimate),
                                        cmocka_unit_test(estimator),
