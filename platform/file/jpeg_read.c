@@ -254,6 +254,21 @@ static int read_depth(struct rf_read *read, struct rf_bytes file, const struct p
 }
 #endif
 
+/* A JPEG right behind the main picture, or behind a few numbers, as Leia's tablets write. */
+static struct rf_bytes find_behind(struct rf_bytes file, size_t end)
+{
+    enum { NUMBERS = 64 }; /* bytes */
+
+    for (size_t begin = end; begin <= end + NUMBERS && begin < file.size; begin++) {
+        const struct rf_bytes behind = {file.data + begin, file.size - begin};
+
+        if (rf_is_jpeg(behind)) {
+            return behind;
+        }
+    }
+    return (struct rf_bytes){NULL, 0};
+}
+
 /* Read the picture of an MPO that follows the first and is a whole JPEG. */
 static int read_second(struct rf_read *read, struct rf_bytes file, const struct parts *parts)
 {
@@ -273,6 +288,13 @@ static int read_second(struct rf_read *read, struct rf_bytes file, const struct 
             read->second = false;
             return rf_read_jpeg(read, (struct rf_bytes){file.data + begin, (size_t)size});
         }
+    }
+
+    const struct rf_bytes behind = find_behind(file, parts->end);
+
+    if (!parts->mpf.data && behind.data) {
+        read->second = false;
+        return rf_read_jpeg(read, behind);
     }
     return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
                    "it holds one picture only; give an MPO, a stereo HEIC, or two "

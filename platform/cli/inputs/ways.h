@@ -85,7 +85,8 @@ const char *ways_order_summary(uint32_t index);
     {                                                                                              \
         .kind = OPTION_FLAG, .name = "--stereo-file", .brief = short_help,                         \
         .offset = offsetof(type, stereo.within),                                                   \
-        .help = "the photo's file holds both pictures of a stereo pair: an MPO or a stereo HEIC"   \
+        .help = "the photo's file holds both pictures of a stereo pair: an MPO, two JPEGs or a "   \
+                "stereo HEIC"                                                                      \
     }
 #define MATCH_OPTION(type, stereo, short_help)                                                     \
     .kind = OPTION_CHOICE, .name = "--match", .brief = short_help, .argument = "HOW",              \

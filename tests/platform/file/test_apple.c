@@ -122,6 +122,52 @@ static void mpo_second_view(void **state)
     assert_null(photo);
 }
 
+/* Another JPEG behind the main one without MPF, after a few bytes or none. */
+static void second_view_behind(void **state)
+{
+    static const struct {
+        size_t between;
+        int status;
+    } behind[] = {{0, REFOCUS_OK},
+                  {8, REFOCUS_OK},
+                  {34, REFOCUS_OK},
+                  {64, REFOCUS_OK},
+                  {65, REFOCUS_ERR_UNSUPPORTED}};
+    char path[] = "/tmp/refocus-lif-XXXXXX";
+    const int file = mkstemp(path);
+    struct refocus_reason reason;
+    struct refocus_photo *photo;
+
+    (void)state;
+    assert_true(file >= 0);
+    for (size_t i = 0; i < sizeof behind / sizeof *behind; i++) {
+        static const uint8_t numbers[65];
+        struct bytes first = make_jpeg(64, 32, false, false);
+        struct bytes second = make_jpeg(48, 24, true, false);
+        const off_t at = (off_t)(first.size + behind[i].between);
+
+        assert_int_equal(ftruncate(file, 0), 0);
+        assert_int_equal(pwrite(file, first.data, first.size, 0), (ssize_t)first.size);
+        assert_int_equal(pwrite(file, numbers, behind[i].between, (off_t)first.size),
+                         (ssize_t)behind[i].between);
+        assert_int_equal(pwrite(file, second.data, second.size, at), (ssize_t)second.size);
+        assert_int_equal(pwrite(file, "{}", 2, at + (off_t)second.size), 2);
+        assert_int_equal(refocus_photo_read_second(&photo, path, NULL, &reason), behind[i].status);
+        assert_true(!photo || (photo->image->width == 48 && photo->image->height == 24));
+        refocus_photo_free(&photo);
+        for (size_t size = 1; size < second.size; size += 97) { /* cut off anywhere */
+            assert_int_equal(ftruncate(file, at + (off_t)size), 0);
+            const int status = refocus_photo_read_second(&photo, path, NULL, &reason);
+            assert_true((status == REFOCUS_OK) == (photo != NULL));
+            refocus_photo_free(&photo);
+        }
+        bytes_free(&first);
+        bytes_free(&second);
+    }
+    close(file);
+    unlink(path);
+}
+
 /* MPF tells views for stereo from previews, and which of them there are is told. */
 static void mpo_views(void **state)
 {
@@ -223,13 +269,10 @@ static void xmp_hostile(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mpo_second_view),
-        cmocka_unit_test(mpo_views),
-        cmocka_unit_test(apple_disparity),
-        cmocka_unit_test(apple_mattes),
-        cmocka_unit_test(apple_gain_map_is_no_depth),
-        cmocka_unit_test(apple_ranges),
-        cmocka_unit_test(mpf_index_of_another_file),
+        cmocka_unit_test(mpo_second_view), cmocka_unit_test(second_view_behind),
+        cmocka_unit_test(mpo_views),       cmocka_unit_test(apple_disparity),
+        cmocka_unit_test(apple_mattes),    cmocka_unit_test(apple_gain_map_is_no_depth),
+        cmocka_unit_test(apple_ranges),    cmocka_unit_test(mpf_index_of_another_file),
         cmocka_unit_test(xmp_hostile),
     };
 
