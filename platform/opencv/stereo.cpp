@@ -125,15 +125,11 @@ void find_range(const cv::Mat &disparity, double scale, search &s)
     s.count = ((int)std::ceil(high + margin) - s.least + 15) / 16 * 16;
 }
 
-/* Disparities below 0 are those of pictures that do not look straight ahead, and of pairs in the
- * other order, which have as many below as others have above. */
-search look(const cv::Mat &left, const cv::Mat &right, bool either)
+search look(const cv::Mat &left, const cv::Mat &right)
 {
     enum { WIDTH = 400, ROWS = 5 };
     const double scale = std::max(1.0, left.cols / (double)WIDTH);
-    const int width = cvRound(left.cols / scale), third = std::max(32, width / 3 / 16 * 16);
-    const int below = third / 3 / 16 * 16, least = either ? below - third : -below;
-    const int count = either ? -2 * least : third;
+    const int width = cvRound(left.cols / scale), count = std::max(32, width / 3 / 16 * 16);
     search best;
     cv::Mat a, b, disparity;
 
@@ -146,7 +142,8 @@ search look(const cv::Mat &left, const cv::Mat &right, bool either)
             break;
         if (i <= 2 * ROWS)
             apart.down = i % 2 ? (i + 1) / 2 : -i / 2;
-        const float matched = match_both(a, straightened(b, apart), least, count, disparity);
+        const float matched =
+            match_both(a, straightened(b, apart), -count / 3 / 16 * 16, count, disparity);
 
         if (matched > best.matched + 0.01f) {
             best.matched = matched;
@@ -161,24 +158,125 @@ search look(const cv::Mat &left, const cv::Mat &right, bool either)
     return best;
 }
 
-/* Votes of both pictures, which are as large as their disparities: those of the first one have been
- * checked, and those of the second one are now. It is a first one when it is mirrored. */
-refocus_cv::order_votes votes(const refocus_image *first, const refocus_image *second,
-                              const refocus_cv::misalignment &apart, const cv::Mat &disparity,
-                              const cv::Mat &back, const cv::Mat &raw)
+/* Two pictures as they are matched. */
+struct pair {
+    cv::Mat photo[2], grey[2]; /* 8 bits a channel */
+};
+
+pair load(const refocus_image *first, const refocus_image *second, const cv::Size &size)
+{
+    const refocus_image *const image[] = {first, second};
+    pair p;
+
+    for (int i = 0; i < 2; i++) {
+        cv::cvtColor(refocus_cv::view(image[i]), p.grey[i], cv::COLOR_RGB2GRAY);
+        if (p.grey[i].size() != size)
+            cv::resize(p.grey[i], p.grey[i], size, 0, 0, cv::INTER_AREA);
+        cv::resize(refocus_cv::view(image[i]), p.photo[i], size, 0, 0, cv::INTER_AREA);
+    }
+    return p;
+}
+
+/* A right picture and its left one become a left one and its right one. */
+pair mirrored(const pair &p)
+{
+    pair out;
+
+    for (int i = 0; i < 2; i++) {
+        cv::flip(p.photo[i], out.photo[i], 1);
+        cv::flip(p.grey[i], out.grey[i], 1);
+    }
+    return out;
+}
+
+/* Disparities of a pair whose first picture is taken for the left one. */
+struct matches {
+    cv::Mat disparity;
+    refocus_cv::misalignment apart;
+    float matched = 0, order = 0; /* as in refocus_stereo_report */
+    int status = REFOCUS_OK;      /* else there are none, */
+    const char *why = nullptr;    /* and this is why */
+};
+
+/* Votes of both pictures: disparities of the first one have been checked, and those of the second
+ * one are now. It is a first one when it is mirrored. */
+float find_order(const pair &p, const matches &m, const cv::Mat &back, const cv::Mat &raw)
 {
     refocus_cv::order_votes votes;
-    cv::Mat photo, mirrored, other;
+    cv::Mat second, disparity, other;
 
-    cv::resize(refocus_cv::view(first), photo, disparity.size(), 0, 0, cv::INTER_AREA);
-    refocus_cv::add_order_votes(photo, disparity, votes);
-    cv::resize(refocus_cv::view(second), photo, disparity.size(), 0, 0, cv::INTER_AREA);
-    cv::flip(straightened(photo, apart), photo, 1);
-    cv::flip(back, mirrored, 1);
+    refocus_cv::add_order_votes(p.photo[0], m.disparity, votes);
+    cv::flip(straightened(p.photo[1], m.apart), second, 1);
+    cv::flip(back, disparity, 1);
     cv::flip(raw, other, 1);
-    check(mirrored, other);
-    refocus_cv::add_order_votes(photo, mirrored, votes);
-    return votes;
+    check(disparity, other);
+    refocus_cv::add_order_votes(second, disparity, votes);
+    return refocus_cv::order_of(votes);
+}
+
+matches match_in_order(const pair &p, const refocus_stereo_params *params,
+                       const rf_ximgproc *contrib)
+{
+    enum { ROUNDS = 2 };
+    const cv::Mat &a = p.grey[0];
+    search s = look(a, p.grey[1]);
+    cv::Mat back, raw;
+    matches m;
+
+    if (s.matched < params->least_match / 2) {
+        m.status = REFOCUS_ERR_NO_DEPTH;
+        m.why =
+            "the two pictures do not match row by row; give a rectified pair, left before right";
+        return m;
+    }
+    for (int i = 0; i < ROUNDS; i++)
+        find_misalignment(a, p.grey[1], s.disparity, 2 + a.cols / 400, s.apart);
+    m.apart = s.apart;
+    match_pair(a, straightened(p.grey[1], m.apart), s.least, s.count, m.disparity, back);
+    raw = m.disparity.clone();
+    m.matched = check(m.disparity, back);
+    m.order = find_order(p, m, back, raw);
+    m.status = m.matched < params->least_match ? (int)REFOCUS_ERR_NO_DEPTH : (int)REFOCUS_OK;
+    if (m.status != REFOCUS_OK)
+        m.why =
+            "too few pixels of the two pictures match; give a rectified pair, left before right";
+    else if (params->method == REFOCUS_STEREO_PLAIN)
+        m.disparity = raw;
+    else if (params->method == REFOCUS_STEREO_WLS) {
+        cv::Mat filled = m.disparity.clone();
+
+        if (contrib->wls(p.photo[0].data, raw.ptr<float>(), back.ptr<float>(), filled.ptr<float>(),
+                         a.cols, a.rows)) {
+            m.status = REFOCUS_ERR_UNSUPPORTED;
+            m.why = "OpenCV gave up";
+        }
+        /* It smooths over edges: what has been confirmed stays. */
+        filled.copyTo(m.disparity, ~(m.disparity == m.disparity) & (filled >= s.least) &
+                                       (filled <= s.least + s.count));
+    }
+    return m;
+}
+
+/* In the order that is asked for, or seen: a pair that does not match, or whose votes say so, is
+ * tried the other way round. */
+matches match_in_any(const pair &p, const refocus_stereo_params *params, const rf_ximgproc *contrib)
+{
+    bool turned = params->order == REFOCUS_STEREO_RIGHT_FIRST;
+    matches m = match_in_order(turned ? mirrored(p) : p, params, contrib);
+
+    if (params->order == REFOCUS_STEREO_ORDER_SEEN && (m.status || m.order <= -sure)) {
+        const matches other = match_in_order(mirrored(p), params, contrib);
+
+        turned = !other.status && other.order >= sure;
+        if (turned)
+            m = other;
+    }
+    if (turned && !m.status) {
+        cv::flip(m.disparity, m.disparity, 1);
+        m.apart.turn = -m.apart.turn;
+        m.order = -m.order;
+    }
+    return m;
 }
 
 /* As far as the caller's struct goes; there may be none. */
@@ -193,58 +291,21 @@ int stereo(const refocus_image *left, const refocus_image *right,
            const refocus_stereo_params *params, float *out, refocus_stereo_report *report,
            refocus_cv_reason *reason)
 {
-    enum { ROUNDS = 2 };
     const double scale = std::max(1.0, left->width / (double)params->max_side);
     const cv::Size size(cvRound(left->width / scale), std::max(1, cvRound(left->height / scale)));
     const rf_ximgproc *const contrib =
         params->method == REFOCUS_STEREO_WLS ? rf_opencv_ximgproc() : nullptr;
-    cv::Mat a, b, disparity, full;
+    cv::Mat full;
 
     if (params->method == REFOCUS_STEREO_WLS && !contrib)
         return refocus_cv::fail(reason, REFOCUS_ERR_UNSUPPORTED,
                                 "the module refocus-ximgproc.so is not there; build it with "
                                 "-Dximgproc=enabled, or match without it");
-    cv::cvtColor(refocus_cv::view(left), a, cv::COLOR_RGB2GRAY);
-    cv::cvtColor(refocus_cv::view(right), b, cv::COLOR_RGB2GRAY);
-    if (scale > 1) {
-        cv::resize(a, a, size, 0, 0, cv::INTER_AREA);
-        cv::resize(b, b, size, 0, 0, cv::INTER_AREA);
-    }
-    search s = look(a, b, params->order == REFOCUS_STEREO_ORDER_SEEN);
-    if (s.matched < params->least_match / 2)
-        return refocus_cv::fail(reason, REFOCUS_ERR_NO_DEPTH,
-                                "the two pictures do not match row by row; give a rectified pair, "
-                                "left before right");
-    for (int i = 0; i < ROUNDS; i++)
-        find_misalignment(a, b, s.disparity, 2 + a.cols / 400, s.apart);
-    b = straightened(b, s.apart);
-    cv::Mat back, raw;
-    match_pair(a, b, s.least, s.count, disparity, back);
-    raw = disparity.clone();
-    const float matched = check(disparity, back);
-    const float order = refocus_cv::order_of(votes(left, right, s.apart, disparity, back, raw));
-    if (matched < params->least_match)
-        return refocus_cv::fail(reason, REFOCUS_ERR_NO_DEPTH,
-                                "too few pixels of the two pictures match; give a rectified pair, "
-                                "left before right");
-    if (params->method == REFOCUS_STEREO_PLAIN)
-        disparity = raw;
-    if (params->method == REFOCUS_STEREO_WLS) {
-        cv::Mat photo, filled = disparity.clone();
-
-        cv::resize(refocus_cv::view(left), photo, a.size(), 0, 0, cv::INTER_AREA);
-        if (contrib->wls(photo.data, raw.ptr<float>(), back.ptr<float>(), filled.ptr<float>(),
-                         a.cols, a.rows))
-            return refocus_cv::fail(reason, REFOCUS_ERR_UNSUPPORTED, "OpenCV gave up");
-        /* It smooths over edges: what has been confirmed stays. */
-        filled.copyTo(disparity, ~(disparity == disparity) & (filled >= s.least) &
-                                     (filled <= s.least + s.count));
-    }
-    if (params->order == REFOCUS_STEREO_RIGHT_FIRST ||
-        (params->order == REFOCUS_STEREO_ORDER_SEEN && order <= -sure))
-        disparity = -disparity;
-    disparity *= scale;
-    cv::resize(disparity, full, cv::Size(left->width, left->height), 0, 0, cv::INTER_NEAREST);
+    const matches m = match_in_any(load(left, right, size), params, contrib);
+    if (m.status)
+        return refocus_cv::fail(reason, m.status, m.why);
+    cv::resize(m.disparity * scale, full, cv::Size(left->width, left->height), 0, 0,
+               cv::INTER_NEAREST);
     double least = 0, greatest = 0;
     cv::minMaxLoc(full, &least, &greatest, nullptr, nullptr, full == full);
     if (greatest - least < 1)
@@ -254,8 +315,8 @@ int stereo(const refocus_image *left, const refocus_image *right,
     for (int y = 0; y < full.rows; y++)
         std::copy_n(full.ptr<float>(y), full.cols, out + (size_t)y * (size_t)full.cols);
     const refocus_stereo_report found = {
-        sizeof found, (float)(s.apart.down * scale), (float)least,       (float)greatest, matched,
-        order,        (float)s.apart.turn,           (float)s.apart.grow};
+        sizeof found, (float)(m.apart.down * scale), (float)least,       (float)greatest, m.matched,
+        m.order,      (float)m.apart.turn,           (float)m.apart.grow};
     write_report(report, &found);
     return REFOCUS_OK;
 }
