@@ -194,8 +194,8 @@ struct matches {
     cv::Mat disparity;
     refocus_cv::misalignment apart;
     float matched = 0, order = 0; /* as in refocus_stereo_report */
-    int status = REFOCUS_OK;      /* else there are none, */
-    const char *why = nullptr;    /* and this is why */
+    int status = REFOCUS_OK;      /* an error where there are none */
+    const char *why = nullptr;    /* the reason of an error */
 };
 
 /* Votes of both pictures: disparities of the first one have been checked, and those of the second
