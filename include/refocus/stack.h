@@ -238,7 +238,8 @@ REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refo
  * matter, nor light that falls off towards the corners. Clipped places of the wider frames are not
  * compared. Samples are 1/960 of the longer side at least, and twice as large, twice more and so
  * on while more than 1/20 of the sure ones have the two largest blurs; what has them then is not
- * sure. The range ends where 1/50 of the sure ones lie beyond. Depth is wrong where something moves
+ * sure. The range ends where 1/50 of the sure ones lie beyond. Pixels get the depth of the four
+ * samples around, by nearness and colour (Kopf et al. 2007). Depth is wrong where something moves
  * between the frames; the photo is one of them.
  *
  * A stack is finished once: what aligns its frames overwrites them.

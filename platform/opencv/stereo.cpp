@@ -16,7 +16,6 @@ namespace
 {
 
 const float none = std::numeric_limits<float>::quiet_NaN();
-const float sure = 0.15f; /* a vote on the order from which it counts */
 
 /* Matches of a to b with a[x] ~ b[x - d], d from least on; NaN where there is none. */
 cv::Mat match(const cv::Mat &a, const cv::Mat &b, int least, int count)
@@ -264,12 +263,15 @@ matches match_in_any(const pair &p, const refocus_stereo_params *params, const r
     bool turned = params->order == REFOCUS_STEREO_RIGHT_FIRST;
     matches m = match_in_order(turned ? mirrored(p) : p, params, contrib);
 
-    if (params->order == REFOCUS_STEREO_ORDER_SEEN && (m.status || m.order <= -sure)) {
+    if (params->order == REFOCUS_STEREO_ORDER_SEEN &&
+        (m.status || m.order <= -REFOCUS_STEREO_ORDER_SURE)) {
         const matches other = match_in_order(mirrored(p), params, contrib);
 
-        turned = !other.status && other.order >= sure;
+        turned = !other.status && other.order >= REFOCUS_STEREO_ORDER_SURE;
         if (turned)
             m = other;
+        else
+            m.order = 0; /* neither order is confirmed */
     }
     if (turned && !m.status) {
         cv::flip(m.disparity, m.disparity, 1);

@@ -165,7 +165,7 @@ void rf_stack_compose_row(const struct refocus_stack *s, uint8_t *out, const uin
  * weighted by how near they are and how alike in colour (Kopf et al. 2007). */
 static void upsample_row(const struct refocus_stack *s, uint16_t *depth, int y)
 {
-    enum { EDGE = 8 * 8, MOST = 1 << 12 }; /* squared codes that halve a weight; weights, Q4 */
+    enum { EDGE = 8 * 8, MOST = 1 << 12 }; /* squared codes that halve a weight; the greatest */
     const uint8_t *pixel = s->frame[0].rgb + 3 * (ptrdiff_t)y * s->width;
     const int py = (2 * y + 1) * 128 / s->reduced - 128; /* Q8 samples */
 

@@ -100,12 +100,10 @@ static void size(struct refocus_stack *s, const struct refocus_stack_params *p)
     const int depths =
         s->kind == REFOCUS_STACK_FOCUS ? (p->frames - 1) * s->sub + 1 : RF_STACK_RADII;
     s->labels = depths <= 24 ? (depths + 7) / 8 * 8 : REFOCUS_STACK_MOST_FRAMES;
-    s->reduced = reduction(p->width, p->height, RF_STACK_MOST_SAMPLES);
-    if (s->kind != REFOCUS_STACK_FOCUS) {
-        const int longer = p->width > p->height ? p->width : p->height;
-
-        s->reduced = (longer + RF_STACK_LONGER - 1) / RF_STACK_LONGER;
-    }
+    const int longer = p->width > p->height ? p->width : p->height;
+    s->reduced = s->kind == REFOCUS_STACK_FOCUS
+                     ? reduction(p->width, p->height, RF_STACK_MOST_SAMPLES)
+                     : (longer + RF_STACK_LONGER - 1) / RF_STACK_LONGER;
     s->columns = (p->width + s->reduced - 1) / s->reduced;
     s->rows = (p->height + s->reduced - 1) / s->reduced;
     s->small_by = reduction(p->width, p->height, SMALL_PIXELS);

@@ -325,7 +325,7 @@ class DepthOfAStack(Case):
             'focus stack: 3 frames, moved by up to 0.0 pixels, in the geometry of frame 3',
             'EXIF: the f-numbers of the frames, 2 to 8'])
         self.assertRegex(report['evidence'][2], '^apertures: the nearest surface is taken to be in '
-                         r'focus, and the widest one blurs the others by up to [234]\.\d pixels$')
+                         r'focus; the widest aperture blurs by up to [234]\.\d pixels$')
         near, far = self.halves('d.pgm')
         self.assertGreater(near, 60000)
         self.assertLess(far, 20000)

@@ -190,7 +190,7 @@ REFOCUS_API int refocus_photo_read_memory(struct refocus_photo **photo, const vo
 
 /**
  * The second picture of a stereo file: of an MPO (a JPEG with the other view behind it,
- * CIPA DC-007), of a JPEG with another one right behind it, as Leia's tablets write (.lif), or of a
+ * CIPA DC-007), of a JPEG with another one right behind it, as Leia's tablets write (LIF), or of a
  * HEIC with two pictures. refocus_photo_read() reads the first, the left one.
  *
  * @return as refocus_photo_read(); REFOCUS_ERR_UNSUPPORTED when there is only one

@@ -38,9 +38,11 @@ enum refocus_stereo_method {
 enum refocus_stereo_order {
     REFOCUS_STEREO_LEFT_FIRST = 0,  /**< the left one */
     REFOCUS_STEREO_RIGHT_FIRST = 1, /**< the right one */
-    REFOCUS_STEREO_ORDER_SEEN =
-        2, /**< stripes that only one of them shows tell, else the left one */
+    REFOCUS_STEREO_ORDER_SEEN = 2,  /**< stripes of one picture tell, else the left one */
 };
+
+/** Votes on the order of a pair, `order` of struct refocus_stereo_report, are sure from here on. */
+#define REFOCUS_STEREO_ORDER_SURE 0.15f
 
 /** Stereo matching. Start from refocus_stereo_params_default(). */
 struct refocus_stereo_params {
@@ -68,13 +70,13 @@ static inline struct refocus_stereo_params refocus_stereo_params_default(void)
 struct refocus_stereo_report {
     uint32_t struct_size;  /**< sizeof(struct refocus_stereo_report), set by the caller */
     float vertical_offset; /**< pixels that the second picture lies lower in its middle; undone */
-    float least, greatest; /**< disparities found, pixels of the left picture */
+    float least, greatest; /**< disparities found, pixels of the first picture */
     float matched;         /**< share of pixels that agree from left and right */
-    float order; /**< the picture that comes first, by what only one of them shows: -1 to 1. The
-                    left one above 0, from 3/20 on surely; the right one below, to -3/20 surely; 0
-                      where there is little of it, or it has no colour of its own (drawn dots).
-                    Where the right one is taken for the first, signs of `least` and `greatest` are
-                    such that what is nearer has more */
+    float order; /**< the picture that comes first, by stripes that one picture alone shows: -1 to
+                      1; the left one above 0, the right one below, surely from
+                      REFOCUS_STEREO_ORDER_SURE on. 0 where there are few stripes or both orders
+                      are contradicted. Where the right one is taken for the first, `least` and
+                      `greatest` have signs such that what is nearer has more */
     float turn;  /**< radians that the second picture is turned by, from right to down; undone */
     float grow;  /**< part of its size that the second picture is larger by; undone */
 };

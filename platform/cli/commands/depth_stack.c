@@ -216,11 +216,12 @@ static void tell_apertures(struct refocus_photo_info *info, const struct stack_f
     if (frames->of_files)
         snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH,
                  "EXIF: the f-numbers of the frames, %.3g to %.3g", 1 / most, 1 / least);
-    snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH,
-             "apertures: the %s surface is taken to be in focus, and the widest one blurs the "
-             "others by up to %.1f pixels",
-             frames->kind == REFOCUS_STACK_APERTURE_NEAREST ? "nearest" : "farthest",
-             (double)result->blur);
+    snprintf(
+        info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH,
+        "apertures: the %s surface is taken to be in focus; the widest aperture blurs by up to "
+        "%.1f pixels",
+        frames->kind == REFOCUS_STACK_APERTURE_NEAREST ? "nearest" : "farthest",
+        (double)result->blur);
 }
 
 static int finish(struct input *input, struct refocus_stack *stack,

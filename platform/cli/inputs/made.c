@@ -86,13 +86,11 @@ const char *ways_order_summary(uint32_t index)
 static const char *order_evidence(const struct refocus_stereo_params *params,
                                   const struct refocus_stereo_report *report)
 {
-    const double sure = 3 / 20.0; /* platform/opencv.h */
-
     if (params->order != REFOCUS_STEREO_ORDER_SEEN)
         return "the order of the pictures is as it was given";
-    return (double)report->order >= sure
+    return report->order >= REFOCUS_STEREO_ORDER_SURE
                ? "what only one picture shows tells that the left one comes first"
-           : (double)report->order <= -sure
+           : report->order <= -REFOCUS_STEREO_ORDER_SURE
                ? "what only one picture shows tells that the right one comes first"
                : "nothing tells which picture is the left one; the first is taken for it";
 }

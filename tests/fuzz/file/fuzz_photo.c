@@ -1,5 +1,18 @@
-/* fuzz_photo.c: any bytes as a photo of any format. */
+/* fuzz_photo.c: any bytes as a photo of any format, and as the second one of a stereo file. */
 #include "fuzz.h"
+
+static void read_second(const uint8_t *data, size_t size)
+{
+    struct fuzz_reading reading;
+
+    fuzz_begin(&reading);
+    if (rf_read_begin(&reading.read, (struct rf_bytes){data, size}, &fuzz_limits, true, true,
+                      &reading.info, NULL, &reading.reason) != REFOCUS_OK &&
+        reading.reason.text[0] == '\0') {
+        abort();
+    }
+    fuzz_end(&reading);
+}
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
@@ -18,5 +31,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         fuzz_check_photo(photo);
     }
     refocus_photo_free(&photo);
+    read_second(data, size);
     return 0;
 }
