@@ -225,7 +225,9 @@ little of the scenes. Without means that are made the same nightlights loses 5 d
 .2 in the mean. 18 real pairs of cameras (f/16 with f/2.8 or f/1.8; not in the repository) showed how to align, how samples grow
 and what is clipped; their depth looks right but for leaves that the wind moved, two pairs whose camera moved between the
 shots, and what is beside places that the wide aperture overexposed. Tried and left out: discs that leave out what is nearer,
-in a second pass (+.5 dB on fence, -.6 on portrait).
+in a second pass (+.5 dB on fence, -.6 on portrait). Beside silhouettes the depth of what is nearer reaches some seven samples
+too far, as windows do: a sharp stripe of background beside a subject in focus. Half, a quarter and less of its votes there,
+as for focus stacks, cost .04 dB and more in the mean.
 
 %s'''
 
