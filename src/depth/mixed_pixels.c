@@ -10,13 +10,18 @@
  *     share = (p - F) . (N - F) / |N - F|^2
  *
  * where F and N are colours well within the surfaces. The nearer surface takes those beyond its
- * edge of which it has more than LEAST, up to the first one of which it has not.
+ * edge of which it has more than LEAST, up to the first one of which it has not, and no more than
+ * half of the mixtures, as the edge is in their middle.
+ *
+ * Where the far surface has a pattern its pixels are like mixtures, too. So shares have to fall
+ * from the edge on to those of F, and what is nearer has to look like N.
  *
  * A median of 3 x 3 then smooths the silhouettes.
  *
- * A photo that is sharp to the pixel has at most two mixtures across most of its silhouettes. There
- * a whole pixel would be too much, and nothing is done: of 720 x 540 pixels path-traced through a
- * camera's lens 45 to 78 % are so sharp, of photos of 3 and 12 megapixels from phones 5 to 18 %.
+ * A small photo that is sharp to the pixel has at most two mixtures across most of its silhouettes.
+ * There a whole pixel would be too much, and nothing is done: of 720 x 540 pixels path-traced
+ * through a camera's lens 45 to 78 % are so sharp, of photos of 3 and 12 megapixels from phones 4
+ * to 54 %. In those a pixel is small beside what is seen of them.
  */
 #include "depth/mixed_pixels.h"
 
@@ -27,17 +32,20 @@
 #include "image/format.h"
 
 enum {
-    BAND = 16,      /* rows of a work item */
-    BLOCK = 16,     /* pixels that are passed over together */
-    STEP = 1966,    /* 0.03: a greater one is an edge */
-    REACH = 5,      /* mixtures are looked for so far on either side of a step */
-    MOST = 3,       /* pixels that are taken: two bits for each direction */
-    MARGIN = 7,     /* pixels at the sides of a photo that are left alone: REACH + 2 */
-    CONTRAST = 24,  /* codes: of surfaces that look more alike no share is certain */
-    LEAST = 15,     /* percent of a mixture */
-    SHARP = 2,      /* mixtures across an edge that is sharp */
-    FEW_SHARP = 30, /* percent of the edges of a soft photo are sharp at most */
-    FEWEST = 100,   /* edges that can tell */
+    BAND = 16,       /* rows of a work item */
+    BLOCK = 16,      /* pixels that are passed over together */
+    STEP = 1966,     /* 0.03: a greater one is an edge */
+    REACH = 5,       /* mixtures are looked for so far on either side of a step */
+    MOST = 3,        /* pixels that are taken: two bits for each direction */
+    MARGIN = 7,      /* pixels at the sides of a photo that are left alone: REACH + 2 */
+    CONTRAST = 24,   /* codes: of surfaces that look more alike no share is certain */
+    LEAST = 15,      /* percent of a mixture */
+    RISE = 10,       /* percent: shares that rise by more away from the edge are a pattern */
+    ALIKE = 50,      /* percent, of all pixels of the nearer surface */
+    SHARP = 2,       /* mixtures across an edge that is sharp */
+    FEW_SHARP = 30,  /* percent of the edges of a soft photo are sharp at most */
+    FEWEST = 100,    /* edges that can tell */
+    LARGE = 3 << 20, /* pixels of a photo that may have more sharp edges */
     DIRECTIONS = 4,
 };
 
@@ -62,6 +70,24 @@ static bool continues(int disparity, int other, int contrast)
     const int off = disparity - other;
 
     return 2 * off < contrast && 2 * off > -contrast;
+}
+
+/* Whether shares of REACH + 1 pixels of the far surface, then of as many of the near one, are those
+ * of a silhouette. */
+static bool is_silhouette(const int *share, int square, int mixtures)
+{
+    const int far = REACH - 1 - (mixtures + 1) / 2; /* pixels that mixtures do not reach */
+
+    for (int i = 0; i < far; i++)
+        if (share[i] > LEAST * square || share[i] < -LEAST * square)
+            return false;
+    for (int i = 1; i <= REACH + 1; i++)
+        if (share[i - 1] - share[i] > RISE * square)
+            return false;
+    for (int i = REACH + 1; i < 2 * REACH + 2; i++)
+        if (share[i] < ALIKE * square)
+            return false;
+    return true;
 }
 
 /* The edge between the far pixel at (x, y) and the near one in a direction. */
@@ -94,8 +120,9 @@ static struct edge look_across(const struct work *work, int x, int y, int direct
             share[i] += 100 * (p[c] - far[c]) * (near[c] - far[c]);
         edge.mixtures += share[i] > LEAST * square && share[i] < (100 - LEAST) * square;
     }
-    if (edge.mixtures > SHARP)
-        while (edge.run < MOST && share[REACH - edge.run] > LEAST * square)
+    if (is_silhouette(share, square, edge.mixtures))
+        while (edge.run < MOST && 2 * edge.run < edge.mixtures &&
+               share[REACH - edge.run] > LEAST * square)
             edge.run++;
     return edge;
 }
@@ -213,7 +240,7 @@ static void put_band(void *context, int band, int worker)
     }
 }
 
-/* Makes `nearer` the map with what nearer surfaces take. */
+/* Makes `nearer` the map with what nearer surfaces take, and `run` 1 where they take a pixel. */
 static void take_nearer(void *context, int band, int worker)
 {
     const struct work *work = context;
@@ -225,64 +252,82 @@ static void take_nearer(void *context, int band, int worker)
     for (int y = band * BAND; y < end; y++) {
         const uint16_t *restrict map = mixed->map.at + y * mixed->map.stride;
         uint16_t *restrict nearer = mixed->nearer.at + y * mixed->nearer.stride;
+        uint8_t *restrict taken = mixed->run.at + y * mixed->run.stride;
 
-        for (int x = 0; x < mixed->photo->width; x++)
-            nearer[x] = nearer[x] > map[x] ? nearer[x] : map[x];
+        for (int x = 0; x < mixed->photo->width; x++) {
+            taken[x] = nearer[x] > map[x];
+            nearer[x] = taken[x] ? nearer[x] : map[x];
+        }
     }
 }
 
-/* Whether one of BLOCK pixels lies beside a step, on either side. */
-static bool has_edge(const uint16_t *map, ptrdiff_t stride)
+/* Whether a pixel, or one of the eight around it, was taken by a nearer surface. */
+static bool is_beside(const uint8_t *taken, ptrdiff_t stride)
 {
     int any = 0;
 
-    for (int i = 0; i < BLOCK; i++) {
-        const int across = map[i - 1] - map[i + 1], down = map[i - stride] - map[i + stride];
+    for (int i = -1; i <= 1; i++)
+        any |= taken[i - stride] | taken[i] | taken[i + stride];
+    return any != 0;
+}
 
-        any |= (across > STEP) | (across < -STEP) | (down > STEP) | (down < -STEP);
-    }
+static bool has_any(const uint8_t *taken, ptrdiff_t stride)
+{
+    int any = 0;
+
+    for (int i = -1; i <= BLOCK; i++)
+        any |= taken[i - stride] | taken[i] | taken[i + stride];
     return any != 0;
 }
 
 /* Each row or column is taken by itself, which leaves teeth of a pixel along silhouettes, and what
- * is sharp beside what is blurred shows. No surface of a soft photo is so thin: a median of 3 x 3
- * takes teeth and single pixels away. */
+ * is sharp beside what is blurred shows. A median of 3 x 3 takes teeth and single pixels away. It
+ * would take away surfaces that are as thin, too, so it is left out where nothing was taken. */
 static void smooth_silhouettes(void *context, int band, int worker)
 {
     const struct work *work = context;
     const struct rf_mixed_pixels *mixed = &work->mixed;
     const int width = mixed->photo->width, height = mixed->photo->height;
     const int end = (band + 1) * BAND < height ? (band + 1) * BAND : height;
-    const ptrdiff_t stride = mixed->nearer.stride;
 
     (void)worker;
     for (int y = band * BAND; y < end; y++) {
         uint16_t *map = mixed->map.at + y * mixed->map.stride;
-        const uint16_t *nearer = mixed->nearer.at + y * stride;
+        const uint16_t *nearer = mixed->nearer.at + y * mixed->nearer.stride;
+        const uint8_t *taken = mixed->run.at + y * mixed->run.stride;
 
         memcpy(map, nearer, (size_t)width * sizeof *map);
         if (y < 1 || y >= height - 1)
             continue;
         for (int x = 1; x + BLOCK < width; x += BLOCK)
-            if (has_edge(nearer + x, stride))
+            if (has_any(taken + x, mixed->run.stride))
                 for (int i = x; i < x + BLOCK; i++)
-                    map[i] = rf_median_of_nine(nearer + i, stride);
+                    if (is_beside(taken + i, mixed->run.stride))
+                        map[i] = rf_median_of_nine(nearer + i, mixed->nearer.stride);
     }
+}
+
+static bool is_large(const struct refocus_image *photo)
+{
+    return (int64_t)photo->width * photo->height > LARGE;
+}
+
+static bool is_soft(struct work *work)
+{
+    const int edges = atomic_load(&work->edges), sharp = atomic_load(&work->sharp);
+
+    return edges >= FEWEST && (int64_t)100 * sharp <= (int64_t)FEW_SHARP * edges;
 }
 
 void rf_claim_mixed_pixels(const struct rf_mixed_pixels *mixed, struct rf_pool *pool)
 {
     struct work work = {.mixed = *mixed, .bytes = refocus_format_bytes(mixed->photo->format)};
     const int bands = (mixed->photo->height + BAND - 1) / BAND;
-    int edges, sharp;
 
     atomic_init(&work.edges, 0);
     atomic_init(&work.sharp, 0);
     rf_pool_run(pool, find_runs, &work, bands);
-    edges = atomic_load(&work.edges);
-    sharp = atomic_load(&work.sharp);
-    if (edges < FEWEST || (int64_t)100 * sharp > (int64_t)FEW_SHARP * edges ||
-        rf_run_cancelled(pool->run))
+    if ((!is_large(mixed->photo) && !is_soft(&work)) || rf_run_cancelled(pool->run))
         return;
     rf_pool_run(pool, put_band, &work, bands);
     rf_pool_run(pool, take_nearer, &work, bands);

@@ -1,5 +1,4 @@
-/* mixed_pixels.h: gives the mixed pixels along silhouettes of a soft photo to the nearer surface.
- */
+/* mixed_pixels.h: gives the mixed pixels along silhouettes to the nearer surface. */
 #ifndef RF_DEPTH_MIXED_PIXELS_H
 #define RF_DEPTH_MIXED_PIXELS_H
 
@@ -18,8 +17,8 @@ struct rf_mixed_pixels {
 };
 
 /*
- * Changes nothing where the photo is sharp to the pixel. Is to be called on a map whose edges lie
- * on the photo's. Of a run that is cancelled the result is of no use.
+ * Is to be called on a map whose edges lie on the photo's. Of a run that is cancelled the result is
+ * of no use.
  */
 void rf_claim_mixed_pixels(const struct rf_mixed_pixels *mixed, struct rf_pool *pool);
 

@@ -1,5 +1,4 @@
-/* test_mixed_pixels.c: mixed pixels along silhouettes go to the nearer surface where the photo is
- * soft. */
+/* test_mixed_pixels.c: mixed pixels along silhouettes go to the nearer surface. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -40,12 +39,20 @@ static void draw(struct stage *s, double soft, int contrast)
     }
 }
 
-static void run(struct stage *s, int threads)
+/* Planes of a photo of as many discs across and down. */
+struct planes {
+    int across, down;
+    uint8_t *rgb, *run;
+    uint16_t *map, *nearer;
+};
+
+static void claim(const struct planes *p, int threads)
 {
-    const struct refocus_image photo =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, s->rgb, WIDTH, HEIGHT, 3 * (ptrdiff_t)WIDTH);
+    const int width = p->across * WIDTH;
+    const struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, p->rgb, width,
+                                                            p->down * HEIGHT, 3 * (ptrdiff_t)width);
     const struct rf_mixed_pixels mixed = {
-        &photo, {s->map, WIDTH}, {s->nearer, WIDTH}, {s->run, WIDTH}};
+        &photo, {p->map, width}, {p->nearer, width}, {p->run, width}};
     struct rf_pool pool;
     struct rf_run state = {.looked_at = NULL};
 
@@ -55,12 +62,52 @@ static void run(struct stage *s, int threads)
     rf_pool_end(&pool);
 }
 
+static void run(struct stage *s, int threads)
+{
+    const struct planes planes = {1, 1, s->rgb, s->run, s->map, s->nearer};
+
+    claim(&planes, threads);
+}
+
+static void *allocate(size_t size)
+{
+    void *memory = malloc(size);
+
+    assert_non_null(memory);
+    return memory;
+}
+
+/* As run(), of a photo of `across` x `down` such discs; the map is that of one in the middle. */
+static void run_many(struct stage *s, int across, int down)
+{
+    const size_t pixels = (size_t)across * WIDTH * (size_t)down * HEIGHT;
+    const struct planes p = {.across = across,
+                             .down = down,
+                             .rgb = allocate(3 * pixels),
+                             .run = allocate(pixels),
+                             .map = allocate(pixels * sizeof *p.map),
+                             .nearer = allocate(pixels * sizeof *p.nearer)};
+    const size_t middle = ((size_t)(down / 2 * HEIGHT) * across + across / 2) * WIDTH;
+
+    for (int i = 0; i < down * HEIGHT * across; i++) {
+        const size_t from = (size_t)(i / across % HEIGHT) * WIDTH, to = (size_t)i * WIDTH;
+
+        memcpy(p.rgb + 3 * to, s->rgb + 3 * from, 3 * (size_t)WIDTH);
+        memcpy(p.map + to, s->map + from, WIDTH * sizeof *p.map);
+    }
+    claim(&p, 2);
+    for (int y = 0; y < HEIGHT; y++)
+        memcpy(s->map + y * WIDTH, p.map + middle + (size_t)y * across * WIDTH,
+               WIDTH * sizeof *p.map);
+    free(p.rgb);
+    free(p.run);
+    free(p.map);
+    free(p.nearer);
+}
+
 static struct stage *make(void)
 {
-    struct stage *s = malloc(sizeof *s);
-
-    assert_non_null(s);
-    return s;
+    return allocate(sizeof(struct stage));
 }
 
 /* Across a ramp of 6 pixels, those with 15 % and more of the disc are within 2.1 pixels of it. */
@@ -83,8 +130,23 @@ static void soft_photo(void **state)
     free(s);
 }
 
-/* Where the photo is sharp, or does not show the edge, the map stays. */
-static void others(void **state)
+/* Pixels that the nearer surface has got, of which none may be farther out than `most`. */
+static int taken_within(const struct stage *s, double most)
+{
+    int taken = 0;
+
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        if (s->map[i] != s->before[i]) {
+            assert_int_equal(s->map[i], NEAR);
+            assert_true(outside(i) < most);
+            taken++;
+        }
+    return taken;
+}
+
+/* A small photo that is sharp stays as it is. In a large one a mixed pixel lies across its edges,
+ * half of it beyond the map's at most. */
+static void sharp_photo(void **state)
 {
     struct stage *s = make();
 
@@ -92,9 +154,74 @@ static void others(void **state)
     draw(s, 1, 120);
     run(s, 1);
     assert_memory_equal(s->map, s->before, sizeof s->map);
+    run_many(s, 3, 2);
+    assert_memory_equal(s->map, s->before, sizeof s->map);
+    run_many(s, 12, 9);
+    assert_in_range(taken_within(s, 0.6), RADIUS, 2 * 4 * RADIUS);
+    draw(s, 0.01, 120);
+    run_many(s, 12, 9);
+    assert_in_range(taken_within(s, 0.01), 0, 16); /* whose middle is on the edge */
+    free(s);
+}
+
+/* Where the photo does not show the edge the map stays. */
+static void unseen_edge(void **state)
+{
+    struct stage *s = make();
+
+    (void)state;
     draw(s, 6, 10);
     run(s, 1);
     assert_memory_equal(s->map, s->before, sizeof s->map);
+    free(s);
+}
+
+/* Pixels that are taken where a ring around the disc, from `first` to `last` pixels away, holds
+ * `part` of the disc's colour; or one within it, where these are negative. */
+static int taken_beside_ring(double first, double last, double part)
+{
+    struct stage *s = make();
+    int taken;
+
+    draw(s, 1, 120);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        if (outside(i) > first && outside(i) < last)
+            for (int c = 0; c < 3; c++)
+                s->rgb[3 * i + c] = (uint8_t)(200 - 10 * c - 120 * part);
+    run_many(s, 12, 9);
+    taken = taken_within(s, 4);
+    free(s);
+    return taken;
+}
+
+/* Neither the far nor the near surface may have a pattern across a silhouette. */
+static void patterns(void **state)
+{
+    const int plain = taken_beside_ring(0, 0, 0);
+
+    (void)state;
+    assert_true(plain > RADIUS);
+    assert_true(taken_beside_ring(2, 4, 0.05) > plain / 2);
+    assert_true(taken_beside_ring(2, 4, 0.4) < plain / 2);   /* shares rise */
+    assert_true(taken_beside_ring(0.6, 6, 0.2) < 2 * plain); /* they do not end */
+    assert_true(taken_beside_ring(-5, -2, 0.7) > plain / 2);
+    assert_true(taken_beside_ring(-5, -2, 0.3) < plain / 2);
+}
+
+/* A line of one pixel, some pixels from what is taken, is not smoothed away. */
+static void thin_surface(void **state)
+{
+    enum { COLUMN = WIDTH / 2 - RADIUS - 9 };
+    struct stage *s = make();
+
+    (void)state;
+    draw(s, 6, 120);
+    for (int y = 0; y < HEIGHT; y++)
+        s->before[y * WIDTH + COLUMN] = s->map[y * WIDTH + COLUMN] = NEAR;
+    run(s, 2);
+    for (int y = 0; y < HEIGHT; y++)
+        assert_int_equal(s->map[y * WIDTH + COLUMN], NEAR);
+    assert_true(taken_within(s, 3.2) > 2 * 3 * RADIUS);
     free(s);
 }
 
@@ -179,9 +306,11 @@ static void threads(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(soft_photo), cmocka_unit_test(others),
-                                       cmocka_unit_test(surfaces_that_go_on),
-                                       cmocka_unit_test(teeth), cmocka_unit_test(threads)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(soft_photo),   cmocka_unit_test(sharp_photo),
+        cmocka_unit_test(unseen_edge),  cmocka_unit_test(patterns),
+        cmocka_unit_test(thin_surface), cmocka_unit_test(surfaces_that_go_on),
+        cmocka_unit_test(teeth),        cmocka_unit_test(threads)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
