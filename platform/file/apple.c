@@ -106,9 +106,11 @@ static int take_depth(struct rf_read *read, const struct auxiliary *auxiliary, b
     return status;
 }
 
+/* The type of iOS 12 is "depth" for mattes, too. */
 static int judge(struct rf_read *read, const struct auxiliary *auxiliary)
 {
-    const char *const type = auxiliary->xmp.value[RF_XMP_APPLE_TYPE];
+    const char *const subtype = auxiliary->xmp.value[RF_XMP_APPLE_SUBTYPE];
+    const char *const type = subtype ? subtype : auxiliary->xmp.value[RF_XMP_APPLE_TYPE];
 
     if (type && (strcmp(type, "disparity") == 0 || strcmp(type, "depth") == 0)) {
         if (!read->samples.pixels) {

@@ -51,7 +51,7 @@ int rf_take_samples(struct rf_read *read, struct rf_bytes part, const char *what
 
 bool rf_is_matte(const char *type)
 {
-    return strcmp(type, RF_MATTE_TYPE) == 0;
+    return strcmp(type, RF_MATTE_TYPE) == 0 || strcmp(type, RF_MATTE_SUBTYPE) == 0;
 }
 
 int rf_take_matte(struct rf_read *read, struct rf_bytes part, const char *what)

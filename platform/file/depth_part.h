@@ -11,8 +11,10 @@ int rf_check_parts(const struct rf_read *read, const struct rf_bytes *parts, int
                    const char *what);
 /* Decode a part to read->samples; a picture in colour is no depth. */
 int rf_take_samples(struct rf_read *read, struct rf_bytes part, const char *what);
-/* Whether a type of auxiliary picture is Apple's portrait matte, which holds hair and skin, too. */
-#define RF_MATTE_TYPE "urn:com:apple:photo:2018:aux:portraiteffectsmatte"
+/* Whether a type of auxiliary picture is Apple's portrait matte, which holds hair and skin, too.
+ * iOS 12 wrote it as a subtype. */
+#define RF_MATTE_TYPE    "urn:com:apple:photo:2018:aux:portraiteffectsmatte"
+#define RF_MATTE_SUBTYPE "portraiteffectsmatte"
 bool rf_is_matte(const char *type);
 /* Decode a part to read->matte, a grey picture. */
 int rf_take_matte(struct rf_read *read, struct rf_bytes part, const char *what);

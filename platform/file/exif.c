@@ -36,10 +36,12 @@ enum {
     TAG_SUBJECT_AREA = 0x9214,
     TAG_WIDTH = 0xa002,
     TAG_HEIGHT = 0xa003,
+    TAG_CUSTOM_RENDERED = 0xa401,
     TAG_FOCAL_LENGTH_35MM = 0xa405,
     TAG_APPLE_HDR_HEADROOM = 0x21, /* in Apple's maker note */
     TAG_APPLE_HDR_GAIN = 0x30,
 };
+enum { APPLE_PORTRAIT_HDR = 7, APPLE_PORTRAIT = 8 }; /* values of TAG_CUSTOM_RENDERED */
 enum {
     TYPE_ASCII = 2,
     TYPE_SHORT = 3,
@@ -225,6 +227,7 @@ static void read_settings(struct tiff *tiff, size_t directory, struct rf_exif *e
 {
     const int count = count_entries(tiff, directory);
     struct entry width = {0}, height = {0}, area = {0}, entry;
+    uint32_t custom = 0;
 
     for (int i = 0; i < count; i++) {
         if (!get_entry(tiff, directory, i, &entry)) {
@@ -236,6 +239,8 @@ static void read_settings(struct tiff *tiff, size_t directory, struct rf_exif *e
             exif->focal_length_mm = get_rational(tiff, &entry);
         } else if (entry.tag == TAG_FOCAL_LENGTH_35MM) {
             exif->focal_length_35mm = get_integer(tiff, &entry);
+        } else if (entry.tag == TAG_CUSTOM_RENDERED) {
+            custom = get_integer(tiff, &entry);
         } else if (entry.tag == TAG_SUBJECT_DISTANCE) {
             exif->subject_distance = get_distance(tiff, &entry);
         } else if (entry.tag == TAG_MAKER_NOTE && entry.type == TYPE_UNDEFINED) {
@@ -248,6 +253,8 @@ static void read_settings(struct tiff *tiff, size_t directory, struct rf_exif *e
             area = entry;
         }
     }
+    exif->is_portrait = strncmp(exif->camera, "Apple", 5) == 0 &&
+                        (custom == APPLE_PORTRAIT || custom == APPLE_PORTRAIT_HDR);
     find_subject(tiff, &area, &width, &height, exif);
     if (exif->orientation >= 5 && width.count == 1 && height.count == 1) {
         /* Exchange the tags, not the values: types may differ. Their order, which TIFF
@@ -374,6 +381,9 @@ int rf_exif_take(struct rf_read *read, struct rf_bytes tiff, bool orient)
         info->focus_x = exif.subject_x;
         info->focus_y = exif.subject_y;
         rf_note(info, "EXIF: the middle of the subject area, taken for the focus point");
+    }
+    if (exif.is_portrait) {
+        rf_note(info, "EXIF: a portrait, blurred by the phone: further blur adds to that");
     }
     memcpy(info->camera, exif.camera, sizeof info->camera);
     read->apple_headroom = exif.apple_headroom;

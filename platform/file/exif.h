@@ -12,6 +12,7 @@ struct rf_exif {
     double subject_x, subject_y; /* fractions of the stored picture; -1: not said */
     char camera[96];
     double apple_headroom; /* brightest over white of an iPhone's gain map; 0: not said */
+    bool is_portrait;      /* an iPhone has blurred it by its depth */
 };
 
 /* Read a TIFF block and make it true for the upright picture without a thumbnail: orientation 1,

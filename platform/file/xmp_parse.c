@@ -46,6 +46,7 @@ static const struct {
     {RF_XMP_FOCUS_DISTANCE, FOCUS "FocalDistance"},
     {RF_XMP_FOCUS_BLUR, FOCUS "BlurAtInfinity"},
     {RF_XMP_APPLE_TYPE, APPLE "AuxiliaryImageType"},
+    {RF_XMP_APPLE_SUBTYPE, APPLE "AuxiliaryImageSubType"},
     {RF_XMP_APPLE_FLOAT_MIN, APPLE "FloatMinValue"},
     {RF_XMP_APPLE_FLOAT_MAX, APPLE "FloatMaxValue"},
     {RF_XMP_APPLE_INT_MIN, APPLE "IntMinValue"},

@@ -196,6 +196,26 @@ static struct refocus_photo *apple_with(const char *type, const char *extra, int
     return read_photo(make_mpf(make_jpeg(32, 32, false, false), &part, 1, true), expected);
 }
 
+/* Type and subtype as iOS 12 wrote them, the matte before the depth. */
+static void apple_subtypes(void **state)
+{
+    struct bytes parts[2] = {
+        make_auxiliary("depth", "apdi:AuxiliaryImageSubType=\"portraiteffectsmatte\""),
+        make_auxiliary("disparity", APPLE_RANGE)};
+    struct bytes file = make_mpf(make_jpeg(32, 16, false, false), parts, 2, true);
+    struct refocus_photo *photo = read_photo(file, REFOCUS_OK);
+
+    (void)state;
+    assert_non_null(photo->matte->samples);
+    assert_true(has_evidence(photo, "image 2 is the portrait matte"));
+    assert_true(has_evidence(photo, "image 3 is disparity"));
+    refocus_photo_free(&photo);
+    photo = apple_with("depth", "apdi:AuxiliaryImageSubType=\"skymatte\"", REFOCUS_OK);
+    assert_null(photo->depth->samples);
+    assert_true(has_evidence(photo, "it is no depth but \"skymatte\""));
+    refocus_photo_free(&photo);
+}
+
 static void apple_ranges(void **state)
 {
     struct refocus_photo *photo;
@@ -269,10 +289,15 @@ static void xmp_hostile(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mpo_second_view), cmocka_unit_test(second_view_behind),
-        cmocka_unit_test(mpo_views),       cmocka_unit_test(apple_disparity),
-        cmocka_unit_test(apple_mattes),    cmocka_unit_test(apple_gain_map_is_no_depth),
-        cmocka_unit_test(apple_ranges),    cmocka_unit_test(mpf_index_of_another_file),
+        cmocka_unit_test(mpo_second_view),
+        cmocka_unit_test(second_view_behind),
+        cmocka_unit_test(mpo_views),
+        cmocka_unit_test(apple_disparity),
+        cmocka_unit_test(apple_mattes),
+        cmocka_unit_test(apple_subtypes),
+        cmocka_unit_test(apple_gain_map_is_no_depth),
+        cmocka_unit_test(apple_ranges),
+        cmocka_unit_test(mpf_index_of_another_file),
         cmocka_unit_test(xmp_hostile),
     };
 

@@ -24,6 +24,7 @@ enum {
     SUBJECT_AREA = 0x9214,
     WIDTH = 0xa002,
     HEIGHT = 0xa003,
+    CUSTOM_RENDERED = 0xa401,
     FOCAL_LENGTH_35MM = 0xa405,
 };
 
@@ -111,6 +112,31 @@ static void header_is_whole(void **state)
         assert_false(parse(&block, &exif));
         bytes_free(&block);
     }
+}
+
+static bool is_portrait(const char *make, uint32_t custom)
+{
+    struct bytes block = {NULL, 0};
+
+    directory(&block, 2);
+    entry(&block, MAKE, ASCII, 6, 8 + 2 + 2 * 12 + 4 + 2 + 12 + 4);
+    entry(&block, SETTINGS, LONG, 1, 8 + 2 + 2 * 12 + 4);
+    add(&block, 0, 4);
+    directory(&block, 1);
+    entry_short(&block, CUSTOM_RENDERED, custom);
+    add(&block, 0, 4);
+    bytes_add(&block, make, 6);
+    return facts(block).is_portrait;
+}
+
+static void portraits_are_told(void **state)
+{
+    (void)state;
+    assert_true(is_portrait("Apple", 7));
+    assert_true(is_portrait("Apple", 8));
+    assert_false(is_portrait("Apple", 9)); /* one with depth, but not blurred */
+    assert_false(is_portrait("Apple", 6));
+    assert_false(is_portrait("Other", 8));
 }
 
 static struct bytes with_subject(int type, uint32_t count, uint32_t x, uint32_t y, int sides)
@@ -448,8 +474,8 @@ int main(void)
         cmocka_unit_test(counts_are_possible),     cmocka_unit_test(texts_end),
         cmocka_unit_test(types_are_what_they_say), cmocka_unit_test(orientations_are_1_to_8),
         cmocka_unit_test(sides_are_exchanged),     cmocka_unit_test(one_side_stays),
-        cmocka_unit_test(two_heights_are_none),    cmocka_unit_test(subject_lies_within),
-        cmocka_unit_test(profiles_have_a_header),
+        cmocka_unit_test(two_heights_are_none),    cmocka_unit_test(portraits_are_told),
+        cmocka_unit_test(subject_lies_within),     cmocka_unit_test(profiles_have_a_header),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
