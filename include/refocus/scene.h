@@ -39,11 +39,12 @@ enum refocus_depth_edges {
  *   and else gets that of the nearest of these. Where there is none, as in hair, it keeps its own,
  *   unless a pixel beside it on the other side has the same: it gets one from the rest of its side
  *   then, as the map has lost it.
- * - between them F and N are estimated from both sides so that C stays what it is, and the
- *   disparity is that of the side with the greater part. The sweep draws alpha N over what is
- *   behind, where N is in focus and F is not; else the pixel as one of N, with the mean colour of
- *   the background in place of F, if alpha is 1/6 or more, and as one of F if it is less. Other
- *   methods draw it as it is.
+ * - between them F is the mean of what is behind, and the disparity is that of the side with the
+ *   greater part. What is darker or brighter than any such mixture is more of the subject than
+ *   alpha says: by all that it takes where alpha is 1/2 and more, else by less. The sweep draws
+ *   alpha N over what is behind, where N is in focus and F is not; else the pixel as one of N, with
+ *   the mean colour of the background in place of F, if alpha is 1/6 or more, and as one of F if it
+ *   is less. Other methods draw it as it is.
  *
  * There is room for as many mixtures as a fourth of the pixels of a row of tiles of 16 x 16;
  * further ones are drawn as they are. In tiles with mixtures of the matte no others are looked for

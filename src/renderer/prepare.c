@@ -156,7 +156,7 @@ static void take_in_matte(struct refocus_renderer *r, const struct refocus_dispa
         .alpha = {(uint16_t *)r->blur.at, r->blur.stride},
         .near = {r->smooth.channel[0], r->smooth.stride},
         .lost = {r->smooth.channel[1], r->smooth.stride},
-        .spare = {r->smooth.channel[2], r->smooth.stride},
+        .far = {r->smooth.channel[2], r->smooth.stride},
         .list = &r->photo.thin,
     };
 

@@ -1,36 +1,38 @@
 /* given.c: lists the mixtures of the caller's matte, with the two colours that each is made of.
  *
- * Each side of the matte is a push-pull (background/inpaint.h), of light and disparity, from the
- * pixels that are sure to be on it. So every pixel has a near side, n and N, and a far one, f and
- * F. Where n is nearer than f, the least change of N and F makes C = alpha N + (1 - alpha) F true.
+ * Each side of the matte is a push-pull (background/inpaint.h) from the pixels that are sure to be
+ * on it. So every pixel has a near and a far disparity, n and f. Where n is nearer than f, it is a
+ * mixture C = alpha N + (1 - alpha) F, where F is the push-pull of the light of the far side.
+ *
+ * So what C is and a mixture of means were not is N: hair has more of a pattern than the mean of
+ * what is behind it.
  */
+#include <stdlib.h>
 #include <string.h>
 
 #include "background/inpaint.h"
+#include "support/compare.h"
 #include "thin/mixture.h"
-
-/* Disparities are halved, to be blurs of the pyramid, and those of the far side turned round: push
- * takes the greatest, which is the nearest n and the farthest f. */
-enum { NEAREST = 32767 };
 
 struct side {
     const struct rf_matte_pass *pass;
     bool is_near;
-    bool complete; /* lost disparities were replaced */
+    struct rf_disparity_q16 disparity; /* n or f of each pixel */
 };
 
-static int halved(bool is_near, int disparity)
+/* Sums of four of these fit the 16 bits of a push-pull, as those of light do. */
+static uint16_t reduced(int disparity)
 {
-    return is_near ? disparity / 2 : NEAREST - disparity / 2;
+    return (uint16_t)(disparity >> 2);
 }
 
-static uint16_t doubled(bool is_near, int halved)
+static uint16_t enlarged(int reduced)
 {
-    return (uint16_t)(2 * (is_near ? halved : NEAREST - halved));
+    return (uint16_t)(reduced << 2 | reduced >> 12);
 }
 
-/* Copies what is sure to be on a side into level 0. */
-static void seed_band(void *context, int band, int worker)
+/* Copies the disparities of what is sure to be on a side into level 0, as light. */
+static void seed_disparity(void *context, int band, int worker)
 {
     const struct side *side = context;
     const struct rf_matte_pass *pass = side->pass;
@@ -42,52 +44,78 @@ static void seed_band(void *context, int band, int worker)
         const uint16_t *alpha = pass->alpha.at + y * pass->alpha.stride;
         const uint16_t *lost = pass->lost.at + y * pass->lost.stride;
         const uint16_t *disparity = pass->disparity.at + y * pass->disparity.stride;
+        uint16_t *const light = level->light.channel[0] + y * level->light.stride;
+        int16_t *const blur = level->blur.at + y * level->blur.stride;
+
+        for (int x = 0; x < width; x++) {
+            const bool known = rf_is_sure(alpha[x], side->is_near) && !lost[x];
+
+            light[x] = reduced(disparity[x]);
+            blur[x] = known ? 0 : RF_NO_BLUR;
+        }
+        blur[width] = RF_NO_BLUR; /* a column more if the width is odd */
+    }
+}
+
+static void seed_light(void *context, int band, int worker)
+{
+    const struct side *side = context;
+    const struct rf_matte_pass *pass = side->pass;
+    const struct rf_level *level = &pass->pyramid->level[0];
+    const int width = pass->view->width;
+
+    (void)worker;
+    for (int y = rf_band_start(band); y < rf_band_end(pass->view, band); y++) {
+        const uint16_t *alpha = pass->alpha.at + y * pass->alpha.stride;
         int16_t *const blur = level->blur.at + y * level->blur.stride;
 
         for (int x = 0; x < width; x++)
-            blur[x] = rf_is_sure(alpha[x], side->is_near) && (side->complete || !lost[x])
-                          ? (int16_t)halved(side->is_near, disparity[x])
-                          : RF_NO_BLUR;
-        blur[width] = RF_NO_BLUR; /* a column more if the width is odd */
+            blur[x] = rf_is_sure(alpha[x], side->is_near) ? 0 : RF_NO_BLUR;
+        blur[width] = RF_NO_BLUR;
         for (int c = 0; c < 3; c++)
             memcpy(level->light.channel[c] + y * level->light.stride,
                    pass->light.channel[c] + y * pass->light.stride, (size_t)width * 2);
     }
 }
 
-/* Gives what was lost the disparity of the side. */
-static void complete_band(void *context, int band, int worker)
+/* Keeps the disparities of a side, and gives them to its pixels that had lost theirs. */
+static void keep_disparity(void *context, int band, int worker)
 {
     const struct side *side = context;
     const struct rf_matte_pass *pass = side->pass;
-    const struct rf_blur_q8 blur = pass->pyramid->level[0].blur;
+    const struct rf_light_q12 light = pass->pyramid->level[0].light;
 
     (void)worker;
     for (int y = rf_band_start(band); y < rf_band_end(pass->view, band); y++)
-        for (int x = 0; x < pass->view->width; x++)
+        for (int x = 0; x < pass->view->width; x++) {
+            const uint16_t own = enlarged(light.channel[0][y * light.stride + x]);
+
+            side->disparity.at[y * side->disparity.stride + x] = own;
             if (pass->lost.at[y * pass->lost.stride + x] &&
                 rf_is_sure(pass->alpha.at[y * pass->alpha.stride + x], side->is_near))
-                pass->disparity.at[y * pass->disparity.stride + x] =
-                    doubled(side->is_near, blur.at[y * blur.stride + x]);
+                pass->disparity.at[y * pass->disparity.stride + x] = own;
+        }
 }
 
-/* Makes level 0 the side, wherever it can be seen: first the disparities, and then with the light
- * of those that were lost. False: no pixel is sure to be on it. */
-static bool spread(struct side *side)
+/* Makes level 0 the side, wherever it can be seen. False: no pixel is sure to be on it. */
+static bool push_pull(struct side *side, rf_work_fn *seed)
 {
     const struct rf_matte_pass *pass = side->pass;
     const struct rf_pyramid *pyramid = pass->pyramid;
 
-    for (int i = 0; i < 2; i++) {
-        rf_pool_run(pass->exec->pool, seed_band, side, rf_bands(pass->view));
-        rf_background_push(pass->exec, pyramid, 0, pyramid->levels);
-        if (rf_cancelled(pass->exec) || pyramid->level[pyramid->levels].blur.at[0] == RF_NO_BLUR)
-            return false;
-        rf_background_pull(pass->exec, pass->view, pyramid, 0, pyramid->levels, RF_NEVER_APART);
-        if (i == 0)
-            rf_pool_run(pass->exec->pool, complete_band, side, rf_bands(pass->view));
-        side->complete = true;
-    }
+    rf_pool_run(pass->exec->pool, seed, side, rf_bands(pass->view));
+    rf_background_push(pass->exec, pyramid, 0, pyramid->levels);
+    if (rf_cancelled(pass->exec) || pyramid->level[pyramid->levels].blur.at[0] == RF_NO_BLUR)
+        return false;
+    rf_background_pull(pass->exec, pass->view, pyramid, 0, pyramid->levels, RF_NEVER_APART);
+    return true;
+}
+
+static bool spread_disparity(struct side *side)
+{
+    if (!push_pull(side, seed_disparity))
+        return false;
+    rf_pool_run(side->pass->exec->pool, keep_disparity, side, rf_bands(side->pass->view));
     return true;
 }
 
@@ -97,116 +125,93 @@ static uint16_t light_of_code(const struct rf_transfer *transfer, int light)
     return transfer->to_light[transfer->to_code[4 * rf_within(light, RF_LIGHT_MAX)]];
 }
 
-/* F of a channel, and what the photo is with the mean of the background, `mean`, in place of F.
- * Until then `whole` is N. */
+/* The least alpha, 255 = 1, with which N of a channel is neither below black nor above white. */
+static int least_alpha(int light, int mean)
+{
+    const int room = light < mean ? mean : RF_LIGHT_MAX - mean;
+
+    return light == mean ? 0 : (255 * abs(light - mean) + room - 1) / room;
+}
+
+/* Mattes of cameras take dark hair for half of what is behind it: alpha goes towards what all
+ * channels ask for, by as much of the way as it is itself. What little is subject stays little,
+ * where what is behind it may be other than the mean. */
+static uint8_t corrected(int alpha, const uint16_t light[3], const uint16_t mean[3])
+{
+    int least = alpha;
+
+    for (int c = 0; c < 3; c++)
+        least = rf_larger(least, least_alpha(rf_within(light[c], RF_LIGHT_MAX), mean[c]));
+    return (uint8_t)(alpha + (rf_smaller(least, 254) - alpha) * rf_smaller(2 * alpha, 255) / 255);
+}
+
+/* F of a channel, which is the mean of the background or as near to it as N in the range of light
+ * allows, and what the photo is with that mean in place of F. */
 static void solve(struct rf_thin *thin, const struct rf_transfer *transfer, int c, int light,
                   int mean)
 {
     const int a = thin->alpha, b = 255 - a;
-    const int off = 255 * light - a * thin->whole[c] - b * mean; /* below 2^21 */
     const int most = (255 * light + b - 1) / b; /* with these N is black and white */
     const int least = (255 * light - a * RF_LIGHT_MAX) / b;
-    const int far = mean + b * off / (a * a + b * b);
 
-    thin->light[c] = light_of_code(transfer, far < least ? least : far > most ? most : far);
+    thin->light[c] = light_of_code(transfer, mean < least ? least : mean > most ? most : mean);
     thin->whole[c] = light_of_code(transfer, light + b * (mean - thin->light[c]) / 255);
 }
 
-/* Calls work for the pixels of a band that are mixtures, tile by tile; it says whether they stay in
- * the list, or are added to it. */
-struct visit {
-    const struct side *side;
-    struct rf_thin *thin; /* NULL: the row is full */
-    int x, y, alpha;
-};
-typedef bool visit_fn(const struct visit *visit);
-
-static void visit_band(const struct side *side, int band, visit_fn *work)
+/* Puts a pixel on its side, and makes it a mixture. False: there is one surface. */
+static bool take_apart(const struct rf_matte_pass *pass, int x, int y, struct rf_thin *thin)
 {
-    const struct rf_matte_pass *pass = side->pass;
-    const uint64_t capacity = rf_thin_capacity(pass->view->width);
-    struct rf_thin *const thin = pass->list->pixel + (uint64_t)band * capacity;
-    uint32_t from = 0, to = 0;
+    const struct rf_light_q12 behind = pass->pyramid->level[0].light;
+    const ptrdiff_t at = y * pass->light.stride + x, at_behind = y * behind.stride + x;
+    const int near = pass->near.at[y * pass->near.stride + x];
+    const int far = pass->far.at[y * pass->far.stride + x];
+    uint16_t light[3], mean[3];
 
+    if (near - far <= RF_SURFACE_JUMP)
+        return false;
+    for (int c = 0; c < 3; c++) {
+        light[c] = pass->light.channel[c][at];
+        mean[c] = (uint16_t)rf_within(behind.channel[c][at_behind], RF_LIGHT_MAX);
+    }
+    *thin = (struct rf_thin){
+        .at = (uint8_t)(y % RF_TILE * RF_TILE + x % RF_TILE),
+        .alpha = corrected(pass->alpha.at[y * pass->alpha.stride + x], light, mean),
+        .near_disparity = (uint16_t)near,
+        .far_disparity = (uint16_t)far,
+    };
+    pass->disparity.at[y * pass->disparity.stride + x] =
+        thin->alpha >= 128 ? thin->near_disparity : thin->far_disparity;
+    for (int c = 0; c < 3; c++)
+        solve(thin, pass->transfer, c, light[c], mean[c]);
+    return true;
+}
+
+/* Lists the mixtures of a band, tile by tile. */
+static void list_band(void *context, int band, int worker)
+{
+    const struct rf_matte_pass *pass = context;
+    const uint64_t capacity = rf_thin_capacity(pass->view->width);
+    struct rf_thin *const list = pass->list->pixel + (uint64_t)band * capacity;
+    uint32_t count = 0;
+
+    (void)worker;
     for (int tx = 0; tx < pass->view->tiles_x; tx++) {
         struct rf_thin_run *run = &pass->list->run[(size_t)band * pass->view->tiles_x + tx];
         const int right = (tx + 1) * RF_TILE;
-        const uint32_t first = to;
+        const uint32_t first = count;
 
         for (int y = rf_band_start(band); y < rf_band_end(pass->view, band); y++)
             for (int x = tx * RF_TILE; x < right && x < pass->view->width; x++) {
                 const int alpha = pass->alpha.at[y * pass->alpha.stride + x];
-                struct visit visit = {side, from < capacity ? &thin[from] : NULL, x, y, alpha};
+                struct rf_thin thin;
 
-                if (rf_is_sure(alpha, true) || rf_is_sure(alpha, false))
-                    continue;
-                from += from < capacity;
-                if (work(&visit) && visit.thin)
-                    thin[to++] = *visit.thin;
+                if (!rf_is_sure(alpha, true) && !rf_is_sure(alpha, false) &&
+                    take_apart(pass, x, y, &thin) && count < capacity)
+                    list[count++] = thin;
             }
-        *run = (struct rf_thin_run){first, (uint16_t)(to - first), to > first};
+        *run = (struct rf_thin_run){first, (uint16_t)(count - first), count > first};
     }
-    pass->list->given[band].count = to;
-}
-
-static bool add(const struct visit *visit)
-{
-    const struct rf_level *level = &visit->side->pass->pyramid->level[0];
-    const ptrdiff_t at = visit->y * level->light.stride + visit->x;
-
-    if (!visit->thin)
-        return true;
-    *visit->thin = (struct rf_thin){
-        .at = (uint8_t)(visit->y % RF_TILE * RF_TILE + visit->x % RF_TILE),
-        .alpha = (uint8_t)visit->alpha,
-    };
-    for (int c = 0; c < 3; c++)
-        visit->thin->whole[c] = level->light.channel[c][at];
-    return true;
-}
-
-/* Solves a mixture, and puts its pixel on its side. */
-static bool finish(const struct visit *visit)
-{
-    const struct rf_matte_pass *pass = visit->side->pass;
-    const struct rf_level *level = &pass->pyramid->level[0];
-    const ptrdiff_t at = visit->y * level->light.stride + visit->x;
-    const int near = pass->near.at[visit->y * pass->near.stride + visit->x];
-    const int far = doubled(false, level->blur.at[at]);
-
-    if (near - far <= RF_SURFACE_JUMP)
-        return false;
-    pass->disparity.at[visit->y * pass->disparity.stride + visit->x] =
-        (uint16_t)(visit->alpha >= 128 ? near : far);
-    if (!visit->thin)
-        return false;
-    visit->thin->near_disparity = (uint16_t)near;
-    visit->thin->far_disparity = (uint16_t)far;
-    for (int c = 0; c < 3; c++)
-        solve(visit->thin, pass->transfer, c,
-              pass->light.channel[c][visit->y * pass->light.stride + visit->x],
-              level->light.channel[c][at]);
-    return true;
-}
-
-/* Keeps n, and lists the mixtures with N. */
-static void list_band(void *context, int band, int worker)
-{
-    const struct side *side = context;
-    const struct rf_matte_pass *pass = side->pass;
-    const struct rf_blur_q8 blur = pass->pyramid->level[0].blur;
-
-    (void)worker;
-    for (int y = rf_band_start(band); y < rf_band_end(pass->view, band); y++)
-        for (int x = 0; x < pass->view->width; x++)
-            pass->near.at[y * pass->near.stride + x] = doubled(true, blur.at[y * blur.stride + x]);
-    visit_band(side, band, add);
-}
-
-static void solve_band(void *context, int band, int worker)
-{
-    (void)worker;
-    visit_band(context, band, finish);
+    pass->list->given[band].count = count;
 }
 
 void rf_matte_forget(struct rf_thin_list *list, const struct rf_viewport *view)
@@ -220,17 +225,12 @@ void rf_matte_forget(struct rf_thin_list *list, const struct rf_viewport *view)
 
 void rf_matte_take_in(const struct rf_matte_pass *pass)
 {
-    struct side near = {pass, true, false}, far = {pass, false, false};
+    struct side near = {pass, true, pass->near}, far = {pass, false, pass->far};
 
     rf_settle_sides(pass);
-    if (!spread(&near))
+    if (!spread_disparity(&near) || !spread_disparity(&far) || !push_pull(&far, seed_light))
         return;
-    rf_pool_run(pass->exec->pool, list_band, &near, rf_bands(pass->view));
-    if (!spread(&far)) {
-        rf_matte_forget(pass->list, pass->view);
-        return;
-    }
-    rf_pool_run(pass->exec->pool, solve_band, &far, rf_bands(pass->view));
+    rf_pool_run(pass->exec->pool, list_band, (void *)pass, rf_bands(pass->view));
     pass->list->has_matte = true;
 }
 

@@ -102,7 +102,7 @@ static void settle_band(void *context, int band, int worker)
             const bool near = alpha >= 128, deep = pass->near.at[y * pass->near.stride + x];
             bool lost = false;
 
-            pass->spare.at[y * pass->spare.stride + x] =
+            pass->far.at[y * pass->far.stride + x] =
                 rf_is_sure(alpha, near) && !deep
                     ? settled(pass, near, x, y, &lost)
                     : pass->disparity.at[y * pass->disparity.stride + x];
@@ -116,9 +116,8 @@ static void take_band(void *context, int band, int worker)
 
     (void)worker;
     for (int y = rf_band_start(band); y < rf_band_end(pass->view, band); y++)
-        memcpy(pass->disparity.at + y * pass->disparity.stride,
-               pass->spare.at + y * pass->spare.stride,
-               (size_t)pass->view->width * sizeof *pass->spare.at);
+        memcpy(pass->disparity.at + y * pass->disparity.stride, pass->far.at + y * pass->far.stride,
+               (size_t)pass->view->width * sizeof *pass->far.at);
 }
 
 void rf_settle_sides(const struct rf_matte_pass *pass)

@@ -27,9 +27,10 @@
  * nothing, or is of another colour than such a mixture, it is 1 if the map has the pixel near, else
  * the pixel is no mixture.
  *
- * Where the caller gives a matte, alpha is that, at any silhouette (settle.c, given.c), and what is
- * not matted is drawn as one of its sides: the planes get C with the mean background in place of F,
- * at the depth of N, where alpha is 1/6 or more, and else F at its own.
+ * Where the caller gives a matte, alpha is that, at any silhouette (settle.c, given.c), and F the
+ * mean of the far side. Of what is darker or brighter than any such mixture alpha is greater. What
+ * is not matted is drawn as one of its sides: the planes get C with the mean background in place of
+ * F, at the depth of N, where alpha is 1/6 or more, and else F at its own.
  *
  * This header is all that other folders see. The passes run in this order:
  *
@@ -156,9 +157,9 @@ struct rf_matte_pass {
     const struct rf_transfer *transfer;    /* transfer of linear light */
     struct rf_light_q12 light;             /* read: linear */
     struct rf_disparity_q16 disparity;     /* brought to the matte */
-    struct rf_disparity_q16 alpha, near, lost, spare; /* scratch */
-    const struct rf_pyramid *pyramid;                 /* scratch */
-    struct rf_thin_list *list;                        /* empty; gets the mixtures */
+    struct rf_disparity_q16 alpha, near, lost, far; /* scratch */
+    const struct rf_pyramid *pyramid;               /* scratch */
+    struct rf_thin_list *list;                      /* empty; gets the mixtures */
 };
 
 /* Empties the list of mixtures, for another photo of the size of the view. */

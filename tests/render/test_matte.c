@@ -240,6 +240,69 @@ static void true_layers(void **state)
         }
 }
 
+/* A dark subject before a light wall, and a matte that takes a part of it for half of the wall. */
+static void draw_dark(uint16_t *disparity, uint8_t *matte)
+{
+    for (int i = 0; i < PIXELS; i++) {
+        const int x = i % WIDTH;
+
+        memset(layers.rgb + (ptrdiff_t)3 * i, x < 90 ? 20 : 200, 3);
+        disparity[i] = x < 90 ? NEAR : FAR;
+        matte[i] = x < 60 ? 255 : x < 90 ? 160 : 0;
+    }
+}
+
+/* A subject that the matte takes for half of the wall stays dark, in focus and out of it. */
+static void dark_subject(void **state)
+{
+    static uint16_t disparity[PIXELS];
+    static uint8_t matte[PIXELS];
+    const struct refocus_disparity of_matte = refocus_disparity8(matte, WIDTH, HEIGHT, WIDTH);
+    struct job job = job_of(&layers, &of_matte);
+
+    (void)state;
+    draw_dark(disparity, matte);
+    job.disparity = disparity;
+    job.thin = 1;
+    for (int pass = 0; pass < 2; pass++) {
+        job.focus = NEAR / 65535.0f - 0.1f * (float)pass;
+        assert_true(render_fresh(&job, out));
+        for (int i = 0; i < PIXELS; i++)
+            if (i % WIDTH < 85)
+                assert_in_range(out[3 * i], 16, 24);
+    }
+    draw(&layers);
+}
+
+/* Disparities of mixtures go over between those that are sure, from the nearest of which none
+ * spreads: steps would show as lines. */
+static void no_steps(void **state)
+{
+    enum { NEARER = NEAR + 4000, MOST = 300 };
+    static uint16_t disparity[PIXELS];
+    static uint8_t matte[PIXELS];
+    const struct refocus_disparity of_matte = refocus_disparity8(matte, WIDTH, HEIGHT, WIDTH);
+    struct job job = job_of(&layers, &of_matte);
+    struct refocus_renderer *renderer = create(&job);
+
+    (void)state;
+    draw_dark(disparity, matte);
+    for (int y = 40; y < 45; y++)
+        for (int x = 40; x < 45; x++)
+            disparity[y * WIDTH + x] = NEARER;
+    job.disparity = disparity;
+    assert_int_equal(prepare(renderer, &job), REFOCUS_OK);
+    for (int y = 1; y < HEIGHT; y++)
+        for (int x = 60; x < 90; x++) {
+            const uint16_t *at = renderer->disparity.at + y * renderer->disparity.stride + x;
+
+            assert_in_range(*at, NEAR - 4, NEAR + MOST);
+            assert_in_range(abs(*at - at[-renderer->disparity.stride]), 0, MOST);
+        }
+    refocus_renderer_destroy(&renderer);
+    draw(&layers);
+}
+
 /* A matte without a silhouette, or one with nothing between 0 and 1 where the map has it, changes
  * nothing. */
 static void no_change(void **state)
@@ -452,7 +515,8 @@ static void cancelled(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(true_layers),     cmocka_unit_test(no_change),
+        cmocka_unit_test(true_layers),     cmocka_unit_test(dark_subject),
+        cmocka_unit_test(no_steps),        cmocka_unit_test(no_change),
         cmocka_unit_test(same_everywhere), cmocka_unit_test(sequence),
         cmocka_unit_test(region),          cmocka_unit_test(sizes),
         cmocka_unit_test(refused),         cmocka_unit_test(cancelled),
