@@ -40,6 +40,24 @@ class Ways(Case):
         self.same(*found, (way, command))
         self.differs(found[0], pictures.read_bytes(photo))
 
+    def test_estimate_has_the_shape_of_the_photo(self):
+        """The network's picture is 320x192: a map of an upright photo would lie on its side."""
+        if not self.opencv:
+            self.skipTest('this build has no OpenCV')
+        self.photos()
+        for (width, height), size in (((150, 250), (320, 533)), ((400, 100), (768, 192)),
+                                      ((320, 192), (320, 192))):
+            pictures.ppm('other.ppm', width, height,
+                         lambda x, y, w=width: (230 if x >= w // 2 else 40, 90, 9))
+            self.succeeds('depth', 'other.ppm', '--estimate', 'red.onnx', '-o', 'map.pfm')
+            self.succeeds('render', 'other.ppm', '--depth', 'map.pfm', '-o', 'out.ppm')
+            columns, rows, samples = pictures.read_pfm('map.pfm')
+            self.assertEqual((columns, rows), size)
+            row = samples[columns * (rows // 2):][:columns]
+            self.assertGreater(row[columns * 3 // 4], row[columns // 4] + 0.3)
+            column = samples[columns * 3 // 4::columns]
+            self.assertLess(max(column) - min(column), 0.03)
+
     def test_in_one_step(self):
         if not self.opencv:
             self.skipTest('this build has no OpenCV')

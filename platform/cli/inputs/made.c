@@ -196,6 +196,52 @@ static int estimate_depth(struct input *input, const char *model,
     return EXIT_DONE;
 }
 
+/* Stretches rows, or columns, of w x h samples to n of each. */
+static void stretch(const float *in, int w, int h, bool down, int n, float *out)
+{
+    const int most = (down ? h : w) - 1, lines = down ? w : h;
+    const ptrdiff_t step = down ? w : 1, line = down ? 1 : w, line_out = down ? 1 : n;
+
+    for (int i = 0; i < n; i++) {
+        const double at = ((double)i + 0.5) * (most + 1) / n - 0.5;
+        const double within = at < 0 ? 0 : at > most ? most : at;
+        const int first = (int)within, second = first < most ? first + 1 : most;
+        const float share = (float)(within - first);
+
+        for (int k = 0; k < lines; k++) {
+            const float a = in[k * line + first * step], b = in[k * line + second * step];
+
+            out[k * line_out + i * (down ? w : 1)] = a + share * (b - a);
+        }
+    }
+}
+
+/* A network has a picture of its own shape, whatever that of the photo. A map that is written gets
+ * the photo's, or who reads it would take it for another picture's, or one on its side. */
+static int reshape(struct input *input)
+{
+    const struct refocus_image *photo = input->photo->image;
+    const int width = input->made_map.width, height = input->made_map.height;
+    const int64_t down = ((int64_t)width * photo->height + photo->width / 2) / photo->width;
+    const int64_t across = ((int64_t)height * photo->width + photo->height / 2) / photo->height;
+    const bool is_down = down > height;
+    const int64_t n = is_down ? down : across;
+    float *samples;
+
+    if (n <= (is_down ? height : width) || n > REFOCUS_MAX_SIDE)
+        return EXIT_DONE;
+    samples = malloc((size_t)n * (size_t)(is_down ? width : height) * sizeof *samples);
+    if (!samples)
+        return report_failure(EXIT_FAILED, input->depth_name, "not enough memory");
+    stretch(input->made_samples, width, height, is_down, (int)n, samples);
+    free(input->made_samples);
+    input->made_samples = samples;
+    input->made_map.samples = samples;
+    *(is_down ? &input->made_map.height : &input->made_map.width) = (int32_t)n;
+    input->made_map.stride = (ptrdiff_t)input->made_map.width * (ptrdiff_t)sizeof *samples;
+    return EXIT_DONE;
+}
+
 int input_read_estimate(struct input *input, const char *photo, const char *model,
                         const struct network_settings *how, const struct depth_settings *settings)
 {
@@ -203,6 +249,8 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
 
     if (status == EXIT_DONE)
         status = estimate_depth(input, model, how, settings);
+    if (status == EXIT_DONE && !settings->full)
+        status = reshape(input);
     return status == EXIT_DONE ? input_convert(input, settings) : status;
 }
 
