@@ -43,8 +43,8 @@ enum refocus_depth_edges {
  *   greater part. What is darker or brighter than any such mixture is more of the subject than
  *   alpha says: by all that it takes where alpha is 1/2 and more, else by less. The sweep draws
  *   alpha N over what is behind, where N is in focus and F is not; else the pixel as one of N, with
- *   the mean colour of the background in place of F, if alpha is 1/6 or more, and as one of F if it
- *   is less. Other methods draw it as it is.
+ *   the mean colour of the background in place of F, if alpha is 1/8 or more, and as it is with
+ *   what is behind if it is less. Other methods draw it as it is.
  *
  * There is room for as many mixtures as a fourth of the pixels of a row of tiles of 16 x 16;
  * further ones are drawn as they are. In tiles with mixtures of the matte no others are looked for

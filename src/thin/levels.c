@@ -8,7 +8,7 @@
 /* 255 = 1 */
 enum {
     MOST_FAR_ALPHA = 160,
-    SIDE = 42, /* a pixel that N covers less shows what is behind it */
+    SIDE = 32, /* a pixel that N covers less stays as it is */
 };
 
 /* Signed circle of confusion of one disparity, 1/256 pixel, as the kernel signed_blur rounds it. */
@@ -81,7 +81,7 @@ bool rf_is_matted(const struct rf_thin_pass *t, const struct rf_thin *thin, int 
            rf_thin_blur(t, thin->far_disparity, tx * RF_TILE, ty * RF_TILE) >= far_blur(level);
 }
 
-void rf_choose_sides(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice)
+void rf_choose_near(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice)
 {
     uint32_t count;
     const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
@@ -90,10 +90,10 @@ void rf_choose_sides(const struct rf_thin_pass *t, int tx, int ty, struct rf_thi
         const int level = level_of(thin->at), near = rf_near_blur(t, thin, tx, ty);
         const int far = rf_thin_blur(t, thin->far_disparity, tx * RF_TILE, ty * RF_TILE);
 
-        if (abs(near) <= matte_blur(level) || far - near < far_blur(level))
+        if (thin->alpha < SIDE || abs(near) <= matte_blur(level) || far - near < far_blur(level))
             continue;
-        choice->sides = true;
-        (thin->alpha >= SIDE ? choice->near : choice->far)[i / 64] |= UINT64_C(1) << i % 64;
+        choice->nears = true;
+        choice->near[i / 64] |= UINT64_C(1) << i % 64;
     }
 }
 

@@ -55,9 +55,9 @@ static inline bool rf_is_sure(int alpha, bool near)
 /* Brings the disparities at the silhouettes of the caller's matte to it, after alpha was read. */
 void rf_settle_sides(const struct rf_matte_pass *pass);
 
-/* Chooses the mixtures of a tile of the caller's matte that are drawn as the side that most of them
- * belongs to: where N is blurred, and not as F is. */
-void rf_choose_sides(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice);
+/* Chooses the mixtures of a tile of the caller's matte that are drawn as pixels of N: where N is
+ * blurred, and not as F is, and they have enough of it. */
+void rf_choose_near(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice);
 
 /* Chooses the mixtures of a tile that are matted, if nothing nearer reaches it. */
 void rf_choose_matted(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice);

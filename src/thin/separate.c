@@ -88,7 +88,7 @@ static void choose_band(void *context, int band, int worker)
 
         *choice = (struct rf_thin_choice){.splats = false};
         if (rf_thin_run_of(t, tx, band)->given)
-            rf_choose_sides(t, tx, band, choice);
+            rf_choose_near(t, tx, band, choice);
         else if (!t->finds || is_noisy(t, tx, band))
             continue;
         else if (t->disc_scale)
@@ -100,13 +100,13 @@ static void choose_band(void *context, int band, int worker)
 
 static bool is_any(const struct rf_thin_choice *choice)
 {
-    return choice->splats || choice->mattes || choice->sides;
+    return choice->splats || choice->mattes || choice->nears;
 }
 
 static bool is_apart(const struct rf_thin_choice *choice, uint32_t i)
 {
     return rf_has_bit(choice->splat, i) || rf_has_bit(choice->matte, i) ||
-           rf_has_bit(choice->near, i) || rf_has_bit(choice->far, i);
+           rf_has_bit(choice->near, i);
 }
 
 /* Where N is composited, the planes have the circle of confusion of F. */

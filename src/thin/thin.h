@@ -30,7 +30,7 @@
  * Where the caller gives a matte, alpha is that, at any silhouette (settle.c, given.c), and F the
  * mean of the far side. Of what is darker or brighter than any such mixture alpha is greater. What
  * is not matted is drawn as one of its sides: the planes get C with the mean background in place of
- * F, at the depth of N, where alpha is 1/6 or more, and else F at its own.
+ * F, at the depth of N, where alpha is 1/8 or more, and else have C at that of F.
  *
  * This header is all that other folders see. The passes run in this order:
  *
@@ -101,8 +101,8 @@ struct rf_thin_list {
 /* Mixtures of a tile that are separated, a bit each. */
 struct rf_thin_choice {
     bool splats, mattes; /* whether any of them is */
-    bool sides;          /* one or more are drawn as one of their sides */
-    uint64_t splat[4], matte[4], near[4], far[4];
+    bool nears;          /* one or more are drawn as pixels of N */
+    uint64_t splat[4], matte[4], near[4];
     uint64_t filled[4]; /* splatted ones whose background is that of rf_thin_take_filled() */
 };
 
