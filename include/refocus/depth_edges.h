@@ -68,10 +68,10 @@ static inline struct refocus_depth_edges_report refocus_depth_edges_report_defau
  *     photo. Slopes and rounded things, which are longer ramps, stay.
  *   - Noise of 0.4 % of the range and more is smoothed away within surfaces.
  *   - Wires and hair get back the disparity that a soft map mixed with what is behind them.
- *   - In a photo that is not sharp to the pixel, and in one of more than 3 megapixels, pixels that
- *     mix both surfaces go to the nearer one, up to 3 beyond its edge: so its silhouette is as
- * sharp as the photo when it is in focus, and no outline of it is left on what is in focus behind
- * it.
+ *   - In a photo that is not sharp to the pixel, and in a still of more than 3 megapixels, pixels
+ *     that mix both surfaces go to the nearer one, up to 3 beyond its edge: so its silhouette is as
+ *     sharp as the photo when it is in focus, and no outline of it is left on what is in focus
+ *     behind it.
  *
  * A map of the photo's size that is sharp and lies on the photo comes out as it is, to the code.
  * A small map whose samples were taken at points, as sensors do, and that lies on the photo is

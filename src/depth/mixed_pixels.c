@@ -307,9 +307,10 @@ static void smooth_silhouettes(void *context, int band, int worker)
     }
 }
 
-static bool is_large(const struct refocus_image *photo)
+/* In a video the noise of each frame would move sharp edges by a pixel. */
+static bool is_large(const struct rf_mixed_pixels *mixed)
 {
-    return (int64_t)photo->width * photo->height > LARGE;
+    return mixed->still && (int64_t)mixed->photo->width * mixed->photo->height > LARGE;
 }
 
 static bool is_soft(struct work *work)
@@ -327,7 +328,7 @@ void rf_claim_mixed_pixels(const struct rf_mixed_pixels *mixed, struct rf_pool *
     atomic_init(&work.edges, 0);
     atomic_init(&work.sharp, 0);
     rf_pool_run(pool, find_runs, &work, bands);
-    if ((!is_large(mixed->photo) && !is_soft(&work)) || rf_run_cancelled(pool->run))
+    if ((!is_large(mixed) && !is_soft(&work)) || rf_run_cancelled(pool->run))
         return;
     rf_pool_run(pool, put_band, &work, bands);
     rf_pool_run(pool, take_nearer, &work, bands);

@@ -14,6 +14,7 @@ struct rf_mixed_pixels {
     struct rf_disparity_q16 map;       /* replaced by the result */
     struct rf_disparity_q16 nearer;    /* memory to work in */
     struct rf_bytes run;               /* memory to work in */
+    bool still;                        /* no frame of a video */
 };
 
 /*

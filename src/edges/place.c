@@ -122,7 +122,7 @@ uint64_t rf_place_edges_bytes(int width, int height, int columns, int rows)
 static void claim_mixed_pixels(const struct rf_place_edges *place, struct rf_disparity_q16 nearer,
                                struct rf_bytes run)
 {
-    const struct rf_mixed_pixels mixed = {place->photo, place->out, nearer, run};
+    const struct rf_mixed_pixels mixed = {place->photo, place->out, nearer, run, !place->last};
 
     if (!rf_run_cancelled(place->pool->run))
         rf_claim_mixed_pixels(&mixed, place->pool);

@@ -42,6 +42,7 @@ static void draw(struct stage *s, double soft, int contrast)
 /* Planes of a photo of as many discs across and down. */
 struct planes {
     int across, down;
+    bool video;
     uint8_t *rgb, *run;
     uint16_t *map, *nearer;
 };
@@ -52,7 +53,7 @@ static void claim(const struct planes *p, int threads)
     const struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, p->rgb, width,
                                                             p->down * HEIGHT, 3 * (ptrdiff_t)width);
     const struct rf_mixed_pixels mixed = {
-        &photo, {p->map, width}, {p->nearer, width}, {p->run, width}};
+        &photo, {p->map, width}, {p->nearer, width}, {p->run, width}, !p->video};
     struct rf_pool pool;
     struct rf_run state = {.looked_at = NULL};
 
@@ -64,7 +65,7 @@ static void claim(const struct planes *p, int threads)
 
 static void run(struct stage *s, int threads)
 {
-    const struct planes planes = {1, 1, s->rgb, s->run, s->map, s->nearer};
+    const struct planes planes = {1, 1, false, s->rgb, s->run, s->map, s->nearer};
 
     claim(&planes, threads);
 }
@@ -78,11 +79,12 @@ static void *allocate(size_t size)
 }
 
 /* As run(), of a photo of `across` x `down` such discs; the map is that of one in the middle. */
-static void run_many(struct stage *s, int across, int down)
+static void run_many(struct stage *s, int across, int down, bool video)
 {
     const size_t pixels = (size_t)across * WIDTH * (size_t)down * HEIGHT;
     const struct planes p = {.across = across,
                              .down = down,
+                             .video = video,
                              .rgb = allocate(3 * pixels),
                              .run = allocate(pixels),
                              .map = allocate(pixels * sizeof *p.map),
@@ -145,7 +147,7 @@ static int taken_within(const struct stage *s, double most)
 }
 
 /* A small photo that is sharp stays as it is. In a large one a mixed pixel lies across its edges,
- * half of it beyond the map's at most. */
+ * half of it beyond the map's at most, unless it is a frame of a video. */
 static void sharp_photo(void **state)
 {
     struct stage *s = make();
@@ -154,12 +156,15 @@ static void sharp_photo(void **state)
     draw(s, 1, 120);
     run(s, 1);
     assert_memory_equal(s->map, s->before, sizeof s->map);
-    run_many(s, 3, 2);
+    run_many(s, 3, 2, false);
     assert_memory_equal(s->map, s->before, sizeof s->map);
-    run_many(s, 12, 9);
+    run_many(s, 12, 9, false);
     assert_in_range(taken_within(s, 0.6), RADIUS, 2 * 4 * RADIUS);
+    draw(s, 1, 120);
+    run_many(s, 12, 9, true);
+    assert_memory_equal(s->map, s->before, sizeof s->map);
     draw(s, 0.01, 120);
-    run_many(s, 12, 9);
+    run_many(s, 12, 9, false);
     assert_in_range(taken_within(s, 0.01), 0, 16); /* whose middle is on the edge */
     free(s);
 }
@@ -188,7 +193,7 @@ static int taken_beside_ring(double first, double last, double part)
         if (outside(i) > first && outside(i) < last)
             for (int c = 0; c < 3; c++)
                 s->rgb[3 * i + c] = (uint8_t)(200 - 10 * c - 120 * part);
-    run_many(s, 12, 9);
+    run_many(s, 12, 9, false);
     taken = taken_within(s, 4);
     free(s);
     return taken;
