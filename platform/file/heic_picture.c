@@ -82,6 +82,8 @@ int rf_heic_decode(struct rf_heic *heic, struct heif_image_handle *handle, bool 
     }
     if (colour) {
         channel = heif_channel_interleaved;
+    } else if (!heif_image_has_channel(image, heif_channel_Y)) {
+        channel = heif_channel_R; /* a grid of tiles becomes R, G, B, which are alike */
     }
     bits = colour && !deep ? 8 : heif_image_get_bits_per_pixel_range(image, channel);
     raster->channels = colour ? 3 : 1;

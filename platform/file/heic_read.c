@@ -14,6 +14,7 @@
 #include "heic_keep.h"
 #include "heic_picture.h"
 #include "heif_boxes.h"
+#include "heif_targets.h"
 #include "icc.h"
 #include "orient.h"
 #include "reason.h"
@@ -264,12 +265,15 @@ static int run(struct rf_heic *heic)
 int rf_read_heic(struct rf_read *read, struct rf_bytes file)
 {
     struct rf_heic heic = {.read = read, .file = file};
-    int status;
+    uint8_t *changed = NULL;
+    int status = rf_heif_single_targets(file, &changed);
 
     memcpy(read->info->container, rf_heic_is_avif(file) ? "AVIF" : "HEIC", 5);
+    heic.file.data = changed ? changed : file.data;
     heic.context = heif_context_alloc();
     heic.options = heif_decoding_options_alloc();
-    status = heic.context && heic.options ? run(&heic) : rf_fail_memory(read->reason);
+    status = status == REFOCUS_OK && heic.context && heic.options ? run(&heic)
+                                                                  : rf_fail_memory(read->reason);
     if (heic.primary) {
         heif_image_handle_release(heic.primary);
     }
@@ -279,5 +283,6 @@ int rf_read_heic(struct rf_read *read, struct rf_bytes file)
     if (heic.context) {
         heif_context_free(heic.context);
     }
+    free(changed);
     return status;
 }

@@ -6,6 +6,7 @@ import os
 import struct
 import unittest
 
+import heif_files
 import pictures
 from case import Case, H, W
 from test_keep import (GDEPTH, HAS_JPEG, HAS_PNG, HAS_XMP, OTHERS, STANDARD, TITLE, VERSION, exif,
@@ -70,6 +71,30 @@ class Heic(Case):
             file.write(b'\xff\xd8\xff')
         self.fails(1, 'bad.jpg: damaged JPEG: it ends in the middle of the picture; copy it again',
                    'render', 'bad.jpg', '--depth', 'depth.pgm', '-o', 'x.heic')
+
+    def test_as_phones_write(self):
+        """Picture and depth in tiles, and EXIF that describes two pictures."""
+        side = 64
+        flat = ('--depth', 'flat.pgm', '--blur', '0', '--strip', '--no-editable')
+        pictures.pgm('flat.pgm', side, side, lambda x, y: 9)
+        pictures.ppm('tile.ppm', side, side, lambda x, y: (4 * x, 200 - 2 * y, 60))
+        pictures.ppm('depth.ppm', side, side, lambda x, y: (40 if x < 32 else 220,) * 3)
+        for name in 'tile', 'depth':
+            self.succeeds('render', name + '.ppm', *flat, '-o', name + '.heic')
+        heif_files.phone('phone.heic', 'tile.heic', 'depth.heic', side, b'abc')
+        info = self.reports('info', 'phone.heic')
+        self.assertEqual((info['picture'], info['camera']), ([2 * side] * 2, 'abc'))
+        width, height, rgb = self.samples('phone.heic', '--blur', '0')
+        self.assertEqual((width, height), (2 * side,) * 2)
+        for x in 0, 100:
+            for y in 10, 90:
+                for c, want in enumerate((4 * (x % side), 200 - 2 * (y % side), 60)):
+                    self.assertLess(abs(rgb[3 * (y * width + x) + c] - want), 12)
+        self.succeeds('depth', 'phone.heic', '-o', 'map.pfm')
+        width, height, depth = pictures.read_pfm('map.pfm')
+        for x in 10, 50, 74, 114:
+            want = (40 if x % side < 32 else 220) / 255
+            self.assertLess(abs(depth[width * 70 + x] - want), 0.03)
 
     @unittest.skipUnless(HAS_JPEG and HAS_XMP, 'needs TurboJPEG and expat')
     def test_what_is_kept(self):

@@ -12,6 +12,7 @@
 #include "format.h"
 #include "gdepth.h"
 #include "heif_boxes.h"
+#include "heif_targets.h"
 #include "mpf.h"
 #include "number.h"
 #include "read.h"
