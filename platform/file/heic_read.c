@@ -3,7 +3,6 @@
 #include "heic_read.h"
 
 #include <libheif/heif.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -218,9 +217,9 @@ static int run(struct rf_heic *heic)
                        "it is a HEIF image sequence, a film without a still picture; give one of "
                        "its pictures as HEIC or JPEG");
     }
-    /* libheif takes a side and allows its square. */
-    heif_context_set_maximum_image_size_limit(
-        heic->context, (int)fmin(ceil(sqrt((double)read->limits.max_pixels)), 65535.0));
+    /* libheif takes a side of what is coded, in blocks of 64 at most. Pixels are counted before
+     * anything is decoded: the root of their limit would refuse panoramas that are within it. */
+    heif_context_set_maximum_image_size_limit(heic->context, (int)read->limits.max_side + 63);
     heif_context_set_max_decoding_threads(heic->context, 0);
     heic->options->strict_decoding = 1;
     error = heif_context_read_from_memory_without_copy(heic->context, heic->file.data,

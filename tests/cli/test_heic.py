@@ -3,6 +3,7 @@
 Usage: test_heic.py REFOCUS [unittest arguments]"""
 import base64
 import os
+import re
 import struct
 import unittest
 
@@ -71,6 +72,16 @@ class Heic(Case):
             file.write(b'\xff\xd8\xff')
         self.fails(1, 'bad.jpg: damaged JPEG: it ends in the middle of the picture; copy it again',
                    'render', 'bad.jpg', '--depth', 'depth.pgm', '-o', 'x.heic')
+
+    def test_limits(self):
+        """Pixels are counted: a picture may be wider than the root of what is allowed."""
+        self.succeeds('render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.heic')
+        for more in ('--max-pixels', str(W * H)), ('--max-side', str(W)):
+            self.assertIn('%dx%d' % (W, H), self.succeeds('info', 'out.heic', *more))
+        self.fails(1, 'out.heic: its %d x %d pixels are more than the limit of %d pixels' % (
+            W, H, W * H - 1), 'info', 'out.heic', '--max-pixels', str(W * H - 1))
+        self.fails(1, re.compile('out.heic: .*%d' % (W - 1)), 'info', 'out.heic', '--max-side',
+                   str(W - 1))
 
     def test_as_phones_write(self):
         """Picture and depth in tiles, and EXIF that describes two pictures."""
