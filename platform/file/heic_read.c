@@ -238,7 +238,7 @@ static int run(struct rf_heic *heic)
     read->info->stored_bits = heif_image_handle_get_luma_bits_per_pixel(heic->primary);
     status = read_exif(heic);
     say_orientation(heic);
-    if (heif_context_get_number_of_top_level_images(heic->context) == 2) {
+    if (rf_heif_is_stereo(heic->file)) {
         rf_note_view(read->info, "HEIC", 2);
     }
     if (status == REFOCUS_OK) {

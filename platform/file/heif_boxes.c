@@ -179,6 +179,17 @@ int rf_heif_orientation(struct rf_bytes file, uint32_t item)
     return orientation_of(turn);
 }
 
+bool rf_heif_is_stereo(struct rf_bytes file)
+{
+    struct rf_bytes meta, groups, pair;
+
+    if (!find_box(file, "meta", &meta) || meta.size < 4) {
+        return false;
+    }
+    skip(&meta, 4);
+    return find_box(meta, "grpl", &groups) && find_box(groups, "ster", &pair);
+}
+
 bool rf_heif_is_sequence(struct rf_bytes file)
 {
     struct rf_bytes content;

@@ -27,6 +27,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         }
     }
     rf_heif_is_sequence(file);
+    rf_heif_is_stereo(file);
     change(file);
     return 0;
 }

@@ -175,6 +175,26 @@ static void heif_sequences(void **state)
     read_photo(film, REFOCUS_ERR_UNSUPPORTED);
 }
 
+/* Two pictures are a stereo pair if a group of theirs says so, and two of a burst are none. */
+static void heif_stereo(void **state)
+{
+    static const char names[][5] = {"ster", "altr", "brst"};
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        struct bytes file = bytes_copy("\0\0\0\24ftypheic\0\0\0\0mif1", 20);
+
+        bytes_add(&file, "\0\0\0\64meta\0\0\0\0\0\0\0\50grpl\0\0\0\40", 24);
+        bytes_add(&file, names[i], 4);
+        bytes_add(&file, "\0\0\0\0\0\0\0\3\0\0\0\2\0\0\0\1\0\0\0\2\0\0\0\0", 24);
+        assert_true(rf_heif_is_stereo((struct rf_bytes){file.data, file.size}) == (i == 0));
+        for (size_t size = 0; size < file.size; size++) {
+            assert_false(rf_heif_is_stereo((struct rf_bytes){file.data, size}));
+        }
+        bytes_free(&file);
+    }
+}
+
 static void heif_orientations(void **state)
 {
     static const struct {
@@ -330,19 +350,13 @@ static void png_signature(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers),
-        cmocka_unit_test(base64_text),
-        cmocka_unit_test(exif_offsets),
-        cmocka_unit_test(exif_texts_are_clean),
-        cmocka_unit_test(heif_sequences),
-        cmocka_unit_test(heif_orientations),
-        cmocka_unit_test(heif_short_primary),
-        cmocka_unit_test(md5_of_the_rfc),
-        cmocka_unit_test(png_signature),
-        cmocka_unit_test(reasons_end),
-        cmocka_unit_test(heif_brands),
-        cmocka_unit_test(mpf_bounds),
-        cmocka_unit_test(disparity_ranges),
+        cmocka_unit_test(numbers),           cmocka_unit_test(base64_text),
+        cmocka_unit_test(exif_offsets),      cmocka_unit_test(exif_texts_are_clean),
+        cmocka_unit_test(heif_sequences),    cmocka_unit_test(heif_stereo),
+        cmocka_unit_test(heif_orientations), cmocka_unit_test(heif_short_primary),
+        cmocka_unit_test(md5_of_the_rfc),    cmocka_unit_test(png_signature),
+        cmocka_unit_test(reasons_end),       cmocka_unit_test(heif_brands),
+        cmocka_unit_test(mpf_bounds),        cmocka_unit_test(disparity_ranges),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
