@@ -134,8 +134,8 @@ static int least_alpha(int light, int mean)
 }
 
 /* Mattes of cameras take dark hair for half of what is behind it: alpha goes towards what all
- * channels ask for, by as much of the way as it is itself. What little is subject stays little,
- * where what is behind it may be other than the mean. */
+ * channels ask for, all of the way where it is a half or more. What little is subject stays little,
+ * as what is behind it may be other than the mean. */
 static uint8_t corrected(int alpha, const uint16_t light[3], const uint16_t mean[3])
 {
     int least = alpha;
