@@ -83,8 +83,8 @@ static bool find_boxes(const uint8_t *data, size_t size, struct boxes *boxes)
     return true;
 }
 
-/* Copies references from `data` to `out`, and leaves each description one target. Returns how many
- * bytes they have there; 0: they are damaged. */
+/* Copies references to `out`, and leaves each description one target. Returns how many bytes they
+ * have there; 0: they are damaged. */
 static size_t copy_references(const uint8_t *data, const struct boxes *boxes, uint8_t *out)
 {
     const size_t id = boxes->id_bytes, end = boxes->references.end;
@@ -122,42 +122,47 @@ static size_t copy_references(const uint8_t *data, const struct boxes *boxes, ui
     return at == end ? length : 0;
 }
 
-/* Puts the free bytes behind `pitm`, and `iref` behind what lies between the two. */
-static void lay_out(const uint8_t *data, const struct boxes *boxes, uint8_t *out, size_t length)
+/* Puts the free bytes behind `pitm`, and `iref` with its new references behind what lies between
+ * the two. */
+static void lay_out(const uint8_t *data, const struct boxes *boxes, const uint8_t *references,
+                    size_t length, uint8_t *out)
 {
     const struct span *const iref = &boxes->references, *const pitm = &boxes->primary;
     const size_t spare = iref->end - iref->content - 4 - length;
     uint8_t *const to = out + iref->begin + spare;
 
-    memmove(to + 12, out + iref->content + 4, length);
-    memcpy(to, data + iref->begin, 12);
-    put(to, (uint32_t)(12 + length), 4);
     memcpy(out + pitm->end + spare, data + pitm->end, iref->begin - pitm->end);
     memset(out + pitm->end, 0, spare);
     put(out + pitm->begin, (uint32_t)(pitm->end - pitm->begin + spare), 4);
+    memcpy(to, data + iref->begin, 12);
+    put(to, (uint32_t)(12 + length), 4);
+    memcpy(to + 12, references, length);
 }
 
 int rf_heif_single_targets(struct rf_bytes file, uint8_t **changed)
 {
     struct boxes boxes;
-    uint8_t *out;
+    uint8_t *references;
     size_t length;
 
     *changed = NULL;
     if (!find_boxes(file.data, file.size, &boxes)) {
         return REFOCUS_OK;
     }
-    out = malloc(file.size);
-    if (!out) {
+    references = malloc(boxes.references.end - boxes.references.begin);
+    if (!references) {
         return REFOCUS_ERR_MEMORY;
     }
-    memcpy(out, file.data, file.size);
-    length = copy_references(file.data, &boxes, out + boxes.references.content + 4);
+    length = copy_references(file.data, &boxes, references);
     if (length == 0 || length == boxes.references.end - boxes.references.content - 4) {
-        free(out);
+        free(references);
         return REFOCUS_OK;
     }
-    lay_out(file.data, &boxes, out, length);
-    *changed = out;
-    return REFOCUS_OK;
+    *changed = malloc(file.size);
+    if (*changed) {
+        memcpy(*changed, file.data, file.size);
+        lay_out(file.data, &boxes, references, length, *changed);
+    }
+    free(references);
+    return *changed ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
 }

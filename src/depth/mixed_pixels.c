@@ -21,7 +21,7 @@
  * A small photo that is sharp to the pixel has at most two mixtures across most of its silhouettes.
  * There a whole pixel would be too much, and nothing is done: of 720 x 540 pixels path-traced
  * through a camera's lens 45 to 78 % are so sharp, of photos of 3 and 12 megapixels from phones 4
- * to 54 %. In those a pixel is small beside what is seen of them.
+ * to 54 %. In photos of more than LARGE pixels one of them is too small to be seen.
  */
 #include "depth/mixed_pixels.h"
 
@@ -45,7 +45,7 @@ enum {
     SHARP = 2,       /* mixtures across an edge that is sharp */
     FEW_SHARP = 30,  /* percent of the edges of a soft photo are sharp at most */
     FEWEST = 100,    /* edges that can tell */
-    LARGE = 3 << 20, /* pixels of a photo that may have more sharp edges */
+    LARGE = 3 << 20, /* pixels: photos that have more are taken for soft */
     DIRECTIONS = 4,
 };
 

@@ -4,8 +4,8 @@
  * on it. So every pixel has a near and a far disparity, n and f. Where n is nearer than f, it is a
  * mixture C = alpha N + (1 - alpha) F, where F is the push-pull of the light of the far side.
  *
- * So what C is and a mixture of means were not is N: hair has more of a pattern than the mean of
- * what is behind it.
+ * N is what is left of C then. So all of the pattern is taken for the subject's, of which hair has
+ * more than what is behind it.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +18,7 @@ struct side {
     const struct rf_matte_pass *pass;
     bool is_near;
     struct rf_disparity_q16 disparity; /* n or f of each pixel */
+    bool of_light;                     /* light is pushed, not disparities */
 };
 
 /* Sums of four of these fit the 16 bits of a push-pull, as those of light do. */
@@ -31,8 +32,8 @@ static uint16_t enlarged(int reduced)
     return (uint16_t)(reduced << 2 | reduced >> 12);
 }
 
-/* Copies the disparities of what is sure to be on a side into level 0, as light. */
-static void seed_disparity(void *context, int band, int worker)
+/* Copies what is sure to be on a side into level 0: its light, or its disparities as light. */
+static void seed_band(void *context, int band, int worker)
 {
     const struct side *side = context;
     const struct rf_matte_pass *pass = side->pass;
@@ -44,37 +45,19 @@ static void seed_disparity(void *context, int band, int worker)
         const uint16_t *alpha = pass->alpha.at + y * pass->alpha.stride;
         const uint16_t *lost = pass->lost.at + y * pass->lost.stride;
         const uint16_t *disparity = pass->disparity.at + y * pass->disparity.stride;
-        uint16_t *const light = level->light.channel[0] + y * level->light.stride;
         int16_t *const blur = level->blur.at + y * level->blur.stride;
-
-        for (int x = 0; x < width; x++) {
-            const bool known = rf_is_sure(alpha[x], side->is_near) && !lost[x];
-
-            light[x] = reduced(disparity[x]);
-            blur[x] = known ? 0 : RF_NO_BLUR;
-        }
-        blur[width] = RF_NO_BLUR; /* a column more if the width is odd */
-    }
-}
-
-static void seed_light(void *context, int band, int worker)
-{
-    const struct side *side = context;
-    const struct rf_matte_pass *pass = side->pass;
-    const struct rf_level *level = &pass->pyramid->level[0];
-    const int width = pass->view->width;
-
-    (void)worker;
-    for (int y = rf_band_start(band); y < rf_band_end(pass->view, band); y++) {
-        const uint16_t *alpha = pass->alpha.at + y * pass->alpha.stride;
-        int16_t *const blur = level->blur.at + y * level->blur.stride;
+        const ptrdiff_t at = y * level->light.stride;
 
         for (int x = 0; x < width; x++)
-            blur[x] = rf_is_sure(alpha[x], side->is_near) ? 0 : RF_NO_BLUR;
-        blur[width] = RF_NO_BLUR;
-        for (int c = 0; c < 3; c++)
-            memcpy(level->light.channel[c] + y * level->light.stride,
-                   pass->light.channel[c] + y * pass->light.stride, (size_t)width * 2);
+            blur[x] = rf_is_sure(alpha[x], side->is_near) && (side->of_light || !lost[x])
+                          ? 0
+                          : RF_NO_BLUR;
+        blur[width] = RF_NO_BLUR; /* a column more if the width is odd */
+        for (int x = 0; x < width && !side->of_light; x++)
+            level->light.channel[0][at + x] = reduced(disparity[x]);
+        for (int c = 0; c < 3 && side->of_light; c++)
+            memcpy(level->light.channel[c] + at, pass->light.channel[c] + y * pass->light.stride,
+                   (size_t)width * 2);
     }
 }
 
@@ -98,12 +81,13 @@ static void keep_disparity(void *context, int band, int worker)
 }
 
 /* Makes level 0 the side, wherever it can be seen. False: no pixel is sure to be on it. */
-static bool push_pull(struct side *side, rf_work_fn *seed)
+static bool push_pull(struct side *side, bool of_light)
 {
     const struct rf_matte_pass *pass = side->pass;
     const struct rf_pyramid *pyramid = pass->pyramid;
 
-    rf_pool_run(pass->exec->pool, seed, side, rf_bands(pass->view));
+    side->of_light = of_light;
+    rf_pool_run(pass->exec->pool, seed_band, side, rf_bands(pass->view));
     rf_background_push(pass->exec, pyramid, 0, pyramid->levels);
     if (rf_cancelled(pass->exec) || pyramid->level[pyramid->levels].blur.at[0] == RF_NO_BLUR)
         return false;
@@ -113,7 +97,7 @@ static bool push_pull(struct side *side, rf_work_fn *seed)
 
 static bool spread_disparity(struct side *side)
 {
-    if (!push_pull(side, seed_disparity))
+    if (!push_pull(side, false))
         return false;
     rf_pool_run(side->pass->exec->pool, keep_disparity, side, rf_bands(side->pass->view));
     return true;
@@ -225,10 +209,10 @@ void rf_matte_forget(struct rf_thin_list *list, const struct rf_viewport *view)
 
 void rf_matte_take_in(const struct rf_matte_pass *pass)
 {
-    struct side near = {pass, true, pass->near}, far = {pass, false, pass->far};
+    struct side near = {pass, true, pass->near, false}, far = {pass, false, pass->far, false};
 
     rf_settle_sides(pass);
-    if (!spread_disparity(&near) || !spread_disparity(&far) || !push_pull(&far, seed_light))
+    if (!spread_disparity(&near) || !spread_disparity(&far) || !push_pull(&far, true))
         return;
     rf_pool_run(pass->exec->pool, list_band, (void *)pass, rf_bands(pass->view));
     pass->list->has_matte = true;

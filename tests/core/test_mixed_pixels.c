@@ -208,7 +208,7 @@ static void patterns(void **state)
     assert_true(plain > RADIUS);
     assert_true(taken_beside_ring(2, 4, 0.05) > plain / 2);
     assert_true(taken_beside_ring(2, 4, 0.4) < plain / 2);   /* shares rise */
-    assert_true(taken_beside_ring(0.6, 6, 0.2) < 2 * plain); /* they do not end */
+    assert_true(taken_beside_ring(0.6, 6, 0.2) < 2 * plain); /* shares do not end */
     assert_true(taken_beside_ring(-5, -2, 0.7) > plain / 2);
     assert_true(taken_beside_ring(-5, -2, 0.3) < plain / 2);
 }

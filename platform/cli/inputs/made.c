@@ -211,7 +211,7 @@ static void stretch(const float *in, int w, int h, bool down, int n, float *out)
         for (int k = 0; k < lines; k++) {
             const float a = in[k * line + first * step], b = in[k * line + second * step];
 
-            out[k * line_out + i * (down ? w : 1)] = a + share * (b - a);
+            out[k * line_out + i * step] = a + share * (b - a);
         }
     }
 }
@@ -226,11 +226,13 @@ static int reshape(struct input *input)
     const int64_t across = ((int64_t)height * photo->width + photo->height / 2) / photo->height;
     const bool is_down = down > height;
     const int64_t n = is_down ? down : across;
-    float *samples;
+    const uint64_t bytes = (uint64_t)n * (uint64_t)(is_down ? width : height) * sizeof(float);
+    float *samples = NULL;
 
     if (n <= (is_down ? height : width) || n > REFOCUS_MAX_SIDE)
         return EXIT_DONE;
-    samples = malloc((size_t)n * (size_t)(is_down ? width : height) * sizeof *samples);
+    if (bytes <= SIZE_MAX)
+        samples = malloc((size_t)bytes);
     if (!samples)
         return report_failure(EXIT_FAILED, input->depth_name, "not enough memory");
     stretch(input->made_samples, width, height, is_down, (int)n, samples);
