@@ -44,6 +44,20 @@ static bool sort_segments(const struct rf_read *read, struct candidate *candidat
     return step == RF_JPEG_END;
 }
 
+const char *rf_gain_from_apple(const struct rf_read *read, const struct rf_xmp *xmp,
+                               double *headroom)
+{
+    struct refocus_reason unused = {""};
+    struct rf_read quiet = *read;
+    bool found;
+
+    quiet.reason = &unused;
+    if (rf_xmp_number(&quiet, xmp, RF_XMP_APPLE_HEADROOM, "headroom", &found, headroom) || !found) {
+        *headroom = read->apple_headroom;
+    }
+    return *headroom >= 1 && *headroom <= 65536 ? NULL : "the photo does not say its headroom";
+}
+
 /* Reads its XMP. *is_map: whether it says that this is a gain map at all. */
 static int judge_xmp(struct rf_read *read, const struct candidate *candidate, bool *is_map,
                      const char **why, double *headroom)
@@ -60,14 +74,8 @@ static int judge_xmp(struct rf_read *read, const struct candidate *candidate, bo
     type = xmp.value[RF_XMP_APPLE_TYPE];
     if (status == REFOCUS_OK && type &&
         strcmp(type, "urn:com:apple:photo:2020:aux:hdrgainmap") == 0) {
-        bool found;
-
         *is_map = true;
-        if (rf_xmp_number(read, &xmp, RF_XMP_APPLE_HEADROOM, "headroom", &found, headroom) ||
-            !found) {
-            *headroom = read->apple_headroom;
-        }
-        *why = *headroom >= 1 && *headroom <= 65536 ? NULL : "the photo does not say its headroom";
+        *why = rf_gain_from_apple(read, &xmp, headroom);
     }
     rf_xmp_free(&xmp);
     return status == REFOCUS_ERR_MEMORY ? status : REFOCUS_OK;

@@ -20,19 +20,33 @@ enum heif_chroma rf_heic_deep_chroma(void)
                                        : heif_chroma_interleaved_RRGGBB_BE;
 }
 
-int rf_heic_settle_light(struct rf_read *read, const struct heif_image_handle *handle)
+/* The curve, if it is one of HDR, and the primaries; false: it is none. */
+static bool find_curve(const struct heif_image_handle *handle, int *curve, int *primaries)
 {
     struct heif_color_profile_nclx *nclx = NULL;
-    int curve = 0, primaries = 0, status;
 
-    if (read->image.max_value <= 255 ||
+    if (heif_image_handle_get_luma_bits_per_pixel(handle) <= 8 ||
         heif_image_handle_get_nclx_color_profile(handle, &nclx).code != heif_error_Ok || !nclx) {
-        return REFOCUS_OK;
+        return false;
     }
-    curve = (int)nclx->transfer_characteristics;
-    primaries = (int)nclx->color_primaries;
+    *curve = (int)nclx->transfer_characteristics;
+    *primaries = (int)nclx->color_primaries;
     heif_nclx_color_profile_free(nclx);
-    if (!rf_curve_is_hdr(curve)) {
+    return rf_curve_is_hdr(*curve);
+}
+
+bool rf_heic_is_light(const struct heif_image_handle *handle)
+{
+    int curve, primaries;
+
+    return find_curve(handle, &curve, &primaries);
+}
+
+int rf_heic_settle_light(struct rf_read *read, const struct heif_image_handle *handle)
+{
+    int curve, primaries, status;
+
+    if (read->image.max_value <= 255 || !find_curve(handle, &curve, &primaries)) {
         return REFOCUS_OK;
     }
     status = rf_raster_to_light(read, &read->image, curve, primaries);

@@ -1,15 +1,14 @@
 /* heic_depth.c: the auxiliary depth image of a HEIC, and what its samples mean. */
 #include <math.h>
-#include <stdlib.h>
 
 #include "depth_part.h"
 #include "depth_values.h"
 #include "heic_picture.h"
-#include "heif_boxes.h"
+#include "heif_turn.h"
 #include "orient.h"
 #include "reason.h"
 #ifdef RF_HAVE_XMP
-#include "xmp_parse.h"
+#include "heic_xmp.h"
 #endif
 
 static bool has_disparity(const struct heif_depth_representation_info *about)
@@ -68,42 +67,21 @@ static bool set_meaning(struct rf_read *read, const struct heif_depth_representa
     }
 }
 
-/* Only the simulated aperture is wanted of the XMP that Apple puts beside the depth image, so
- * damage there is passed over. */
+/* Only the simulated aperture is wanted of the XMP that Apple puts beside the depth image. */
 static int read_simulated(struct rf_heic *heic, const struct heif_image_handle *depth)
 {
-    int status = REFOCUS_OK;
 #ifdef RF_HAVE_XMP
-    struct refocus_reason unused;
-    struct rf_read quiet = {.limits = heic->read->limits, .reason = &unused};
-    struct rf_xmp xmp = {.items = 0};
-    struct rf_bytes packet;
-    heif_item_id item;
-    uint8_t *bytes;
+    struct rf_xmp xmp;
+    const int status = rf_heic_parse_xmp(heic->read, depth, &xmp);
 
-    if (heif_image_handle_get_list_of_metadata_block_IDs(depth, "mime", &item, 1) < 1) {
-        return REFOCUS_OK;
-    }
-    packet.size = heif_image_handle_get_metadata_size(depth, item);
-    if (packet.size == 0 || rf_check_metadata(&quiet, packet.size, "its XMP") != REFOCUS_OK) {
-        return REFOCUS_OK;
-    }
-    packet.data = bytes = malloc(packet.size);
-    if (!bytes) {
-        return rf_fail_memory(heic->read->reason);
-    }
-    if (heif_image_handle_get_metadata(depth, item, bytes).code == heif_error_Ok &&
-        rf_xmp_parse(&quiet, packet, &xmp) == REFOCUS_ERR_MEMORY) {
-        status = rf_fail_memory(heic->read->reason);
-    }
     heic->read->info->simulated_f_number = rf_xmp_simulated_f_number(&xmp);
     rf_xmp_free(&xmp);
-    free(bytes);
+    return status;
 #else
     (void)heic;
     (void)depth;
+    return REFOCUS_OK;
 #endif
-    return status;
 }
 
 static int take_depth(struct rf_heic *heic, heif_item_id item,
@@ -118,7 +96,7 @@ static int take_depth(struct rf_heic *heic, heif_item_id item,
     if (error.code != heif_error_Ok) {
         return rf_heic_fail(read, error);
     }
-    status = rf_heic_decode(heic, handle, false, &read->samples);
+    status = rf_heic_decode(heic, handle, RF_HEIC_SAMPLES, &read->samples);
     if (status == REFOCUS_OK) {
         status = read_simulated(heic, handle);
     }

@@ -49,14 +49,30 @@ static int copy_plane(struct rf_read *read, const struct heif_image *image,
     return status;
 }
 
-int rf_heic_decode(struct rf_heic *heic, struct heif_image_handle *handle, bool colour,
+struct heif_context *rf_heic_context(const struct refocus_read_limits *limits)
+{
+    struct heif_context *const context = heif_context_alloc();
+
+    if (context) {
+        /* libheif takes a side of what is coded, in blocks of 64 at most. Pixels are counted before
+         * anything is decoded: the root of their limit would refuse panoramas that are within it.
+         */
+        heif_context_set_maximum_image_size_limit(context, (int)limits->max_side + 63);
+        heif_context_set_max_decoding_threads(context, 0);
+    }
+    return context;
+}
+
+int rf_heic_decode(struct rf_heic *heic, struct heif_image_handle *handle, enum rf_heic_form form,
                    struct rf_raster *raster)
 {
     struct rf_read *const read = heic->read;
     enum heif_channel channel = heif_channel_Y;
     struct heif_image *image = NULL;
     struct heif_error error;
-    const bool deep = colour && heif_image_handle_get_luma_bits_per_pixel(handle) > 8;
+    const bool colour = form != RF_HEIC_SAMPLES;
+    const bool deep =
+        form == RF_HEIC_COLOUR && heif_image_handle_get_luma_bits_per_pixel(handle) > 8;
     int bits, status;
 
     status = rf_check_size(read, (uint64_t)heif_image_handle_get_width(handle),

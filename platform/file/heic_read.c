@@ -8,50 +8,22 @@
 
 #include "exif.h"
 #include "depth_part.h"
-#include "gain_map_read.h"
 #include "heic_deep.h"
+#include "heic_gain.h"
 #include "heic_keep.h"
 #include "heic_picture.h"
 #include "heif_boxes.h"
 #include "heif_targets.h"
+#include "heif_turn.h"
 #include "icc.h"
 #include "orient.h"
 #include "reason.h"
-
-/* Apple's gain map, upright as the picture is; the headroom is in the EXIF. */
-static int take_gain_map(struct rf_heic *heic, struct heif_image_handle *handle, heif_item_id item)
-{
-    struct rf_read *const read = heic->read;
-    struct rf_raster *const samples = &read->gain->samples;
-    struct refocus_reason unused = {""};
-    struct rf_read quiet = *read;
-    struct rf_heic inner = *heic;
-    const char *why = read->apple_headroom > 0 ? NULL : "the photo does not say its headroom";
-    int status = REFOCUS_OK;
-
-    inner.read = &quiet;
-    quiet.reason = &unused;
-    if (!why) {
-        status = rf_heic_decode(&inner, handle, false, samples);
-        if (status == REFOCUS_OK && rf_heif_orientation(heic->file, item) == 1) {
-            status = rf_raster_orient(&quiet, samples, read->info->orientation);
-        }
-        if (status == REFOCUS_ERR_MEMORY) {
-            return rf_fail_memory(read->reason);
-        }
-        why = status == REFOCUS_OK         ? NULL
-              : status == REFOCUS_ERR_SIZE ? "it is beyond the limits"
-                                           : "it is damaged";
-    }
-    rf_gain_settle(read, why, read->apple_headroom);
-    return REFOCUS_OK;
-}
 
 /* Take the portrait matte, as depth is taken, upright. */
 static int take_matte(struct rf_heic *heic, struct heif_image_handle *handle, heif_item_id item)
 {
     struct rf_read *const read = heic->read;
-    int status = rf_heic_decode(heic, handle, false, &read->matte);
+    int status = rf_heic_decode(heic, handle, RF_HEIC_SAMPLES, &read->matte);
 
     if (status == REFOCUS_OK) {
         rf_note(read->info, "HEIC: auxiliary image is the portrait matte: how much of a pixel is "
@@ -73,16 +45,13 @@ static int read_auxiliary(struct rf_heic *heic, struct heif_image_handle *handle
     if (heif_image_handle_get_auxiliary_type(handle, &type).code != heif_error_Ok) {
         return REFOCUS_OK;
     }
-    heic->read->kept.gain_map |= strstr(type, "hdrgainmap") != NULL;
     if (rf_is_matte(type) && heic->read->picture_always && !heic->read->matte.pixels) {
         status = take_matte(heic, handle, item);
+    } else if (rf_heic_is_gain_map(type)) {
+        status = rf_heic_gain_auxiliary(heic, handle, item, type);
     } else {
-        rf_note(heic->read->info, "HEIC: auxiliary image passed over, it is no depth but \"%.80s\"",
-                type);
-        if (heic->read->gain && !heic->read->gain->samples.pixels &&
-            strcmp(type, "urn:com:apple:photo:2020:aux:hdrgainmap") == 0) {
-            status = take_gain_map(heic, handle, item);
-        }
+        rf_note(heic->read->info, "%s: auxiliary image passed over, it is no depth but \"%.80s\"",
+                heic->read->info->container, type);
     }
     heif_image_handle_free_auxiliary_types(handle, &type);
     return status;
@@ -217,10 +186,6 @@ static int run(struct rf_heic *heic)
                        "it is a HEIF image sequence, a film without a still picture; give one of "
                        "its pictures as HEIC or JPEG");
     }
-    /* libheif takes a side of what is coded, in blocks of 64 at most. Pixels are counted before
-     * anything is decoded: the root of their limit would refuse panoramas that are within it. */
-    heif_context_set_maximum_image_size_limit(heic->context, (int)read->limits.max_side + 63);
-    heif_context_set_max_decoding_threads(heic->context, 0);
     heic->options->strict_decoding = 1;
     error = heif_context_read_from_memory_without_copy(heic->context, heic->file.data,
                                                        heic->file.size, NULL);
@@ -232,8 +197,9 @@ static int run(struct rf_heic *heic)
     }
     if (read->second) {
         status = take_second(heic);
-        return status == REFOCUS_OK ? rf_heic_decode(heic, heic->primary, true, &read->image)
-                                    : status;
+        return status == REFOCUS_OK
+                   ? rf_heic_decode(heic, heic->primary, RF_HEIC_COLOUR, &read->image)
+                   : status;
     }
     read->info->stored_bits = heif_image_handle_get_luma_bits_per_pixel(heic->primary);
     status = read_exif(heic);
@@ -250,12 +216,15 @@ static int run(struct rf_heic *heic)
     if (status == REFOCUS_OK) {
         status = read_auxiliaries(heic);
     }
+    if (status == REFOCUS_OK) {
+        status = rf_heic_gain_tone_map(heic);
+    }
     if (status == REFOCUS_OK && !read->samples.pixels) {
         status = rf_heic_depth(heic);
     }
     if (status == REFOCUS_OK && !read->image.pixels &&
         (read->picture_always || !read->samples.pixels)) {
-        status = rf_heic_decode(heic, heic->primary, true, &read->image);
+        status = rf_heic_decode(heic, heic->primary, RF_HEIC_COLOUR, &read->image);
         status = status == REFOCUS_OK ? rf_heic_settle_light(read, heic->primary) : status;
     }
     return status;
@@ -269,7 +238,7 @@ int rf_read_heic(struct rf_read *read, struct rf_bytes file)
 
     memcpy(read->info->container, rf_heic_is_avif(file) ? "AVIF" : "HEIC", 5);
     heic.file.data = changed ? changed : file.data;
-    heic.context = heif_context_alloc();
+    heic.context = rf_heic_context(&read->limits);
     heic.options = heif_decoding_options_alloc();
     status = status == REFOCUS_OK && heic.context && heic.options ? run(&heic)
                                                                   : rf_fail_memory(read->reason);

@@ -1,13 +1,29 @@
-/* heif_boxes.h: what a HEIF container states that libheif does not tell. */
+/* heif_boxes.h: the boxes of a HEIF container, for what libheif does not tell. All that is found
+ * lies in the file's bytes. */
 #ifndef RF_FILE_HEIF_BOXES_H
 #define RF_FILE_HEIF_BOXES_H
 
 #include <stdbool.h>
 #include "bytes.h"
 
-/* EXIF's number for the rotation and mirroring of an item; item 0 is the main picture. 1 when the
- * container states none. */
-int rf_heif_orientation(struct rf_bytes file, uint32_t item);
+struct rf_heif_box {
+    char type[5];
+    struct rf_bytes content;
+};
+
+/* A number of 0 to 4 bytes, which are there. */
+uint32_t rf_heif_number(struct rf_bytes bytes, size_t at, size_t size);
+/* Take bytes, which are there, off the front. */
+void rf_heif_skip(struct rf_bytes *bytes, size_t size);
+/* Take the next box off the front; false at the end and where no box begins. */
+bool rf_heif_next(struct rf_bytes *rest, struct rf_heif_box *box);
+/* The first box of a type. */
+bool rf_heif_find(struct rf_bytes rest, const char *type, struct rf_bytes *content);
+/* The boxes that describe the file's items. */
+bool rf_heif_meta(struct rf_bytes file, struct rf_bytes *boxes);
+/* The bytes in them that hold the number of the main picture, two or four. */
+bool rf_heif_primary(struct rf_bytes meta, struct rf_bytes *number);
+
 /* Whether two pictures are said to be a stereo pair (ISO/IEC 23008-12, 6.8.7), not of a burst. */
 bool rf_heif_is_stereo(struct rf_bytes file);
 /* Whether the file holds tracks alone, and no picture. */

@@ -51,6 +51,43 @@ def representation():
     return struct.pack('>II', len(nal) + 4, len(nal)) + nal
 
 
+def container(path, items, references, properties, hidden, main=1, inside=()):
+    """A HEIC of items, (number, kind, data, properties); of properties, which are counted from 1,
+    those with bit 7 are essential. Data of the kinds in `inside` lie in the description itself."""
+    information = b''.join(full(b'infe', 2, number in hidden, struct.pack(
+        '>HH4s', number, 0, kind), b'\0application/rdf+xml\0' if kind == b'mime' else b'\0')
+        for number, kind, _, _ in items)
+    references = b''.join(box(kind, struct.pack('>HH%dH' % len(to), number, len(to), *to))
+                          for kind, number, to in references)
+    owners = [(number, own) for number, _, _, own in items if own]
+    associations = full(b'ipma', 0, 0, struct.pack('>I', len(owners)), *(
+        struct.pack('>HB%dB' % len(own), number, len(own), *own) for number, own in owners))
+
+    def header(offset):
+        places, within = b'', 0
+        for number, kind, data, _ in items:
+            is_inside = kind in inside
+            places += struct.pack('>HHHHII', number, is_inside, 0, 1,
+                                  within if is_inside else offset, len(data))
+            within, offset = (within + len(data), offset) if is_inside else (
+                within, offset + len(data))
+        return box(b'ftyp', b'heic\0\0\0\0mif1heic') + full(
+            b'meta', 0, 0, full(b'hdlr', 0, 0, b'\0\0\0\0pict' + bytes(13)),
+            full(b'pitm', 0, 0, struct.pack('>H', main)),
+            full(b'iinf', 0, 0, struct.pack('>H', len(items)), information),
+            full(b'iref', 0, 0, references),
+            box(b'iprp', box(b'ipco', *properties), associations),
+            box(b'idat', *(data for _, kind, data, _ in items if kind in inside)),
+            full(b'iloc', 1, 0, struct.pack('>BBH', 0x44, 0, len(items)), places))
+    with open(path, 'wb') as file:
+        file.write(header(len(header(0)) + 8) +
+                   box(b'mdat', *(data for _, kind, data, _ in items if kind not in inside)))
+
+
+def size_of(side):
+    return full(b'ispe', 0, 0, struct.pack('>II', side, side))
+
+
 def phone(path, picture, depth, side, model):
     """A picture and its depth, each a grid of 2 x 2 tiles of side x side pixels: files of one such
     tile. EXIF describes the picture, and what a gain map makes of it, as iPhones say since iOS 18;
@@ -63,30 +100,40 @@ def phone(path, picture, depth, side, model):
     items += [(main, b'grid', grid, (4,)), (aux, b'grid', grid, (4, 0x85)),
               (toned, b'tmap', b'\0' * 62, (4,)),
               (exif, b'Exif', struct.pack('>I', 0) + tiff(model), ())]
-    information = b''.join(full(b'infe', 2, number not in (main, toned), struct.pack(
-        '>HH4sx', number, 0, kind)) for number, kind, _, _ in items)
-    references = b''.join(box(kind, struct.pack('>HH%dH' % len(to), number, len(to), *to))
-                          for kind, number, to in (
-        (b'dimg', main, range(1, 5)), (b'dimg', aux, range(5, 9)), (b'auxl', aux, (main,)),
-        (b'dimg', toned, (main, aux)), (b'cdsc', exif, (main, toned))))
-    properties = box(b'ipco', box(b'hvcC', config), box(b'hvcC', depth_config),
-                     full(b'ispe', 0, 0, struct.pack('>II', side, side)),
-                     full(b'ispe', 0, 0, struct.pack('>II', 2 * side, 2 * side)),
-                     full(b'auxC', 0, 0, b'urn:mpeg:hevc:2015:auxid:2\0', representation()))
-    owners = [(number, own) for number, _, _, own in items if own]
-    associations = full(b'ipma', 0, 0, struct.pack('>I', len(owners)), *(
-        struct.pack('>HB%dB' % len(own), number, len(own), *own) for number, own in owners))
+    references = ((b'dimg', main, range(1, 5)), (b'dimg', aux, range(5, 9)),
+                  (b'auxl', aux, (main,)), (b'dimg', toned, (main, aux)),
+                  (b'cdsc', exif, (main, toned)))
+    properties = (box(b'hvcC', config), box(b'hvcC', depth_config), size_of(side),
+                  size_of(2 * side),
+                  full(b'auxC', 0, 0, b'urn:mpeg:hevc:2015:auxid:2\0', representation()))
+    container(path, items, references, properties,
+              [number for number, _, _, _ in items if number not in (main, toned)], main)
 
-    def header(offset):
-        places = b''
-        for number, _, data, _ in items:
-            places += struct.pack('>HHHII', number, 0, 1, offset, len(data))
-            offset += len(data)
-        return box(b'ftyp', b'heic\0\0\0\0mif1heic') + full(
-            b'meta', 0, 0, full(b'hdlr', 0, 0, b'\0\0\0\0pict' + bytes(13)),
-            full(b'pitm', 0, 0, struct.pack('>H', main)),
-            full(b'iinf', 0, 0, struct.pack('>H', len(items)), information),
-            full(b'iref', 0, 0, references), box(b'iprp', properties, associations),
-            full(b'iloc', 0, 0, struct.pack('>BBH', 0x44, 0, len(items)), places))
-    with open(path, 'wb') as file:
-        file.write(header(len(header(0)) + 8) + box(b'mdat', *(data for _, _, data, _ in items)))
+
+def tone_map(stops):
+    """ISO 21496-1: one range of gains for all channels, 0 to so many stops, without offsets."""
+    def fraction(value):
+        return struct.pack('>II', value, 1)
+    return struct.pack('>BHHB', 0, 0, 0, 0x40) + fraction(0) + fraction(stops) + (
+        fraction(0) + fraction(stops) + fraction(1) + fraction(0) + fraction(0))
+
+
+def with_gain_map(path, picture, gain, side, gain_side, metadata=None, xmp=None, quarters=0):
+    """A photo and its gain map, files of one picture each. Metadata of a tone map say what the map
+    means, or a packet beside an auxiliary image, as Samsung's phones write it. Both are turned by
+    so many quarters anticlockwise."""
+    (config, photo), (gain_config, gain_photo) = coded(picture), coded(gain)
+    items = [(1, b'hvc1', photo, (0x81, 3, 0x86)),
+             (2, b'hvc1', gain_photo, (0x82, 4, 0x85, 0x86) if xmp else (0x82, 4, 0x86))]
+    references = []
+    if metadata:
+        items.append((3, b'tmap', metadata, (3,)))
+        references.append((b'dimg', 3, (1, 2)))
+    if xmp:
+        items.append((4, b'mime', xmp, ()))
+        references += [(b'auxl', 2, (1,)), (b'cdsc', 4, (2,))]
+    properties = (box(b'hvcC', config), box(b'hvcC', gain_config), size_of(side),
+                  size_of(gain_side),
+                  full(b'auxC', 0, 0, b'urn:com:samsung:photo:2024:aux:hdrgainmap\0'),
+                  box(b'irot', bytes((quarters,))))
+    container(path, items, references, properties, (2, 4), inside=(b'tmap',))

@@ -13,6 +13,7 @@ from case import Case, H, W
 from test_keep import (GDEPTH, HAS_JPEG, HAS_PNG, HAS_XMP, OTHERS, STANDARD, TITLE, VERSION, exif,
                        extended, packet, segment)
 
+GAIN_BASE = 140, 120, 100
 PROFILE = b'\0' * 12 + b'mntrRGB ' + bytes(16) + b'acsp' + bytes(88)
 
 
@@ -106,6 +107,52 @@ class Heic(Case):
         for x in 10, 50, 74, 114:
             want = (40 if x % side < 32 else 220) / 255
             self.assertLess(abs(depth[width * 70 + x] - want), 0.03)
+
+    def gain_map_file(self, name, **how):
+        """The left half of a photo of one colour has the gain 1, the right half 4."""
+        side = 64
+        if not os.path.exists('base.heic'):
+            pictures.pgm('flat.pgm', side, side, lambda x, y: 9)
+            pictures.ppm('base.ppm', side, side, lambda x, y: GAIN_BASE)
+            pictures.ppm('gain.ppm', side, side, lambda x, y: (0 if x < 32 else 255,) * 3)
+            for part in 'base', 'gain':
+                self.succeeds('render', part + '.ppm', '--depth', 'flat.pgm', '--blur', '0',
+                              '--strip', '--no-editable', '-o', part + '.heic')
+        heif_files.with_gain_map(name, 'base.heic', 'gain.heic', side, side, **how)
+        return self.succeeds('info', name)
+
+    def test_gain_maps(self):
+        """By a tone map, upright and turned, and by an auxiliary image with XMP."""
+        forms = [{'metadata': heif_files.tone_map(2)},
+                 {'metadata': heif_files.tone_map(2), 'quarters': 1}]
+        if HAS_XMP:
+            forms.append({'xmp': packet(
+                b' xmlns:hdrgm="http://ns.adobe.com/hdr-gain-map/1.0/" hdrgm:Version="1.0" '
+                b'hdrgm:GainMapMax="2" hdrgm:HDRCapacityMax="2" hdrgm:OffsetSDR="0" '
+                b'hdrgm:OffsetHDR="0">')})
+        light = [((code / 255 + 0.055) / 1.055) ** 2.4 for code in GAIN_BASE]
+        for form in forms:
+            self.assertIn('gain map: 64 x 64 samples, up to 4 times white',
+                          self.gain_map_file('toned.heic', **form))
+            self.succeeds('render', 'toned.heic', '--depth', 'flat.pgm', '--blur', '0', '-o',
+                          'light.pfm')
+            width, _, rgb = pictures.read_pfm('light.pfm')
+            for x, y in (10, 20), (50, 20), (10, 50), (50, 50):
+                is_bright = y < 32 if 'quarters' in form else x >= 32
+                for c in range(3):
+                    self.assertAlmostEqual(rgb[3 * (y * width + x) + c] / light[c],
+                                           4 if is_bright else 1, delta=0.2)
+
+    def test_gain_maps_that_are_passed_over(self):
+        """The photo is whole without them, and says why."""
+        good = heif_files.tone_map(2)
+        for metadata, why in (
+                (b'\1' + good[1:], 'its metadata is of a version that is not known'),
+                (good[:30], 'its metadata is damaged'),
+                (good[:6] + good[14:22] + good[6:14] + good[22:],
+                 'its photo is not the darker rendition')):
+            self.assertIn('gain map: passed over, ' + why,
+                          self.gain_map_file('passed.heic', metadata=metadata))
 
     @unittest.skipUnless(HAS_JPEG and HAS_XMP, 'needs TurboJPEG and expat')
     def test_what_is_kept(self):

@@ -163,11 +163,11 @@ struct refocus_photo {
  * 0, and RangeLinear becomes 16-bit disparities.
  *
  * Memory at the most, while reading: the file, of a JPEG twice, as the photo holds what
- * pictures made from it keep; 8 times the XMP in it, 9 bytes a pixel of the photo, 27 of one of
- * more than 8 bits, 9 bytes a sample of the depth, 6 of a gain map, and 128 KiB; and what the
- * decoding libraries take for themselves, which is much for progressive JPEG and HEIC (some 6 bytes
- * a pixel). The limits are checked before memory is asked for. XMP beyond them that says nothing of
- * depth is passed over.
+ * pictures made from it keep, and of a HEIC or AVIF with a tone map twice; 8 times the XMP in it, 9
+ * bytes a pixel of the photo, 27 of one of more than 8 bits, 9 bytes a sample of the depth, 6 of a
+ * gain map, and 128 KiB; and what the decoding libraries take for themselves, which is much for
+ * progressive JPEG and HEIC (some 6 bytes a pixel). The limits are checked before memory is asked
+ * for. XMP beyond them that says nothing of depth is passed over.
  *
  * @param photo   receives a new object, or NULL on an error; ended by
  *                refocus_photo_free()
@@ -210,7 +210,8 @@ struct refocus_light;
 /**
  * Make the light that a photo with a gain map stands for: its 8 bits, the base rendition, are
  * clipped at white; with the map they are not. Gain maps come with Ultra HDR (XMP of Adobe and
- * Google, or ISO 21496-1) and Apple's photos; a damaged one is passed over, with a line of
+ * Google, or ISO 21496-1), with the HEIC of Samsung's phones and the tone maps ("tmap") of HEIC and
+ * AVIF, and with Apple's photos; a damaged one is passed over, with a line of
  * evidence, when the photo is read, and so is one whose photo is the brighter rendition.
  *
  *     H = (S + base offset) 2^gain - other offset

@@ -13,6 +13,8 @@
 #include "gdepth.h"
 #include "heif_boxes.h"
 #include "heif_targets.h"
+#include "heif_tone_map.h"
+#include "heif_turn.h"
 #include "mpf.h"
 #include "number.h"
 #include "read.h"

@@ -16,6 +16,27 @@ static void change(struct rf_bytes file)
     }
 }
 
+/* Metadata lie in the file, and a copy with the map as main picture has the size of the file. */
+static void find_gain_map(struct rf_bytes file)
+{
+    struct rf_heif_tone_map map, again;
+    uint8_t *changed;
+
+    if (!rf_heif_find_tone_map(file, &map)) {
+        return;
+    }
+    if (map.metadata.size > 0) {
+        volatile uint8_t last = map.metadata.data[map.metadata.size - 1];
+        (void)last;
+    }
+    if (rf_heif_with_main_picture(file, map.item, &changed) == REFOCUS_OK) {
+        if (rf_heif_find_tone_map((struct rf_bytes){changed, file.size}, &again)) {
+            abort();
+        }
+        free(changed);
+    }
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     const struct rf_bytes file = {data, size};
@@ -29,5 +50,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     rf_heif_is_sequence(file);
     rf_heif_is_stereo(file);
     change(file);
+    find_gain_map(file);
     return 0;
 }

@@ -4,6 +4,7 @@
 #include "exif_copy.h"
 #include "format.h"
 #include "heif_boxes.h"
+#include "heif_turn.h"
 
 static struct rf_bytes whole(struct bytes bytes)
 {

@@ -6,6 +6,7 @@
 #include "exif.h"
 #include "formats.h"
 #include "heif_boxes.h"
+#include "heif_turn.h"
 #include "md5.h"
 #include "mpf.h"
 #include "number.h"
