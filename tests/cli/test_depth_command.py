@@ -39,14 +39,33 @@ class DepthAndInfo(Case):
         self.assertFalse(os.path.exists('d.jpg') or os.path.exists('d.tif'))
 
     def test_depth_repair(self):
-        whole = self.reports('depth', 'mm.pgm', '-o', 'a.png')['depth']
-        less = self.reports('depth', 'mm.pgm', '-o', 'b.png', '--invalid', 'zero')['depth']
+        given = 'depth', 'mm.pgm', '--depth-unit', 'disparity', '-o'
+        whole = self.reports(*given, 'a.png')['depth']
+        less = self.reports(*given, 'b.png', '--invalid', 'zero')['depth']
         self.assertEqual((whole['unknown'], less['unknown']), (0, 1))
-        self.succeeds('depth', 'mm.pgm', '-o', 'c.png', '--invalid', 'zero', '--view',
-                      'confidence')
+        self.succeeds(*given, 'c.png', '--invalid', 'zero', '--view', 'confidence')
         width, height, bits, channels, rows = pictures.read_png('c.png')
         self.assertEqual((width, height, bits, channels), (W, H, 8, 3))
         self.assertEqual(sum(row.count(b'\0\0\0') for row in rows), less['unknown'])
+
+    def test_distances_without_a_unit(self):
+        """They are taken for disparities, as ever, and a line says so."""
+        told = ('its samples from 500 to 2000 are taken for disparities, bright = near; if they '
+                'are distances, give --depth-unit mm, or 5000/m, else disparity')
+        paths = ('render', 'photo.ppm', '--depth', 'mm.pgm', '-o', 'a.ppm'), (
+            'depth', 'mm.pgm', '-o', 'a.png')
+        for arguments in paths:
+            self.warns('mm.pgm: ' + told, *arguments)
+            for unit in 'mm', 'disparity', 'inverse', '5000/m':
+                self.succeeds(*arguments, '--depth-unit', unit)
+        self.assertIn('doubtful      %s\n' % told, self.succeeds('info', 'mm.pgm'))
+        self.assertEqual(self.reports('info', 'mm.pgm')['evidence'][-1], told)
+        for least, most in (99, 2000), (500, 32768), (2000, 3000):
+            pictures.pgm('other.pgm', W, H, lambda x, y: (least, most, 0)[x % 3], 65535)
+            self.succeeds('render', 'photo.ppm', '--depth', 'other.pgm', '-o', 'a.ppm')
+            self.assertNotIn('doubtful', self.succeeds('info', 'other.pgm'))
+        pictures.pgm('other.pgm', W, H, lambda x, y: (100, 32767, 0)[x % 3], 65535)
+        self.assertIn('doubtful', self.succeeds('info', 'other.pgm'))
 
     def test_depth_of_pictures(self):
         self.fails(1, re.compile(r'^refocus: depth.pgm: (the two pictures do not match|too few '

@@ -10,6 +10,7 @@
 #include "inputs/lens.h"
 #include "inputs/limits.h"
 #include "inputs/standard.h"
+#include "inputs/unit.h"
 #include "line/report.h"
 
 struct settings {
@@ -23,6 +24,8 @@ struct findings {
     struct refocus_depth_report depth;
     struct refocus_depth_edges_report edges; /* struct_size 0: there is no photo, or no depth */
     struct depth_of_field field;
+    bool unit_is_doubtful;
+    char unit_line[REFOCUS_INFO_LENGTH]; /* says so */
 };
 
 static const struct option options[] = {
@@ -216,6 +219,8 @@ static void print_text(const char *file, const struct refocus_photo *photo,
         report_clean(clean, sizeof clean, info->evidence[i]);
         printf("%s %s\n", i == 0 ? "because      " : "             ", clean);
     }
+    if (found->unit_is_doubtful)
+        printf("doubtful      %s\n", found->unit_line);
 }
 
 static json_t *positive(double value)
@@ -228,12 +233,14 @@ static json_t *size_json(int width, int height)
     return json_pack("[i, i]", width, height);
 }
 
-static json_t *evidence_json(const struct refocus_photo_info *info)
+static json_t *evidence_json(const struct refocus_photo_info *info, const struct findings *found)
 {
     json_t *lines = json_array();
 
     for (int i = 0; i < info->evidence_count && i < REFOCUS_INFO_LINES; i++)
         json_array_append_new(lines, report_text_json(info->evidence[i]));
+    if (found->unit_is_doubtful)
+        json_array_append_new(lines, json_string(found->unit_line));
     return lines;
 }
 
@@ -270,7 +277,7 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
         has_focus_point(info) ? json_pack("[f, f]", info->focus_x, info->focus_y) : json_null(),
         "depth", depth, "matte",
         photo->matte->samples ? size_json(photo->matte->width, photo->matte->height) : json_null(),
-        "evidence", evidence_json(info), "views", (int)info->views, "subject_distance",
+        "evidence", evidence_json(info, found), "views", (int)info->views, "subject_distance",
         report_metres_json(info->subject_distance), "depth_of_field",
         depth_of_field_json(&found->field));
 }
@@ -322,6 +329,8 @@ static int measure_depth(struct input *input, const struct settings *settings,
 
     if (status != EXIT_DONE)
         return status;
+    found->unit_is_doubtful =
+        unit_is_doubtful(input->photo, found->unit_line, sizeof found->unit_line);
     input->disparity = samples <= SIZE_MAX / 2 ? malloc((size_t)samples * 2) : NULL;
     status = input->disparity ? refocus_depth_repair(map, &params, input->disparity,
                                                      (ptrdiff_t)map->width * 2, report)

@@ -7,6 +7,7 @@
 #include "inputs/matte.h"
 #include "inputs/shape.h"
 #include "inputs/standard.h"
+#include "inputs/unit.h"
 #include "line/report.h"
 
 static bool given(double value)
@@ -94,6 +95,7 @@ static int report_no_depth(const char *photo, const struct refocus_photo *read)
 static int read_side(struct input *input, const char *file, const struct depth_settings *settings)
 {
     struct refocus_reason reason = {""};
+    char line[REFOCUS_INFO_LENGTH];
     int status;
 
     input->depth_name = file;
@@ -106,6 +108,8 @@ static int read_side(struct input *input, const char *file, const struct depth_s
         return report_failure(input_exit_code(status), file, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
     input->depth_from = input->side;
+    if (!settings->unit && unit_is_doubtful(input->side, line, sizeof line))
+        report_warning(file, "%s", line);
     return EXIT_DONE;
 }
 

@@ -1,0 +1,12 @@
+/* unit.h: what the samples of a depth file may mean that does not say it. */
+#ifndef RF_CLI_UNIT_H
+#define RF_CLI_UNIT_H
+
+#include <stdbool.h>
+#include <refocus/platform/file.h>
+
+/* Writes a line where samples that are taken for disparities, as no unit is known, look like
+ * distances. */
+bool unit_is_doubtful(const struct refocus_photo *map, char *line, size_t size);
+
+#endif
