@@ -37,7 +37,8 @@ enum refocus_depth_flags {
 /**
  * A depth map as a sensor or a file gives it. The caller owns the samples. Start from
  * refocus_depth_map_default().
- * NaN and infinite samples never hold a value; nor does a distance <= 0.
+ * NaN and infinite samples never hold a value; nor does a distance <= 0, nor 65535 of distances of
+ * 16 bits where less than a hundredth of the map has it: sensors mark so where they found nothing.
  */
 struct refocus_depth_map {
     uint32_t struct_size; /**< sizeof(struct refocus_depth_map) */

@@ -93,6 +93,11 @@ static bool is_code(const struct refocus_depth_map *map, double v)
            (v == 2047 && (map->flags & REFOCUS_DEPTH_2047_IS_UNKNOWN));
 }
 
+static const char *row_of(const struct refocus_depth_map *map, int y)
+{
+    return (const char *)map->samples + y * map->stride;
+}
+
 /* Sample x of a row, which lies at any address. */
 static uint16_t whole_of(const struct refocus_depth_map *map, const char *row, int x)
 {
@@ -114,6 +119,23 @@ static double value_of(const struct refocus_depth_map *map, const char *row, int
     return f32;
 }
 
+/* Whether some distances, but less than a hundredth, have the greatest code of 16 bits: a sensor
+ * found nothing there. More of them are a sky that is beyond the range. */
+static bool greatest_is_rare(const struct refocus_depth_map *map)
+{
+    uint64_t count = 0;
+
+    if (map->meaning != REFOCUS_DEPTH_DISTANCE || map->sample != REFOCUS_SAMPLE_U16)
+        return false;
+    for (int y = 0; y < map->height; y++) {
+        const char *row = row_of(map, y);
+
+        for (int x = 0; x < map->width; x++)
+            count += whole_of(map, row, x) == UINT16_MAX;
+    }
+    return 100 * count < (uint64_t)map->width * (uint64_t)map->height;
+}
+
 /* Rank of a value; NAN when it is none. */
 static double rank_of(const struct refocus_depth_map *map, double v)
 {
@@ -124,11 +146,6 @@ static double rank_of(const struct refocus_depth_map *map, double v)
 
     const double z = map->metres_at_zero + v * map->metres_per_unit;
     return z > 0 && z < INFINITY && 1 / z < INFINITY ? 1 / z : NAN;
-}
-
-static const char *row_of(const struct refocus_depth_map *map, int y)
-{
-    return (const char *)map->samples + y * map->stride;
 }
 
 /* Counts so many samples of a value, as known ones of a rank or as unknown ones. */
@@ -395,6 +412,8 @@ int refocus_depth_repair(const struct refocus_depth_map *given_map,
         status = REFOCUS_ERR_ARGUMENT;
     if (status == REFOCUS_OK)
         status = take_values(&conversion, params);
+    if (status == REFOCUS_OK && greatest_is_rare(map))
+        own_map.flags |= REFOCUS_DEPTH_MAX_IS_UNKNOWN;
     if (status == REFOCUS_OK)
         status = measure(&conversion);
     if (status != REFOCUS_OK)

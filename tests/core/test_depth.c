@@ -182,6 +182,37 @@ static void test_unknown_samples(void **state)
     assert_int_equal(refocus_depth_to_disparity(&map, out, 8, &report), REFOCUS_ERR_NO_DEPTH);
 }
 
+/* 65535 of distances is a hole where less than a hundredth of the samples has it, and far away
+ * where more have it; of disparities it is the nearest. */
+static void the_greatest_distance(void **state)
+{
+    enum { W = 200, MOST = 350 * W };
+    static uint16_t samples[MOST], out[MOST];
+
+    (void)state;
+    for (int size = W; size <= MOST; size += MOST - W) {
+        for (int greatest = size / 100 - 1; greatest <= size / 100; greatest++) {
+            struct refocus_depth_report report = refocus_depth_report_default();
+            struct refocus_depth_map map = distances_of(REFOCUS_SAMPLE_U16, samples, W, size / W);
+            const bool hole = greatest < size / 100;
+
+            for (int i = 0; i < size; i++)
+                samples[i] = i >= 50 && i < 50 + greatest ? 65535 : i < size / 2 ? 2000 : 1000;
+            map.metres_per_unit = 0.001;
+            assert_int_equal(refocus_depth_to_disparity(&map, out, 2 * W, &report), REFOCUS_OK);
+            assert_int_equal(report.unknown, hole ? greatest : 0);
+            assert_true(fabs(report.far_m - (hole ? 2 : 65.535)) < 1e-9);
+            assert_int_equal(out[50], 0);
+            assert_true((out[49] == 0) == hole);
+            map.meaning = REFOCUS_DEPTH_DISPARITY;
+            map.flags = 0;
+            assert_int_equal(refocus_depth_to_disparity(&map, out, 2 * W, &report), REFOCUS_OK);
+            assert_int_equal(report.unknown, 0);
+            assert_int_equal(out[50], 65535);
+        }
+    }
+}
+
 /* A round hole in a slope is filled from its sides and smoothed: what lies farthest off the slope
  * is a seventh of what it rises by from the hole's middle to its side. */
 static void holes_in_slopes(void **state)
@@ -525,6 +556,7 @@ int main(void)
         cmocka_unit_test(test_disparity_samples),
         cmocka_unit_test(test_distances),
         cmocka_unit_test(test_unknown_samples),
+        cmocka_unit_test(the_greatest_distance),
         cmocka_unit_test(test_one_depth),
         cmocka_unit_test(test_strides),
         cmocka_unit_test(test_bad_arguments),
