@@ -1,8 +1,10 @@
 /* openexr_read.cpp: an OpenEXR file is read: its colour as linear light, its channel Z as depth in
- * metres. Channels may lie in layers: "R" or "beauty.R". */
+ * metres. Channels may lie in layers: "R" or "beauty.R". Depth is called "Depth.V" where Blender
+ * writes what its compositor has, and is in R, G and B where tools know pictures alone. */
 #include "openexr.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -92,9 +94,9 @@ Chosen choose(const Imf::ChannelList &channels)
         chosen.blue = layer + "B";
     }
     chosen.grey = find(channels, "Y");
-    chosen.depth = find(channels, "Z");
-    if (chosen.depth.empty())
-        chosen.depth = find(channels, "depth");
+    for (const char *name : {"Z", "depth", "Depth", "Depth.V"})
+        if (chosen.depth.empty())
+            chosen.depth = find(channels, name);
     for (auto i = channels.begin(); i != channels.end(); ++i, ++count)
         only = i.name();
     if (chosen.grey.empty() && chosen.depth.empty() && count == 1)
@@ -155,15 +157,45 @@ void spread_grey(struct rf_raster *raster)
         light[3 * i + 1] = light[3 * i + 2] = light[3 * i];
 }
 
-/* Distances, nearest is least; renderers write very much for nothing at all, which is the far end.
- */
-void mean_metres(struct rf_read *read)
+/* Distances, nearest is least; renderers write very much for nothing at all, which is the far end,
+ * and more than halves hold is infinite. */
+void mean_metres(struct rf_read *read, const std::string &channel)
 {
+    float *const metres = reinterpret_cast<float *>(read->samples.pixels);
+    const size_t count =
+        static_cast<size_t>(read->samples.width) * static_cast<size_t>(read->samples.height);
+
+    for (size_t i = 0; i < count; i++)
+        metres[i] = std::min(metres[i], FLT_MAX); /* NaN stays */
     read->depth.meaning = REFOCUS_DEPTH_DISTANCE;
     read->depth.flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN;
     read->depth.metres_per_unit = 1.0;
     read->info->depth_source = REFOCUS_DEPTH_SOURCE_FILE;
-    rf_note(read->info, "OpenEXR: channel Z, distances read as metres");
+    rf_note(read->info, "OpenEXR: channel %.40s, distances read as metres", channel.c_str());
+}
+
+/* A picture that was read for its depth: it is one if its channels are alike, or if the first alone
+ * has values. */
+int take_red(struct rf_read *read)
+{
+    float *const rgb = reinterpret_cast<float *>(read->image.pixels);
+    const size_t pixels =
+        static_cast<size_t>(read->image.width) * static_cast<size_t>(read->image.height);
+    bool alike = true, alone = true;
+
+    for (size_t i = 0; i < pixels && (alike || alone); i++) {
+        alike = alike && std::memcmp(rgb + 3 * i, rgb + 3 * i + 1, 2 * sizeof *rgb) == 0;
+        alone = alone && rgb[3 * i + 1] == 0 && rgb[3 * i + 2] == 0;
+    }
+    if (!alike && !alone)
+        return rf_fail(read->reason, REFOCUS_ERR_NO_DEPTH,
+                       "it is an OpenEXR picture in colour without a channel Z, not a depth map");
+    for (size_t i = 0; i < pixels; i++)
+        rgb[i] = rgb[3 * i];
+    read->samples = read->image;
+    read->samples.channels = 1;
+    read->image.pixels = nullptr;
+    return REFOCUS_OK;
 }
 
 int decode(struct rf_read *read, Imf::InputFile &input, const Window &window)
@@ -171,7 +203,8 @@ int decode(struct rf_read *read, Imf::InputFile &input, const Window &window)
     const Imf::ChannelList &channels = input.header().channels();
     const Chosen chosen = choose(channels);
     const bool colour = !chosen.red.empty();
-    const bool picture = read->picture_always || (chosen.depth.empty() && colour);
+    const bool red_is_depth = !read->picture_always && colour && chosen.depth.empty();
+    const bool picture = read->picture_always || red_is_depth;
     Imf::FrameBuffer frame;
     int status = REFOCUS_OK;
 
@@ -179,9 +212,6 @@ int decode(struct rf_read *read, Imf::InputFile &input, const Window &window)
         return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
                        "OpenEXR without the channels R, G, B or Y: it is no photo; give it as the "
                        "depth");
-    if (picture && !read->picture_always)
-        return rf_fail(read->reason, REFOCUS_ERR_NO_DEPTH,
-                       "it is an OpenEXR picture in colour without a channel Z, not a depth map");
     if (!picture && chosen.depth.empty() && chosen.grey.empty())
         return rf_fail(read->reason, REFOCUS_ERR_NO_DEPTH,
                        "OpenEXR without a channel Z, and more than one other: it is no depth map");
@@ -210,15 +240,17 @@ int decode(struct rf_read *read, Imf::InputFile &input, const Window &window)
         return status;
     input.setFrameBuffer(frame);
     input.readPixels(static_cast<int>(window.y), static_cast<int>(window.y + window.height - 1));
+    if (red_is_depth)
+        status = take_red(read);
     if (picture && !colour)
         spread_grey(&read->image);
     if (!chosen.depth.empty())
-        mean_metres(read);
+        mean_metres(read, chosen.depth);
     tell(read, channels,
          (picture ? (colour ? chosen.red + " " + chosen.green + " " + chosen.blue : chosen.grey)
                   : "") +
              (picture && !depth.empty() ? " " : "") + depth);
-    return REFOCUS_OK;
+    return status;
 }
 
 int run(struct rf_read *read, struct rf_bytes file)

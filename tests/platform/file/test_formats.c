@@ -1,6 +1,7 @@
 /* test_formats.c: formats that are modules: each reads a small file pixel by pixel, refuses one
  * that is cut short or too large, and what is written is read again. */
 #include "check.h"
+#include "formats.h"
 #include "make_formats.h"
 
 #include <math.h>
@@ -14,60 +15,6 @@
 #ifdef RF_HAVE_JXL
 #include <jxl/encode.h>
 #endif
-
-enum { W = 5, H = 4 };
-
-static float light_at(const struct refocus_image *image, int x, int y, int c)
-{
-    float value;
-
-    assert_int_equal(image->format, REFOCUS_FORMAT_RGB_FLOAT);
-    memcpy(&value, image->plane[0] + y * image->stride[0] + 4 * (3 * x + c), 4);
-    return value;
-}
-
-static unsigned deep_at(const struct refocus_image *image, int x, int y, int c)
-{
-    uint16_t value;
-
-    assert_int_equal(image->format, REFOCUS_FORMAT_RGB16);
-    memcpy(&value, image->plane[0] + y * image->stride[0] + 2 * (3 * x + c), 2);
-    return value;
-}
-
-/* All that is shorter than the file is refused in words, or is a picture all the same where the
- * bytes at the end are none of it; a fifth less never is. */
-static void refuse_cut(struct bytes file, bool depth)
-{
-    const size_t step = file.size > 300 ? file.size / 150 : 1;
-
-    for (size_t size = 12; size < file.size; size += step) {
-        struct refocus_photo *photo = NULL;
-        struct refocus_reason reason;
-        const int status =
-            depth ? refocus_depth_read_memory(&photo, file.data, size, NULL, 0, 0, NULL, &reason)
-                  : refocus_photo_read_memory(&photo, file.data, size, NULL, &reason);
-
-        assert_true(status != REFOCUS_OK || size > file.size * 4 / 5);
-        assert_true((status == REFOCUS_OK) == (photo != NULL));
-        if (status != REFOCUS_OK) {
-            check_status(status, status, reason.text, __FILE__, __LINE__);
-            assert_true(status == REFOCUS_ERR_FORMAT || status == REFOCUS_ERR_UNSUPPORTED);
-        }
-        refocus_photo_free(&photo);
-    }
-}
-
-static void refuse_large(struct bytes file)
-{
-    struct refocus_read_limits limits = refocus_read_limits_default();
-    struct refocus_photo *photo = NULL;
-    struct refocus_reason reason;
-
-    limits.max_pixels = W * H - 1;
-    check_status(refocus_photo_read_memory(&photo, file.data, file.size, &limits, &reason),
-                 REFOCUS_ERR_SIZE, reason.text, __FILE__, __LINE__);
-}
 
 #ifdef RF_HAVE_TIFF
 static const struct tiff_kind rgb8 = {.bits = 8, .channels = 3, .photometric = 2, .orientation = 1};
@@ -202,75 +149,6 @@ static void tiff_exif(void **state)
         bytes_free(&exif);
     }
     unlink("formats.tif");
-}
-#endif
-
-#ifdef RF_HAVE_OPENEXR
-static void exr_colour_and_depth(void **state)
-{
-    struct bytes file = make_exr(W, H, "B G R Z", -3, 7);
-    struct refocus_photo *photo = read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
-
-    (void)state;
-    assert_string_equal(photo->info->container, "OpenEXR");
-    assert_int_equal(photo->info->stored_bits, 0);
-    for (int i = 0; i < 3 * W * H; i++) {
-        const int x = i / 3 % W, y = i / 3 / W, c = i % 3;
-
-        assert_true(light_at(photo->deep, x, y, c) == (float)pattern(x, y, 2 - c, 255) / 64);
-    }
-    assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISTANCE);
-    assert_true(float_at(photo->depth, 1, 3) == (double)((float)pattern(1, 3, 3, 255) / 64));
-    refocus_photo_free(&photo);
-    photo = read_depth(bytes_copy(file.data, file.size), NULL, REFOCUS_OK);
-    assert_null(photo->image->plane[0]);
-    assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISTANCE);
-    refocus_photo_free(&photo);
-    refuse_cut(file, false);
-    refuse_large(file);
-    bytes_free(&file);
-}
-
-static void exr_layers(void **state)
-{
-    struct refocus_photo *photo =
-        read_photo(make_exr(W, H, "beauty.B beauty.G beauty.R depth.Z normal.X", 0, 0), REFOCUS_OK);
-
-    (void)state;
-    assert_true(light_at(photo->deep, 2, 1, 0) == (float)pattern(2, 1, 2, 255) / 64);
-    assert_true(float_at(photo->depth, 2, 1) == (double)((float)pattern(2, 1, 3, 255) / 64));
-    assert_true(has_evidence(photo, "beauty.R"));
-    refocus_photo_free(&photo);
-    photo = read_photo(make_exr(W, H, "Y", 0, 0), REFOCUS_OK);
-    assert_true(light_at(photo->deep, 2, 1, 2) == (float)pattern(2, 1, 0, 255) / 64);
-    refocus_photo_free(&photo);
-    photo = read_depth(make_exr(W, H, "disparity", 0, 0), NULL, REFOCUS_OK);
-    assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISPARITY);
-    refocus_photo_free(&photo);
-    read_photo(make_exr(W, H, "Z", 0, 0), REFOCUS_ERR_UNSUPPORTED);
-    read_depth(make_exr(W, H, "B G R", 0, 0), NULL, REFOCUS_ERR_NO_DEPTH);
-    read_depth(make_exr(W, H, "P Q", 0, 0), NULL, REFOCUS_ERR_NO_DEPTH);
-}
-
-static void exr_written(void **state)
-{
-    static const float values[4] = {1, 0x1p-24f, 65504, 100};
-    float samples[3 * W * H];
-    struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB_FLOAT, samples, W, H, 12 * W);
-    struct refocus_photo *photo = NULL;
-
-    (void)state;
-    for (int i = 0; i < 3 * W * H; i++) {
-        samples[i] = values[i % 4];
-    }
-    assert_int_equal(refocus_image_write("formats.exr", &image, NULL, NULL), REFOCUS_OK);
-    assert_int_equal(refocus_photo_read(&photo, "formats.exr", NULL, NULL), REFOCUS_OK);
-    assert_true(light_at(photo->deep, 0, 0, 0) == 1 && light_at(photo->deep, 1, 0, 0) == 100);
-    assert_true(light_at(photo->deep, 0, 0, 1) == 0x1p-24f);
-    assert_true(light_at(photo->deep, 0, 0, 2) == 65504);
-    refocus_photo_free(&photo);
-    unlink("formats.exr");
 }
 #endif
 
@@ -550,16 +428,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
 #ifdef RF_HAVE_TIFF
-        cmocka_unit_test(tiff_kinds),
-        cmocka_unit_test(tiff_floats),
-        cmocka_unit_test(tiff_refused),
-        cmocka_unit_test(tiff_written),
+        cmocka_unit_test(tiff_kinds),    cmocka_unit_test(tiff_floats),
+        cmocka_unit_test(tiff_refused),  cmocka_unit_test(tiff_written),
         cmocka_unit_test(tiff_exif),
-#endif
-#ifdef RF_HAVE_OPENEXR
-        cmocka_unit_test(exr_colour_and_depth),
-        cmocka_unit_test(exr_layers),
-        cmocka_unit_test(exr_written),
 #endif
 #ifdef RF_HAVE_WEBP
         cmocka_unit_test(webp),
@@ -568,8 +439,7 @@ int main(void)
         cmocka_unit_test(jxl),
 #endif
 #ifdef RF_HAVE_HEIC
-        cmocka_unit_test(heic),
-        cmocka_unit_test(avif),
+        cmocka_unit_test(heic),          cmocka_unit_test(avif),
 #endif
 #ifdef RF_HAVE_RAW
         cmocka_unit_test(raw_developed),

@@ -1,0 +1,139 @@
+/* test_openexr.c: OpenEXR is read channel by channel, as a photo and as depth, and written. */
+#include "formats.h"
+#include "make_formats.h"
+
+#include <float.h>
+#include <math.h>
+#include <unistd.h>
+
+static void exr_colour_and_depth(void **state)
+{
+    struct bytes file = make_exr(W, H, "B G R Z", -3, 7);
+    struct refocus_photo *photo = read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
+
+    (void)state;
+    assert_string_equal(photo->info->container, "OpenEXR");
+    assert_int_equal(photo->info->stored_bits, 0);
+    for (int i = 0; i < 3 * W * H; i++) {
+        const int x = i / 3 % W, y = i / 3 / W, c = i % 3;
+
+        assert_true(light_at(photo->deep, x, y, c) == (float)pattern(x, y, 2 - c, 255) / 64);
+    }
+    assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISTANCE);
+    assert_true(float_at(photo->depth, 1, 3) == (double)((float)pattern(1, 3, 3, 255) / 64));
+    refocus_photo_free(&photo);
+    photo = read_depth(bytes_copy(file.data, file.size), NULL, REFOCUS_OK);
+    assert_null(photo->image->plane[0]);
+    assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISTANCE);
+    refocus_photo_free(&photo);
+    refuse_cut(file, false);
+    refuse_large(file);
+    bytes_free(&file);
+}
+
+static void exr_layers(void **state)
+{
+    struct refocus_photo *photo =
+        read_photo(make_exr(W, H, "beauty.B beauty.G beauty.R depth.Z normal.X", 0, 0), REFOCUS_OK);
+
+    (void)state;
+    assert_true(light_at(photo->deep, 2, 1, 0) == (float)pattern(2, 1, 2, 255) / 64);
+    assert_true(float_at(photo->depth, 2, 1) == (double)((float)pattern(2, 1, 3, 255) / 64));
+    assert_true(has_evidence(photo, "beauty.R"));
+    refocus_photo_free(&photo);
+    photo = read_photo(make_exr(W, H, "Y", 0, 0), REFOCUS_OK);
+    assert_true(light_at(photo->deep, 2, 1, 2) == (float)pattern(2, 1, 0, 255) / 64);
+    refocus_photo_free(&photo);
+    photo = read_depth(make_exr(W, H, "disparity", 0, 0), NULL, REFOCUS_OK);
+    assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISPARITY);
+    refocus_photo_free(&photo);
+    read_photo(make_exr(W, H, "Z", 0, 0), REFOCUS_ERR_UNSUPPORTED);
+    read_depth(make_exr(W, H, "B G R", 0, 0), NULL, REFOCUS_ERR_NO_DEPTH);
+    read_depth(make_exr(W, H, "P Q", 0, 0), NULL, REFOCUS_ERR_NO_DEPTH);
+}
+
+/* Changes the first sample of a channel in row y of make_exr(). */
+static void set_sample(struct bytes *file, int channels, int channel, int y, float value)
+{
+    const size_t row = 8 + (size_t)(4 * W * channels);
+
+    memcpy(file->data + file->size - row * (size_t)(H - y) + 8 + (size_t)(4 * W * channel), &value,
+           sizeof value);
+}
+
+/* Depth by other names, in pictures of one colour, and of nothing at all. */
+static void exr_other_depth(void **state)
+{
+    static const char *const names[] = {"ViewLayer.Depth.Z", "Depth.V", "Depth", "z.depth"};
+    struct refocus_photo *photo;
+    struct bytes file;
+
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        file = make_exr(W, H, names[i], 0, 0);
+        set_sample(&file, 1, 0, 2, INFINITY);
+        set_sample(&file, 1, 0, 3, NAN);
+        photo = read_depth(file, NULL, REFOCUS_OK);
+        assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISTANCE);
+        assert_true(has_evidence(photo, names[i]));
+        assert_true(float_at(photo->depth, 2, 1) == (double)((float)pattern(2, 1, 0, 255) / 64));
+        assert_true(float_at(photo->depth, 0, 2) == (double)FLT_MAX);
+        assert_true(isnan(float_at(photo->depth, 0, 3)));
+        refocus_photo_free(&photo);
+    }
+    for (int kind = 0; kind < 4; kind++) {
+        file = make_exr(W, H, "B G R", 0, 0);
+        for (int i = 0; i < W * H; i++) {
+            const size_t row = file.size - (size_t)(8 + 12 * W) * (size_t)(H - i / W) + 8;
+            uint8_t *const blue = file.data + row + 4 * (size_t)(i % W);
+
+            for (int c = 0; c < 2; c++) { /* blue and green */
+                memcpy(blue + 4 * W * c, blue + 8 * W, kind != 1 ? 4 : 0);
+                memset(blue + 4 * W * c, 0, kind == 1 ? 4 : 0);
+            }
+        }
+        if (kind >= 2) {
+            set_sample(&file, 3, 3 - kind, H - 1, 0.25f);
+        }
+        photo = read_depth(file, "m", kind < 2 ? REFOCUS_OK : REFOCUS_ERR_NO_DEPTH);
+        if (photo) {
+            assert_true(float_at(photo->depth, 2, 1) ==
+                        (double)((float)pattern(2, 1, 2, 255) / 64));
+            assert_null(photo->image->plane[0]);
+            refocus_photo_free(&photo);
+        }
+    }
+}
+
+static void exr_written(void **state)
+{
+    static const float values[4] = {1, 0x1p-24f, 65504, 100};
+    float samples[3 * W * H];
+    struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB_FLOAT, samples, W, H, 12 * W);
+    struct refocus_photo *photo = NULL;
+
+    (void)state;
+    for (int i = 0; i < 3 * W * H; i++) {
+        samples[i] = values[i % 4];
+    }
+    assert_int_equal(refocus_image_write("formats.exr", &image, NULL, NULL), REFOCUS_OK);
+    assert_int_equal(refocus_photo_read(&photo, "formats.exr", NULL, NULL), REFOCUS_OK);
+    assert_true(light_at(photo->deep, 0, 0, 0) == 1 && light_at(photo->deep, 1, 0, 0) == 100);
+    assert_true(light_at(photo->deep, 0, 0, 1) == 0x1p-24f);
+    assert_true(light_at(photo->deep, 0, 0, 2) == 65504);
+    refocus_photo_free(&photo);
+    unlink("formats.exr");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(exr_colour_and_depth),
+        cmocka_unit_test(exr_layers),
+        cmocka_unit_test(exr_other_depth),
+        cmocka_unit_test(exr_written),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
