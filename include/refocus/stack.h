@@ -32,13 +32,14 @@ enum refocus_stack_align {
 enum refocus_stack_order {
     REFOCUS_STACK_ORDER_ADDED,  /**< they follow each other as they are added, the farthest focus
                                      first; the default */
-    REFOCUS_STACK_ORDER_FOUND,  /**< sharpness tells it, and edges which of its ends is far (see
-                                     `direction` of the result); where they do not, of the order and
-                                     its reverse the one is taken that has more pairs of frames as
-                                     they were added. Wrong where most blocks hold two depths: a
-                                     fence blurred over all that is behind it */
-    REFOCUS_STACK_ORDER_EITHER, /**< they follow each other as they are added. Edges tell which end
-                                     is far; where they do not, it is the first */
+    REFOCUS_STACK_ORDER_FOUND,  /**< sharpness tells it, and edges, and what lies lower, which of
+                                     its ends is far (see `direction` of the result). Where they do
+                                     not, the order or its reverse is taken, whichever has more
+                                     pairs of frames as they were added. Wrong where most blocks
+                                     hold two depths: a fence blurred over all that is behind it */
+    REFOCUS_STACK_ORDER_EITHER, /**< they follow each other as they are added. Edges, and what lies
+                                     lower, tell which end is far; where they do not, it is the
+                                     first */
     REFOCUS_STACK_ORDER_COUNT
 };
 
@@ -116,9 +117,10 @@ struct refocus_stack_result {
     uint8_t order[REFOCUS_STACK_MOST_FRAMES];
     float direction; /**< receives which end of the order that frames were added in, or that was
                           found, is far, by the edges between surfaces, which are as blurred as the
-                          nearer one is: -1 to 1. 1/20 and more: the first frame; -1/20 and less:
-                          the last, and the order is its reverse. In between edges do not tell. 0
-                          where there are few edges, and where the order was not to be told */
+                          nearer one is, and by what lies lower, which is nearer in most pictures:
+                          -1 to 1. 1/25 and more: the first frame; -1/25 and less: the last, and
+                          the order is its reverse. In between they do not tell. 0 where the order
+                          was not to be told */
     float blur; /**< receives, of apertures, the blur radius in the frame of the widest one of what
                      is farthest from the focus, in pixels: K of its depth of field; else 0 */
     uint32_t reserved_too; /**< 0 */

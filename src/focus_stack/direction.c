@@ -1,4 +1,5 @@
-/* direction.c: tells which end of a focus stack is far, by the edges between its surfaces.
+/* direction.c: tells which end of a focus stack is far, by the edges between its surfaces and by
+ * what lies lower in the picture.
  *
  * A surface that ends before another one has an edge that is as blurred as it is itself: light from
  * behind passes beside it. So the step from one to the other is steepest in the frame that is
@@ -19,9 +20,14 @@
  * An order and its reverse get the same votes but for their sign, as long as depth is looked at
  * before nearer surfaces get their silhouettes back (silhouettes.c). It is smooth where it was not
  * measured: what fill.c leaves there has steps that are no edges.
+ *
+ * Some pictures have few edges, or such as show nothing: a table, a page, a row of things. What
+ * lies lower is nearer in most pictures, for cameras look down on the ground. So the correlation of
+ * depth and row, -1 to 1, is added to the mean of the votes with a weight of LOWER.
  */
 #include "focus_stack/focus_stack.h"
 
+#include <math.h>
 #include <string.h>
 
 enum {
@@ -35,6 +41,7 @@ enum {
     UNSURE = 128,     /* the weight of depth that was not measured, beside 255 more */
     LEAST_EDGES = 60, /* fewer tell nothing */
 };
+static const double LOWER = 0.2;
 
 /* A row or a column of the map. */
 struct track {
@@ -157,21 +164,54 @@ static void go_along(const struct track *t, struct sums *sums)
             count_vote(t, i, sums);
 }
 
-float rf_stack_direction(struct refocus_stack *s)
+/* The mean of the votes. */
+static double of_edges(const struct refocus_stack *s)
 {
-    const size_t bytes = (size_t)s->columns * (size_t)s->rows * sizeof *s->depth;
     struct sums sums = {0, 0, 0};
 
-    memcpy(s->moved, s->depth, bytes);
-    rf_stack_smooth(s);
     for (int y = 0; y < s->rows; y++)
         go_along(&(struct track){s, y, s->columns, false, (ptrdiff_t)y * s->columns, 1}, &sums);
     for (int x = 0; x < s->columns; x++)
         go_along(&(struct track){s, x, s->rows, true, x, s->columns}, &sums);
+    return sums.edges < LEAST_EDGES ? 0 : (double)sums.votes / ((double)ONE * (double)sums.weights);
+}
+
+/* The correlation of depth and row. Rows count from the middle, in halves: their sum is 0, and that
+ * of their squares rows (rows^2 - 1) / 3 in each column. Sums of 2^16 times 2^16 for less than 2^30
+ * samples stay below 2^63. */
+static double of_rows(const struct refocus_stack *s)
+{
+    const double samples = (double)s->columns * s->rows;
+    const double of_squares = samples * ((double)s->rows * s->rows - 1) / 3;
+    int64_t both = 0;
+    uint64_t sum = 0, squares = 0;
+
+    for (int y = 0; y < s->rows; y++) {
+        const uint16_t *const depth = s->depth + (size_t)y * (size_t)s->columns;
+        uint64_t row = 0;
+
+        for (int x = 0; x < s->columns; x++) {
+            row += depth[x];
+            squares += (uint64_t)depth[x] * depth[x];
+        }
+        sum += row;
+        both += (2 * y + 1 - s->rows) * (int64_t)row;
+    }
+    const double variance = (double)squares - (double)sum * (double)sum / samples;
+
+    return variance > 0 && of_squares > 0 ? (double)both / sqrt(variance * of_squares) : 0;
+}
+
+float rf_stack_direction(struct refocus_stack *s)
+{
+    const size_t bytes = (size_t)s->columns * (size_t)s->rows * sizeof *s->depth;
+    double direction;
+
+    memcpy(s->moved, s->depth, bytes);
+    rf_stack_smooth(s);
+    direction = of_edges(s) + LOWER * of_rows(s);
     memcpy(s->depth, s->moved, bytes);
-    return sums.edges < LEAST_EDGES
-               ? 0
-               : (float)((double)sums.votes / ((double)ONE * (double)sums.weights));
+    return (float)fmax(-1, fmin(1, direction));
 }
 
 void rf_stack_reverse(struct refocus_stack *s)

@@ -19,7 +19,7 @@ enum {
     PATHS = 8,
     BESIDE = 16,    /* aggregate.c */
     MEASURED = 128, /* confidence from here on */
-    TELLING = 20,   /* edges tell the direction from 1 / TELLING on */
+    TELLING = 25,   /* the direction tells which end is far from 1 / TELLING on */
 };
 
 static void lay_out(struct refocus_stack *s, struct rf_arena *arena)
@@ -307,7 +307,7 @@ static bool good_result(const struct refocus_stack *s, const struct refocus_stac
            !r->reserved && !r->reserved_too;
 }
 
-/* Puts the far end first, where the order is to be told and edges tell it. */
+/* Puts the far end first, where the order is to be told and the picture tells it. */
 static void direct(struct refocus_stack *s, struct refocus_stack_result *own)
 {
     own->direction = 0;

@@ -49,7 +49,7 @@ class DepthOfAStack(Case):
         self.assertEqual((report['width'], report['height']), (W, H))
         self.assertEqual(report['evidence'], [
             'focus stack: 3 frames, moved by up to 0.0 pixels, in the geometry of frame 2',
-            'focus stack: no edges show which end is far; the first is taken for it'])
+            'focus stack: nothing shows which end is far; the first is taken for it'])
         self.assertEqual(self.halves('d.pgm'), [0, 65535])
         photo = pictures.read_pnm('all.ppm')[2]
         right = sum(abs(photo[3 * (y * W + x)] - noise(x, y)) < 3 for y in range(H)
@@ -79,8 +79,8 @@ class DepthOfAStack(Case):
         for order, far in (names, 'first'), (names[::-1], 'last'):
             report = self.reports('depth', '--focal-stack', *order, '--align', 'none', '-o',
                                   'd.pgm')
-            self.assertEqual(report['evidence'][1], 'focus stack: edges show that the '
-                             f'{far} frame is focused farthest')
+            self.assertEqual(report['evidence'][1], 'focus stack: edges, and what lies lower, '
+                             f'show that the {far} frame is focused farthest')
             samples = pictures.read_pnm('d.pgm')[2]
             for y in range(4, height - 4):
                 self.assertGreater(samples[y * width + 48], 60000)
@@ -293,7 +293,7 @@ class DepthOfAStack(Case):
         report = self.reports('depth', '--focal-stack', names[0], *names, '--align', 'none', '-o',
                               'x.pgm')
         self.assertEqual(report['evidence'][1:], [
-            'focus stack: no edges show which end is far; the first is taken for it'])
+            'focus stack: nothing shows which end is far; the first is taken for it'])
         os.remove('x.pgm')
 
     def apertures(self, f_numbers, distance=4):

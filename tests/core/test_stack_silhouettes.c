@@ -219,6 +219,35 @@ static void tells_which_end_is_far(void **state)
     assert_true(misplaced() > PIXELS / 2);
 }
 
+/* A floor has no edges: what lies lower is nearer, in focus in later frames. */
+static void lower_is_nearer(void **state)
+{
+    struct refocus_stack_result result;
+
+    (void)state;
+    draw_surfaces(1);
+    for (int k = 0; k < FRAMES; k++) {
+        for (int i = 0; i < PIXELS; i++) {
+            const double away = (double)k / (FRAMES - 1) - (double)(i / W) / (H - 1);
+            double whole;
+
+            memset(drawn[k] + 3 * i,
+                   code_of(2 * spread(0, i % W, i / W, RADIUS * fabs(away), &whole)), 3);
+        }
+        is_drawn[k] = true;
+    }
+    result = run_order(far_first, REFOCUS_STACK_ORDER_EITHER, false);
+    assert_in_range(1000 * result.direction, 160, 240);
+    assert_int_equal(result.order[0], 1);
+    assert_in_range(disparity[10 * W + W / 2], 0, 9999);
+    assert_in_range(disparity[(H - 10) * W + W / 2], 55000, 65535);
+    result = run_order(near_first, REFOCUS_STACK_ORDER_EITHER, false);
+    assert_in_range(-1000 * result.direction, 160, 240);
+    assert_int_equal(result.order[0], FRAMES);
+    assert_in_range(disparity[10 * W + W / 2], 0, 9999);
+    assert_in_range(disparity[(H - 10) * W + W / 2], 55000, 65535);
+}
+
 /* A camera that measures the light for each frame: tones are those of the reference. */
 static void matches_exposures(void **state)
 {
@@ -262,6 +291,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ends_at_silhouettes),
         cmocka_unit_test(tells_which_end_is_far),
+        cmocka_unit_test(lower_is_nearer),
         cmocka_unit_test(matches_exposures),
         cmocka_unit_test(leaves_no_disc_of_what_is_clipped),
     };

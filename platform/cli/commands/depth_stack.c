@@ -11,8 +11,8 @@
 #define LEAST_ALIKE 0.5
 /* An order that is found is doubtful where the next best one is no worse than this. */
 #define LEAST_ORDER_MARGIN 0.01
-/* Edges show which end is far from here on. */
-#define LEAST_DIRECTION (1 / 20.0)
+/* The picture shows which end is far from here on. */
+#define LEAST_DIRECTION (1 / 25.0)
 /* More of it is no order: 0.03 in stacks of nine frames as they were taken, 0.9 shuffled. */
 #define MOST_DISORDER 0.5
 
@@ -38,11 +38,11 @@ static const struct {
 } orders[] = {
     [REFOCUS_STACK_ORDER_ADDED] = {"given", "the farthest focus first"},
     [REFOCUS_STACK_ORDER_FOUND] = {"found",
-                                   "found by their sharpness; edges show which end is far, "
-                                   "else it is as given"},
+                                   "found by their sharpness; edges, and what lies lower, show "
+                                   "which end is far, else it is as given"},
     [REFOCUS_STACK_ORDER_EITHER] = {"auto",
-                                    "as given, the farthest first or last: edges show which, "
-                                    "else first"},
+                                    "as given, the farthest first or last: edges, and what lies "
+                                    "lower, show which, else first"},
 };
 
 const char *stack_order_name(uint32_t index)
@@ -181,10 +181,12 @@ static void tell_order(const struct refocus_stack_result *result, const char *na
 static const char *direction_of(const struct refocus_stack_result *result)
 {
     return (double)result->direction >= LEAST_DIRECTION
-               ? "focus stack: edges show that the first frame is focused farthest"
+               ? "focus stack: edges, and what lies lower, show that the first frame is focused "
+                 "farthest"
            : (double)result->direction <= -LEAST_DIRECTION
-               ? "focus stack: edges show that the last frame is focused farthest"
-               : "focus stack: no edges show which end is far; the first is taken for it";
+               ? "focus stack: edges, and what lies lower, show that the last frame is focused "
+                 "farthest"
+               : "focus stack: nothing shows which end is far; the first is taken for it";
 }
 
 static void add_evidence(struct refocus_photo_info *info, const char *text)
