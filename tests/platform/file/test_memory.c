@@ -127,6 +127,38 @@ static void heic(void **state)
     fail_each_in(&sample, true);
     bytes_free(&sample.bytes);
 }
+
+/* A gain map beside XMP, and one that is decoded from a copy of the file. */
+static void heic_gain_maps(void **state)
+{
+    static const char *const names[] = {"gain_xmp", "toned"};
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct sample sample = {.name = names[i]};
+        struct refocus_photo *photo = NULL;
+        struct refocus_blob blob;
+        char path[1024];
+
+        snprintf(path, sizeof path, REFOCUS_SOURCE "/tests/fuzz/file/corpus/photo/%s.heic",
+                 names[i]);
+        assert_int_equal(refocus_file_read(path, 1 << 20, &blob, NULL), REFOCUS_OK);
+        sample.bytes = bytes_copy(blob.data, blob.size);
+        free(blob.data);
+        if (refocus_photo_read_memory(&photo, sample.bytes.data, sample.bytes.size, NULL, NULL) ==
+            REFOCUS_ERR_UNSUPPORTED) {
+            print_message("SKIPPED: libheif has no decoder of HEVC here\n");
+        } else {
+            assert_non_null(photo);
+#ifdef RF_HAVE_XMP
+            assert_true(photo->info->gain_map_stops == 2);
+#endif
+            fail_each_in(&sample, false);
+        }
+        refocus_photo_free(&photo);
+        bytes_free(&sample.bytes);
+    }
+}
 #endif
 
 /* The bound that file.h states for reading; XMP is taken for no more than the file. */
@@ -448,6 +480,7 @@ int main(void)
 #endif
 #ifdef RF_HAVE_HEIC
         cmocka_unit_test(heic),
+        cmocka_unit_test(heic_gain_maps),
 #endif
         cmocka_unit_test(stated_peak),
         cmocka_unit_test(writers),
