@@ -117,10 +117,10 @@ struct refocus_stack_result {
     uint8_t order[REFOCUS_STACK_MOST_FRAMES];
     float direction; /**< receives which end of the order that frames were added in, or that was
                           found, is far, by the edges between surfaces, which are as blurred as the
-                          nearer one is, and by what lies lower, which is nearer in most pictures:
-                          -1 to 1. 1/25 and more: the first frame; -1/25 and less: the last, and
-                          the order is its reverse. In between they do not tell. 0 where the order
-                          was not to be told */
+                          nearer one is, and where these say little by what lies lower, which is
+                          nearer in most pictures: -1 to 1. 1/25 and more: the first frame; -1/25
+                          and less: the last, and the order is its reverse. In between they do not
+                          tell. 0 where the order was not to be told */
     float blur; /**< receives, of apertures, the blur radius in the frame of the widest one of what
                      is farthest from the focus, in pixels: K of its depth of field; else 0 */
     uint32_t reserved_too; /**< 0 */

@@ -22,8 +22,9 @@
  * measured: what fill.c leaves there has steps that are no edges.
  *
  * Some pictures have few edges, or such as show nothing: a table, a page, a row of things. What
- * lies lower is nearer in most pictures, for cameras look down on the ground. So the correlation of
- * depth and row, -1 to 1, is added to the mean of the votes with a weight of LOWER.
+ * lies lower is nearer in most pictures, for cameras look down on the ground. So where the mean of
+ * the votes is below SURE, the correlation of depth and row, -1 to 1, is added with a weight of
+ * LOWER.
  */
 #include "focus_stack/focus_stack.h"
 
@@ -41,7 +42,7 @@ enum {
     UNSURE = 128,     /* the weight of depth that was not measured, beside 255 more */
     LEAST_EDGES = 60, /* fewer tell nothing */
 };
-static const double LOWER = 0.2;
+static const double SURE = 0.05, LOWER = 0.2;
 
 /* A row or a column of the map. */
 struct track {
@@ -209,9 +210,11 @@ float rf_stack_direction(struct refocus_stack *s)
 
     memcpy(s->moved, s->depth, bytes);
     rf_stack_smooth(s);
-    direction = of_edges(s) + LOWER * of_rows(s);
+    direction = of_edges(s);
+    if (fabs(direction) < SURE)
+        direction += LOWER * of_rows(s);
     memcpy(s->depth, s->moved, bytes);
-    return (float)fmax(-1, fmin(1, direction));
+    return (float)direction;
 }
 
 void rf_stack_reverse(struct refocus_stack *s)
