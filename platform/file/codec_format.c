@@ -172,7 +172,9 @@ static int take_xmp(struct rf_xmp_keep *keep, const struct refocus_photo *photo,
     for (int i = 0; status == REFOCUS_OK && i < keep->count && packet->size == 0; i++) {
         *packet = rf_xmp_kept(&keep->packet[i]);
     }
-    if (status == REFOCUS_OK) {
+    /* The light of a gain map is in floats as it is. */
+    if (status == REFOCUS_OK && rows->format != REFOCUS_FORMAT_RGB_HALF &&
+        rows->format != REFOCUS_FORMAT_RGB_FLOAT) {
         rf_keep_warn(photo, keep, reason);
     }
     return status;

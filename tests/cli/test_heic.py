@@ -137,6 +137,11 @@ class Heic(Case):
             self.succeeds('render', 'toned.heic', '--depth', 'flat.pgm', '--blur', '0', '-o',
                           'light.pfm')
             width, _, rgb = pictures.read_pfm('light.pfm')
+            for name in ('light.exr',) * ('OpenEXR' in VERSION) + ('tones.heic',):
+                told = self.run_it('render', 'toned.heic', '--depth', 'flat.pgm', '--no-editable',
+                                   '-o', name)
+                self.assertEqual((told.returncode, 'without an HDR gain map' in told.stderr),
+                                 (0, name == 'tones.heic'))
             for x, y in (10, 20), (50, 20), (10, 50), (50, 50):
                 is_bright = y < 32 if 'quarters' in form else x >= 32
                 for c in range(3):
