@@ -1,63 +1,29 @@
 /* openexr_read.cpp: an OpenEXR file is read: its colour as linear light, its channel Z as depth in
  * metres. Channels may lie in layers: "R" or "beauty.R". Depth is called "Depth.V" where Blender
- * writes what its compositor has, and is in R, G and B where tools know pictures alone. */
+ * writes what its compositor has, and is in R, G and B where tools know pictures alone. Colour and
+ * depth may be parts of their own, as compositing programs write them. */
 #include "openexr.hpp"
+#include "openexr_file.hpp"
 
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <initializer_list>
 #include <new>
 #include <string>
-#include <vector>
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfIO.h>
-#include <ImfInputFile.h>
-#include <ImfPartType.h>
 
 namespace
 {
 
-class Memory : public Imf::IStream
-{
-  public:
-    explicit Memory(struct rf_bytes file) : IStream("photo"), file_(file)
-    {
-    }
-
-    bool read(char c[], int n) override
-    {
-        if (n < 0 || static_cast<size_t>(n) > file_.size - at_)
-            throw std::runtime_error("it ends too early; copy it again");
-        std::memcpy(c, file_.data + at_, static_cast<size_t>(n));
-        at_ += static_cast<size_t>(n);
-        return at_ < file_.size;
-    }
-
-    uint64_t tellg() override
-    {
-        return at_;
-    }
-
-    void seekg(uint64_t position) override
-    {
-        if (position > file_.size)
-            throw std::runtime_error("it ends too early; copy it again");
-        at_ = static_cast<size_t>(position);
-    }
-
-  private:
-    struct rf_bytes file_;
-    size_t at_ = 0;
-};
-
-/* The channels that are taken; empty: there is none. */
+/* The channels that are taken, and their parts; empty: there is none. */
 struct Chosen {
     std::string red, green, blue, grey, depth;
+    int picture = 0, depth_part = 0;
 };
 
 bool ends_in(const std::string &name, const std::string &end)
@@ -80,42 +46,89 @@ std::string find(const Imf::ChannelList &channels, const char *name)
     return found;
 }
 
-Chosen choose(const Imf::ChannelList &channels)
+/* R, G, B of a layer of one part. */
+bool choose_colour(const OpenExrFile &file, int part, Chosen &chosen)
 {
-    Chosen chosen;
+    const Imf::ChannelList &channels = file.header(part).channels();
     const std::string red = find(channels, "R");
     const std::string layer = red.empty() ? "" : red.substr(0, red.size() - 1);
-    int count = 0;
-    std::string only;
 
-    if (!red.empty() && channels.findChannel(layer + "G") && channels.findChannel(layer + "B")) {
-        chosen.red = red;
-        chosen.green = layer + "G";
-        chosen.blue = layer + "B";
-    }
-    chosen.grey = find(channels, "Y");
+    if (red.empty() || !channels.findChannel(layer + "G") || !channels.findChannel(layer + "B"))
+        return false;
+    chosen.red = red;
+    chosen.green = layer + "G";
+    chosen.blue = layer + "B";
+    chosen.picture = part;
+    return true;
+}
+
+bool choose_depth(const OpenExrFile &file, int part, Chosen &chosen)
+{
     for (const char *name : {"Z", "depth", "Depth", "Depth.V"})
         if (chosen.depth.empty())
-            chosen.depth = find(channels, name);
-    for (auto i = channels.begin(); i != channels.end(); ++i, ++count)
-        only = i.name();
-    if (chosen.grey.empty() && chosen.depth.empty() && count == 1)
-        chosen.grey = only;
+            chosen.depth = find(file.header(part).channels(), name);
+    chosen.depth_part = part;
+    return !chosen.depth.empty();
+}
+
+/* Whether two parts show the same pixels, of the left or of the right view. */
+bool are_beside(const OpenExrFile &file, int part, int other)
+{
+    const Imf::Header &one = file.header(part), &two = file.header(other);
+
+    return one.dataWindow() == two.dataWindow() &&
+           (!one.hasView() || !two.hasView() || one.view() == two.view());
+}
+
+/* The first parts that have what is looked for; depth beside a picture belongs to it. */
+Chosen choose(const OpenExrFile &file, bool is_photo)
+{
+    Chosen chosen;
+
+    for (int part = 0; part < file.count() && chosen.red.empty(); part++)
+        if (file.is_read(part))
+            choose_colour(file, part, chosen);
+    for (int part = 0; part < file.count() && chosen.red.empty() && chosen.grey.empty(); part++)
+        if (file.is_read(part)) {
+            chosen.grey = find(file.header(part).channels(), "Y");
+            chosen.picture = part;
+        }
+    for (int part = 0; part < file.count() && chosen.depth.empty(); part++)
+        if (file.is_read(part) && (!is_photo || are_beside(file, part, chosen.picture)))
+            choose_depth(file, part, chosen);
+    if (chosen.red.empty() && chosen.grey.empty() && chosen.depth.empty() && file.count() == 1) {
+        const Imf::ChannelList &channels = file.header(0).channels();
+        auto only = channels.begin();
+
+        if (only != channels.end()) {
+            chosen.grey = only.name();
+            if (++only != channels.end())
+                chosen.grey.clear();
+        }
+    }
     return chosen;
 }
 
 /* Say which channels there are and which are taken, as far as a line goes. */
-void tell(struct rf_read *read, const Imf::ChannelList &channels, const std::string &taken)
+void tell(struct rf_read *read, const OpenExrFile &file, const std::string &taken)
 {
     std::string names;
 
-    for (auto i = channels.begin(); i != channels.end(); ++i)
-        names += std::string(names.empty() ? "" : " ") + i.name();
+    for (int part = 0; part < file.count(); part++)
+        for (auto i = file.header(part).channels().begin(); i != file.header(part).channels().end();
+             ++i)
+            names += std::string(names.empty() ? "" : " ") + i.name();
     rf_note(read->info, "OpenEXR: channels %.90s; taken %.30s", names.c_str(), taken.c_str());
 }
 
 struct Window {
     int64_t x, y, width, height;
+
+    explicit Window(const Imath::Box2i &box)
+        : x(box.min.x), y(box.min.y), width(static_cast<int64_t>(box.max.x) - box.min.x + 1),
+          height(static_cast<int64_t>(box.max.y) - box.min.y + 1)
+    {
+    }
 };
 
 void add(Imf::FrameBuffer &frame, const std::string &name, struct rf_raster *raster, int channel,
@@ -198,78 +211,112 @@ int take_red(struct rf_read *read)
     return REFOCUS_OK;
 }
 
-int decode(struct rf_read *read, Imf::InputFile &input, const Window &window)
+/* Whether a part can be read into memory. */
+int check_part(struct rf_read *read, OpenExrFile &file, int part)
 {
-    const Imf::ChannelList &channels = input.header().channels();
-    const Chosen chosen = choose(channels);
-    const bool colour = !chosen.red.empty();
-    const bool red_is_depth = !read->picture_always && colour && chosen.depth.empty();
-    const bool picture = read->picture_always || red_is_depth;
-    Imf::FrameBuffer frame;
-    int status = REFOCUS_OK;
-
-    if (picture && !colour && chosen.grey.empty())
-        return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
-                       "OpenEXR without the channels R, G, B or Y: it is no photo; give it as the "
-                       "depth");
-    if (!picture && chosen.depth.empty() && chosen.grey.empty())
-        return rf_fail(read->reason, REFOCUS_ERR_NO_DEPTH,
-                       "OpenEXR without a channel Z, and more than one other: it is no depth map");
-    for (const auto &name : {chosen.red, chosen.green, chosen.blue, chosen.grey, chosen.depth})
-        if (is_sampled(channels, name))
-            return rf_fail(
-                read->reason, REFOCUS_ERR_UNSUPPORTED,
-                "OpenEXR with channels of fewer samples is not read; save it as R, G, B");
-    if (picture) {
-        status = alloc(read, &read->image, window, 3);
-        if (status == REFOCUS_OK && colour) {
-            add(frame, chosen.red, &read->image, 0, window);
-            add(frame, chosen.green, &read->image, 1, window);
-            add(frame, chosen.blue, &read->image, 2, window);
-        } else if (status == REFOCUS_OK) {
-            add(frame, chosen.grey, &read->image, 0, window);
-        }
-    }
-    const std::string depth = !chosen.depth.empty() ? chosen.depth : picture ? "" : chosen.grey;
-    if (status == REFOCUS_OK && !depth.empty()) {
-        status = alloc(read, &read->samples, window, 1);
-        if (status == REFOCUS_OK)
-            add(frame, depth, &read->samples, 0, window);
-    }
-    if (status != REFOCUS_OK)
-        return status;
-    input.setFrameBuffer(frame);
-    input.readPixels(static_cast<int>(window.y), static_cast<int>(window.y + window.height - 1));
-    if (red_is_depth)
-        status = take_red(read);
-    if (picture && !colour)
-        spread_grey(&read->image);
-    if (!chosen.depth.empty())
-        mean_metres(read, chosen.depth);
-    tell(read, channels,
-         (picture ? (colour ? chosen.red + " " + chosen.green + " " + chosen.blue : chosen.grey)
-                  : "") +
-             (picture && !depth.empty() ? " " : "") + depth);
-    return status;
-}
-
-int run(struct rf_read *read, struct rf_bytes file)
-{
-    Memory memory(file);
-    Imf::InputFile input(memory, 0); /* in this thread */
-    const Imath::Box2i &box = input.header().dataWindow();
-    const Window window = {box.min.x, box.min.y, static_cast<int64_t>(box.max.x) - box.min.x + 1,
-                           static_cast<int64_t>(box.max.y) - box.min.y + 1};
+    const Window window(file.header(part).dataWindow());
     int status;
 
     if (window.width < 1 || window.height < 1)
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged OpenEXR: it has no pixels");
     status = rf_check_size(read, static_cast<uint64_t>(window.width),
                            static_cast<uint64_t>(window.height), 3 * sizeof(float));
-    if (status == REFOCUS_OK && !input.isComplete())
+    if (status == REFOCUS_OK && !file.is_complete(part))
         status = rf_fail(read->reason, REFOCUS_ERR_FORMAT,
                          "damaged OpenEXR: parts of it are missing; copy it again");
-    return status == REFOCUS_OK ? decode(read, input, window) : status;
+    return status;
+}
+
+int check_sampling(struct rf_read *read, const OpenExrFile &file, int part,
+                   std::initializer_list<std::string> names)
+{
+    for (const auto &name : names)
+        if (is_sampled(file.header(part).channels(), name))
+            return rf_fail(
+                read->reason, REFOCUS_ERR_UNSUPPORTED,
+                "OpenEXR with channels of fewer samples is not read; save it as R, G, B");
+    return REFOCUS_OK;
+}
+
+int decode_picture(struct rf_read *read, OpenExrFile &file, const Chosen &chosen)
+{
+    const Window window(file.header(chosen.picture).dataWindow());
+    Imf::FrameBuffer frame;
+    int status = check_part(read, file, chosen.picture);
+
+    if (status == REFOCUS_OK)
+        status = check_sampling(read, file, chosen.picture,
+                                {chosen.red, chosen.green, chosen.blue, chosen.grey});
+    if (status == REFOCUS_OK)
+        status = alloc(read, &read->image, window, 3);
+    if (status != REFOCUS_OK)
+        return status;
+    if (chosen.red.empty()) {
+        add(frame, chosen.grey, &read->image, 0, window);
+    } else {
+        add(frame, chosen.red, &read->image, 0, window);
+        add(frame, chosen.green, &read->image, 1, window);
+        add(frame, chosen.blue, &read->image, 2, window);
+    }
+    file.read(chosen.picture, frame);
+    if (chosen.red.empty())
+        spread_grey(&read->image);
+    return REFOCUS_OK;
+}
+
+int decode_depth(struct rf_read *read, OpenExrFile &file, int part, const std::string &channel)
+{
+    const Window window(file.header(part).dataWindow());
+    Imf::FrameBuffer frame;
+    int status = check_part(read, file, part);
+
+    if (status == REFOCUS_OK)
+        status = check_sampling(read, file, part, {channel});
+    if (status == REFOCUS_OK)
+        status = alloc(read, &read->samples, window, 1);
+    if (status != REFOCUS_OK)
+        return status;
+    add(frame, channel, &read->samples, 0, window);
+    file.read(part, frame);
+    return REFOCUS_OK;
+}
+
+int decode(struct rf_read *read, OpenExrFile &file)
+{
+    const Chosen chosen = choose(file, read->picture_always);
+    const bool colour = !chosen.red.empty();
+    const bool red_is_depth = !read->picture_always && colour && chosen.depth.empty();
+    const bool picture = read->picture_always || red_is_depth;
+    const bool grey_is_depth = !picture && chosen.depth.empty();
+    const std::string depth = grey_is_depth ? chosen.grey : chosen.depth;
+    int status = REFOCUS_OK;
+
+    if (chosen.red.empty() && chosen.grey.empty() && chosen.depth.empty() && !file.is_read(0))
+        return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
+                       "OpenEXR of several deep parts is not read; flatten it");
+    if (picture && !colour && chosen.grey.empty())
+        return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
+                       "OpenEXR without the channels R, G, B or Y: it is no photo; give it as the "
+                       "depth");
+    if (!picture && depth.empty())
+        return rf_fail(read->reason, REFOCUS_ERR_NO_DEPTH,
+                       "OpenEXR without a channel Z, and more than one other: it is no depth map");
+    if (picture)
+        status = decode_picture(read, file, chosen);
+    if (status == REFOCUS_OK && !depth.empty())
+        status =
+            decode_depth(read, file, grey_is_depth ? chosen.picture : chosen.depth_part, depth);
+    if (status == REFOCUS_OK && red_is_depth)
+        status = take_red(read);
+    if (status != REFOCUS_OK)
+        return status;
+    if (!chosen.depth.empty())
+        mean_metres(read, chosen.depth);
+    tell(read, file,
+         (picture ? (colour ? chosen.red + " " + chosen.green + " " + chosen.blue : chosen.grey)
+                  : "") +
+             (picture && !depth.empty() ? " " : "") + depth);
+    return REFOCUS_OK;
 }
 
 } // namespace
@@ -278,7 +325,9 @@ int rf_openexr_read(struct rf_read *read, struct rf_bytes file, struct rf_extras
 {
     (void)extras;
     try {
-        return run(read, file);
+        OpenExrFile parts(file);
+
+        return decode(read, parts);
     } catch (const std::bad_alloc &) {
         return rf_fail_memory(read->reason);
     } catch (const std::exception &error) {

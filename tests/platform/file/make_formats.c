@@ -122,42 +122,89 @@ static void add_channels(struct bytes *file, const char *channels, int *count)
     bytes_join(file, list);
 }
 
-struct bytes make_exr(int width, int height, const char *channels, int x0, int y0)
+static void add_text(struct bytes *file, const char *name, const char *text)
 {
-    struct bytes file = {NULL, 0};
-    size_t offsets, row;
+    attribute(file, name, "string", (uint32_t)strlen(text));
+    bytes_add(file, text, strlen(text));
+}
+
+/* The header of a part, and how many channels it has. */
+static int add_header(struct bytes *file, int width, int height, const struct exr_part *part,
+                      bool alone)
+{
     int count;
 
-    bytes_add(&file, "\x76\x2f\x31\x01\2\0\0\0", 8);
-    add_channels(&file, channels, &count);
-    attribute(&file, "compression", "compression", 1);
-    bytes_number(&file, 0, 1, false);
-    add_box(&file, "dataWindow", x0, y0, width, height);
-    add_box(&file, "displayWindow", 0, 0, width, height);
-    attribute(&file, "lineOrder", "lineOrder", 1);
-    bytes_number(&file, 0, 1, false);
-    attribute(&file, "pixelAspectRatio", "float", 4);
-    add_float(&file, 1, false);
-    attribute(&file, "screenWindowCenter", "v2f", 8);
-    bytes_number(&file, 0, 8, false);
-    attribute(&file, "screenWindowWidth", "float", 4);
-    add_float(&file, 1, false);
-    bytes_number(&file, 0, 1, false);
-    offsets = file.size;
-    row = 8 + (size_t)(4 * width * count);
-    for (int y = 0; y < height; y++) {
-        bytes_number(&file, offsets + 8 * (size_t)height + row * (size_t)y, 8, false);
+    add_channels(file, part->channels, &count);
+    attribute(file, "compression", "compression", 1);
+    bytes_number(file, 0, 1, false);
+    add_box(file, "dataWindow", part->x, part->y, part->width, height);
+    add_box(file, "displayWindow", 0, 0, width, height); /* one for all parts */
+    attribute(file, "lineOrder", "lineOrder", 1);
+    bytes_number(file, 0, 1, false);
+    attribute(file, "pixelAspectRatio", "float", 4);
+    add_float(file, 1, false);
+    attribute(file, "screenWindowCenter", "v2f", 8);
+    bytes_number(file, 0, 8, false);
+    attribute(file, "screenWindowWidth", "float", 4);
+    add_float(file, 1, false);
+    if (!alone) {
+        add_text(file, "name", part->name);
+        add_text(file, "type", part->deep ? "deepscanline" : "scanlineimage");
+        attribute(file, "chunkCount", "int", 4);
+        bytes_number(file, (uint32_t)height, 4, false);
+        if (part->deep) {
+            attribute(file, "version", "int", 4);
+            bytes_number(file, 1, 4, false);
+            attribute(file, "maxSamplesPerPixel", "int", 4);
+            bytes_number(file, 1, 4, false);
+        }
     }
-    for (int y = 0; y < height; y++) {
-        bytes_number(&file, (uint32_t)(y + y0), 4, false);
-        bytes_number(&file, row - 8, 4, false);
-        for (int c = 0; c < count; c++) {
-            for (int x = 0; x < width; x++) {
-                add_float(&file, (float)pattern(x, y, c, 255) / 64, false);
+    if (part->view) {
+        add_text(file, "view", part->view);
+    }
+    bytes_number(file, 0, 1, false);
+    return count;
+}
+
+struct bytes make_exr_parts(int height, const struct exr_part *parts, int count)
+{
+    const size_t mark = count > 1 ? 4 : 0; /* bytes of the number of a part before each chunk */
+    struct bytes file = {NULL, 0};
+    size_t at;
+    int channels[8], before = 0;
+
+    bytes_add(&file, count > 1 ? "\x76\x2f\x31\x01\2\x10\0\0" : "\x76\x2f\x31\x01\2\0\0\0", 8);
+    for (int i = 0; i < count; i++) {
+        channels[i] = add_header(&file, parts[0].width, height, &parts[i], count == 1);
+    }
+    bytes_number(&file, 0, count > 1, false);
+    at = file.size + 8 * (size_t)(count * height);
+    for (int i = 0; i < count; i++) {
+        for (int y = 0; y < height; y++) {
+            bytes_number(&file, at, 8, false);
+            at += mark + 8 + (size_t)(4 * parts[i].width * channels[i]);
+        }
+    }
+    for (int i = 0; i < count; before += channels[i++]) {
+        for (int y = 0; y < height; y++) {
+            bytes_number(&file, (uint32_t)i, (int)mark, false);
+            bytes_number(&file, (uint32_t)(y + parts[i].y), 4, false);
+            bytes_number(&file, (uint32_t)(4 * parts[i].width * channels[i]), 4, false);
+            for (int c = before; c < before + channels[i]; c++) {
+                for (int x = 0; x < parts[i].width; x++) {
+                    add_float(&file, (float)pattern(x, y, c, 255) / 64, false);
+                }
             }
         }
     }
     return file;
+}
+
+struct bytes make_exr(int width, int height, const char *channels, int x, int y)
+{
+    const struct exr_part part = {.channels = channels, .width = width, .x = x, .y = y};
+
+    return make_exr_parts(height, &part, 1);
 }
 
 struct bytes make_dng(int width, int height, unsigned level, struct bytes preview)

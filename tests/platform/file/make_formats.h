@@ -17,6 +17,15 @@ struct bytes make_tiff(int width, int height, struct tiff_kind kind);
  * compressed: pattern(x, y, channel, 255) / 64. The data window begins at (x, y). */
 struct bytes make_exr(int width, int height, const char *channels, int x, int y);
 
+/* Up to eight of these in one file; channels count on from part to part. A deep part is none but by
+ * its header. */
+struct exr_part {
+    const char *name, *channels, *view; /* view NULL: not said */
+    int width, x, y;
+    bool deep;
+};
+struct bytes make_exr_parts(int height, const struct exr_part *parts, int count);
+
 /* A DNG of one mosaic RGGB of 16 bits in which each 2 x 2 pixels are alike: grey of that level. A
  * JPEG lies behind it if there is one; it is freed. */
 struct bytes make_dng(int width, int height, unsigned level, struct bytes preview);

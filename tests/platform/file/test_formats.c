@@ -1,7 +1,7 @@
 /* test_formats.c: formats that are modules: each reads a small file pixel by pixel, refuses one
  * that is cut short or too large, and what is written is read again. */
 #include "check.h"
-#include "formats.h"
+#include "format_checks.h"
 #include "make_formats.h"
 
 #include <math.h>

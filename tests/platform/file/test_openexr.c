@@ -1,5 +1,5 @@
 /* test_openexr.c: OpenEXR is read channel by channel, as a photo and as depth, and written. */
-#include "formats.h"
+#include "format_checks.h"
 #include "make_formats.h"
 
 #include <float.h>
@@ -105,6 +105,64 @@ static void exr_other_depth(void **state)
     }
 }
 
+/* Colour and depth in parts of their own: depth is that of the same pixels and the same view. */
+static void exr_parts(void **state)
+{
+    static const struct exr_part parts[] = {
+        {"normals", "N.X N.Y", NULL, W, 2, 1, false},
+        {"right.beauty", "B G R", "right", W, 2, 1, false},
+        {"left.depth", "Z", "left", W, 2, 1, false},
+        {"crop.depth", "Z", "right", W - 1, 2, 1, false},
+        {"right.depth", "Z", "right", W, 2, 1, false},
+        {"left.beauty", "B G R", "left", W, 2, 1, false},
+    };
+    struct bytes file = make_exr_parts(H, parts, 6);
+    struct refocus_photo *photo = read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
+
+    (void)state;
+    for (int i = 0; i < W * H; i++) {
+        const int x = i % W, y = i / W;
+
+        for (int c = 0; c < 3; c++) {
+            assert_true(light_at(photo->deep, x, y, c) == (float)pattern(x, y, 4 - c, 255) / 64);
+        }
+        assert_true(float_at(photo->depth, x, y) == (double)((float)pattern(x, y, 7, 255) / 64));
+    }
+    refocus_photo_free(&photo);
+    photo = read_depth(bytes_copy(file.data, file.size), NULL, REFOCUS_OK);
+    assert_true(float_at(photo->depth, 1, 2) == (double)((float)pattern(1, 2, 5, 255) / 64));
+    refocus_photo_free(&photo);
+    refuse_cut(file, false);
+    refuse_large(file);
+    bytes_free(&file);
+    /* The picture alone; a part of the other view, or of other pixels, is not its depth. */
+    photo = read_photo(make_exr_parts(H, parts, 4), REFOCUS_OK);
+    assert_null(photo->depth->samples);
+    refocus_photo_free(&photo);
+}
+
+static void exr_deep_parts(void **state)
+{
+    static const struct exr_part parts[] = {
+        {"deep", "B G R Z", NULL, W, 0, 0, true},
+        {"flat", "B G R Z", NULL, W, 0, 0, false},
+        {"deeper", "B G R Z", NULL, W, 0, 0, true},
+    };
+    struct refocus_reason reason;
+    struct refocus_photo *photo = read_photo(make_exr_parts(H, parts, 2), REFOCUS_OK);
+    struct bytes file;
+
+    (void)state;
+    assert_true(light_at(photo->deep, 2, 1, 0) == (float)pattern(2, 1, 6, 255) / 64);
+    assert_true(float_at(photo->depth, 2, 1) == (double)((float)pattern(2, 1, 7, 255) / 64));
+    refocus_photo_free(&photo);
+    file = make_exr_parts(H, (const struct exr_part[]){parts[0], parts[2]}, 2);
+    assert_int_equal(refocus_photo_read_memory(&photo, file.data, file.size, NULL, &reason),
+                     REFOCUS_ERR_UNSUPPORTED);
+    assert_non_null(strstr(reason.text, "deep"));
+    bytes_free(&file);
+}
+
 static void exr_written(void **state)
 {
     static const float values[4] = {1, 0x1p-24f, 65504, 100};
@@ -129,10 +187,9 @@ static void exr_written(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(exr_colour_and_depth),
-        cmocka_unit_test(exr_layers),
-        cmocka_unit_test(exr_other_depth),
-        cmocka_unit_test(exr_written),
+        cmocka_unit_test(exr_colour_and_depth), cmocka_unit_test(exr_layers),
+        cmocka_unit_test(exr_other_depth),      cmocka_unit_test(exr_parts),
+        cmocka_unit_test(exr_deep_parts),       cmocka_unit_test(exr_written),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

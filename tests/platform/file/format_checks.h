@@ -1,6 +1,6 @@
-/* formats.h: what the tests of picture formats share. */
-#ifndef RF_TEST_FORMATS_H
-#define RF_TEST_FORMATS_H
+/* format_checks.h: what the tests of picture formats share. */
+#ifndef RF_TEST_FORMAT_CHECKS_H
+#define RF_TEST_FORMAT_CHECKS_H
 
 #include "check.h"
 
