@@ -8,7 +8,8 @@
 
 #include <math.h>
 
-enum { FULL = 0x43ff /* the last half before 4 */ };
+/* Times white: light that was refocused saturates at FULL, and is near that from NEARLY on. */
+static const float NEARLY = 3, FULL = 4;
 
 float rf_tone_light(int code)
 {
@@ -178,8 +179,28 @@ static void average(float *values)
     }
 }
 
-/* Light that was refocused saturates at 4 times white, wide areas that are brighter, too: these are
- * shown as bright as they are in the photo. */
+/* The mean light of the photo around a pixel, between blocks. */
+static float mean_around(const struct rf_tone *tone, int x, int y, int c)
+{
+    const struct place u = place_of(x, tone->width, tone->blocks_across);
+    const struct place v = place_of(y, tone->height, tone->blocks_down);
+    const float(*above)[3] = tone->mean + v.before * tone->blocks_across;
+    const float(*below)[3] = tone->mean + v.after * tone->blocks_across;
+
+    return between(between(above[u.before][c], above[u.after][c], u.part),
+                   between(below[u.before][c], below[u.after][c], u.part), v.part);
+}
+
+/* Light that was refocused saturates, wide areas that are brighter, too: these are shown as bright
+ * as the photo is around. */
+static uint16_t beyond_full(const struct rf_tone *tone, int x, int y, int c, uint16_t half)
+{
+    const float light = rf_half_value(half), more = mean_around(tone, x, y, c) - light;
+    const float part = fminf((light - NEARLY) / (FULL - NEARLY), 1);
+
+    return more > 0 ? rf_half_of(light + part * more) : half;
+}
+
 static void show_pixel(const struct rf_tone *tone, const struct rf_tone_part *part, int x, int y,
                        const float more[3])
 {
@@ -195,8 +216,8 @@ static void show_pixel(const struct rf_tone *tone, const struct rf_tone_part *pa
     }
     for (int c = 0; c < 3; c++) {
         light[c] = light[c] > RF_HALF_MOST ? 0 : light[c]; /* negative light and NaN, too */
-        if (light[c] >= FULL && own[c] > light[c]) {
-            light[c] = own[c];
+        if (rf_half_value(light[c]) > NEARLY) {
+            light[c] = beyond_full(tone, part->x + x, part->y + y, c, light[c]);
         }
     }
     show(tone, part->x + x, part->y + y, light, shown);

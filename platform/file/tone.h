@@ -12,6 +12,7 @@
 /* Curves of cells of the photo have knots at each quarter of an octave of light. */
 enum {
     RF_TONE_CELLS = 12,    /* along the longer side, at the most */
+    RF_TONE_BLOCKS = 64,   /* so are the blocks whose mean light is known */
     RF_TONE_STEP = 256,    /* halves from knot to knot */
     RF_TONE_MOST = 0x4c00, /* 16: what is above counts as that */
     RF_TONE_KNOTS = RF_TONE_MOST / RF_TONE_STEP + 2
@@ -27,7 +28,9 @@ struct rf_tone {
     int width, height; /* pixels of the photo */
     int across, down;  /* cells */
     struct rf_tone_curves curves[RF_TONE_CELLS * RF_TONE_CELLS];
-    float light[256]; /* light for each code of sRGB */
+    int blocks_across, blocks_down;
+    float mean[RF_TONE_BLOCKS * RF_TONE_BLOCKS][3]; /* light of the photo in each block */
+    float light[256];                               /* light for each code of sRGB */
     float code[4097]; /* code of sRGB, 0 to 255, of light (i / 4096)^2 */
 };
 

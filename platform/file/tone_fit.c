@@ -88,6 +88,34 @@ static void count(const struct rf_tone *tone, const struct level *level,
     }
 }
 
+/* The mean light of the pixels of a block, or of some of them. */
+static void measure_block(const struct rf_tone *tone, const struct refocus_image *light, int bx,
+                          int by, float mean[3])
+{
+    const double pixels = (double)light->width * light->height;
+    const int step = (int)ceil(sqrt(pixels / COUNTED));
+    const int x0 = (int)((int64_t)bx * light->width / tone->blocks_across);
+    const int x1 = (int)((int64_t)(bx + 1) * light->width / tone->blocks_across);
+    const int y0 = (int)((int64_t)by * light->height / tone->blocks_down);
+    const int y1 = (int)((int64_t)(by + 1) * light->height / tone->blocks_down);
+    int count = 0;
+
+    mean[0] = mean[1] = mean[2] = 0;
+    for (int y = y0; y < y1; y += step) {
+        const uint16_t *row =
+            (const uint16_t *)(const void *)(light->plane[0] + y * light->stride[0]);
+
+        for (int x = x0; x < x1; x += step, count++) {
+            for (int c = 0; c < 3; c++) {
+                mean[c] += rf_half_value(row[3 * (ptrdiff_t)x + c]);
+            }
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        mean[c] /= (float)count;
+    }
+}
+
 /* The sums of a level are those of four cells of the finer one. */
 static void add_up(const struct rf_tone *tone, const struct level *fine, const struct level *coarse)
 {
@@ -227,9 +255,9 @@ static void set_tables(struct rf_tone *tone)
     }
 }
 
-static int cells_along(int side, int longer)
+static int cells_along(int side, int longer, int most)
 {
-    const int cells = (int)(((int64_t)side * RF_TONE_CELLS + longer / 2) / longer);
+    const int cells = (int)(((int64_t)side * most + longer / 2) / longer);
 
     return cells > 1 ? cells < side ? cells : side : 1;
 }
@@ -263,14 +291,19 @@ int rf_tone_fit(struct rf_tone *tone, const struct refocus_image *base,
     tone->by_brightest = by_brightest;
     tone->width = base->width;
     tone->height = base->height;
-    tone->across = cells_along(base->width, longer);
-    tone->down = cells_along(base->height, longer);
+    tone->across = cells_along(base->width, longer, RF_TONE_CELLS);
+    tone->down = cells_along(base->height, longer, RF_TONE_CELLS);
+    tone->blocks_across = cells_along(base->width, longer, RF_TONE_BLOCKS);
+    tone->blocks_down = cells_along(base->height, longer, RF_TONE_BLOCKS);
     knots = calloc(lay_out(tone, level, &levels, NULL), sizeof *knots);
     if (!knots) {
         return REFOCUS_ERR_MEMORY;
     }
     lay_out(tone, level, &levels, knots);
     set_tables(tone);
+    for (int i = 0; i < tone->blocks_across * tone->blocks_down; i++) {
+        measure_block(tone, light, i % tone->blocks_across, i / tone->blocks_across, tone->mean[i]);
+    }
     count(tone, &level[0], base, light);
     for (int i = 1; i < levels; i++) {
         add_up(tone, &level[i - 1], &level[i]);

@@ -218,7 +218,7 @@ struct refocus_light;
  *
  * with S the linear light of the photo's sRGB code and the map's gain, as it is for a display that
  * shows all of it, interpolated between its samples. Colours stay in the space of the photo.
- * Takes 6 bytes a pixel, and 150 KiB; 700 KiB more while it is made.
+ * Takes 6 bytes a pixel, and 200 KiB; 700 KiB more while it is made.
  *
  * @param light  receives a new object, or NULL on an error; ended by refocus_light_destroy()
  * @param photo  stays as it is as long as the object is used
@@ -238,9 +238,10 @@ REFOCUS_API const struct refocus_image *refocus_light_image(const struct refocus
  * their own, of each channel, or of the brightest where the map has one channel, and are read in
  * between in proportion (a bilateral grid: Chen, Paris, Durand 2007), as tones are chosen place by
  * place. What a pixel of the photo has beyond its curves fades as its light changes, within a
- * sixteenth, and its mean over 5 x 5 pixels within a quarter. Light from 4 times white on, at which
- * refocused light saturates, is shown as the photo's own where that is more. Pixels that nothing
- * changed, byte by byte, have the photo's own codes.
+ * sixteenth, and its mean over 5 x 5 pixels within a quarter. Refocused light saturates at 4 times
+ * white: it is shown as the mean of the photo around, of 64 blocks along the longer side, where
+ * that is more, and from 3 times white on it leads there. Pixels that nothing changed, byte by
+ * byte, have the photo's own codes.
  *
  * @param refocused  REFOCUS_FORMAT_RGB_HALF, linear, 1 = white: as refocus_render() makes it of
  *                   the object's image

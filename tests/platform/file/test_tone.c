@@ -316,23 +316,35 @@ static void parts_are_shown_as_the_whole(void **state)
     free(tone);
 }
 
-/* Light that saturates at 4 times white is shown as the pixel's own, if that is more. */
-static void saturated_light_is_that_of_the_photo(void **state)
+/* Light that saturates at 4 times white is shown as the photo is around, if that is more, whatever
+ * the pixel's own is, and light below that leads there without a step. */
+static void saturated_light_is_that_around(void **state)
 {
-    const uint16_t bright[3] = {0x4800, 0x4800, 0x4200}, full[3] = {0x4400, 0x4400, 0x4400};
-    const uint8_t base[3] = {250, 250, 220};
+    static const uint16_t bright[3] = {0x4800, 0x4800, 0x4800}, dim[3] = {0x4200, 0x4200, 0x4200};
+    static const uint8_t base[3] = {250, 250, 250}, dim_base[3] = {220, 220, 220};
     struct rf_tone *tone;
-    uint8_t out[3];
+    uint8_t out[3], other[3], last = 0;
 
     (void)state;
     for (int i = 0; i < 3 * SIDE * SIDE; i++) {
-        codes[i] = i / 3 % 2 ? 250 : 180;
-        halves[i] = i / 3 % 2 ? 0x4800 : ONE;
+        const bool left = i / 3 % SIDE < SIDE / 2;
+
+        codes[i] = left ? 250 : 180;
+        halves[i] = left ? 0x4800 : ONE;
     }
     tone = fit(false);
-    encode(tone, 48, 48, bright, base, full, out);
+    for (int half = 0x4000; half <= 0x4400; half += 8) { /* 2 to 4 times white */
+        const uint16_t light[3] = {(uint16_t)half, (uint16_t)half, (uint16_t)half};
+
+        encode(tone, 20, 48, bright, base, light, out);
+        encode(tone, 20, 48, dim, dim_base, light, other);
+        assert_in_range(other[0], last, last ? last + 2 : 255);
+        last = other[0];
+    }
     assert_in_range(out[0], 249, 251);
-    assert_in_range(out[2], 200, 240); /* less than 4 times white of its own */
+    assert_int_equal(out[0], other[0]);
+    encode(tone, 80, 48, bright, base, (const uint16_t[3]){0x4400, 0x4400, 0x4400}, out);
+    assert_in_range(out[0], 181, 240); /* less than that around */
     free(tone);
 }
 
@@ -346,7 +358,7 @@ int main(void)
         cmocka_unit_test(shown_as_the_photo_shows_it),
         cmocka_unit_test(light_by_chance),
         cmocka_unit_test(parts_are_shown_as_the_whole),
-        cmocka_unit_test(saturated_light_is_that_of_the_photo),
+        cmocka_unit_test(saturated_light_is_that_around),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
