@@ -126,14 +126,16 @@ static uint8_t code_of(const struct rf_tone *tone, float shown, int threshold)
     return (uint8_t)(rounded < 255 ? rounded : 255);
 }
 
-/* The pixels that are worked on at once, and two beside them on each side. */
-enum { REACH = 2, AROUND = (2 * REACH + 1) * (2 * REACH + 1) };
-enum { WIDE = 32, HIGH = 16, STRIDE = WIDE + 2 * REACH, ROWS = HIGH + 2 * REACH };
+/* The pixels that are worked on at once. Changes are averaged over 5 x 5 pixels, what is kept over
+ * 17 x 17 of them, of which every second one is looked at, each way. */
+enum { WIDE = 64, HIGH = 32 };
+enum { NEAR = 2, STRIDE = WIDE + 2 * NEAR, ROWS = HIGH + 2 * NEAR };
+enum { FAR = 4, COARSE_STRIDE = WIDE / 2 + 1 + 2 * FAR, COARSE_ROWS = HIGH / 2 + 1 + 2 * FAR };
 
 struct patch {
-    float local[3][ROWS * STRIDE]; /* light that a pixel is shown with beyond the curves */
-    float kept[3][ROWS * STRIDE];  /* the part of it that blurred light keeps */
+    int odd_x, odd_y; /* 1: its first pixel is an odd one of the photo; even ones are looked at */
     float change[ROWS * STRIDE];
+    float kept[3][COARSE_ROWS * COARSE_STRIDE]; /* see local_of() */
 };
 
 static int clamp(int value, int most)
@@ -141,43 +143,90 @@ static int clamp(int value, int most)
     return value < 0 ? 0 : value > most ? most : value;
 }
 
+/* Light that a pixel is shown with beyond the curves. */
+static void local_of(const struct rf_tone *tone, const struct rf_tone_part *part, int x, int y,
+                     float local[3])
+{
+    const uint8_t *const base = base_at(part, x, y);
+    float shown[3];
+
+    show(tone, part->x + x, part->y + y, own_at(part, x, y), shown);
+    for (int c = 0; c < 3; c++) {
+        local[c] = tone->light[base[c]] - shown[c];
+    }
+}
+
+static float change_at(const struct rf_tone_part *part, int x, int y)
+{
+    uint16_t light[3];
+
+    read_light(part, x, y, light);
+    return change_of(own_at(part, x, y), light);
+}
+
 /* Reads the pixels of a part around those from (x0, y0) on; beyond the part those at its sides. */
 static void read_patch(const struct rf_tone *tone, const struct rf_tone_part *part, int x0, int y0,
                        struct patch *patch)
 {
-    for (int i = 0; i < ROWS * STRIDE; i++) {
-        const int x = clamp(x0 + i % STRIDE - REACH, part->light->width - 1);
-        const int y = clamp(y0 + i / STRIDE - REACH, part->light->height - 1);
-        uint16_t light[3];
-        float shown[3], like;
+    const int right = part->light->width - 1, bottom = part->light->height - 1;
 
-        read_light(part, x, y, light);
-        show(tone, part->x + x, part->y + y, own_at(part, x, y), shown);
-        patch->change[i] = change_of(own_at(part, x, y), light);
-        like = fmaxf(1 - 4 * patch->change[i], 0);
+    patch->odd_x = (part->x + x0) & 1;
+    patch->odd_y = (part->y + y0) & 1;
+    for (int i = 0; i < ROWS * STRIDE; i++) {
+        patch->change[i] = change_at(part, clamp(x0 + i % STRIDE - NEAR, right),
+                                     clamp(y0 + i / STRIDE - NEAR, bottom));
+    }
+    for (int i = 0; i < COARSE_ROWS * COARSE_STRIDE; i++) {
+        const int x = clamp(x0 - patch->odd_x + 2 * (i % COARSE_STRIDE - FAR), right);
+        const int y = clamp(y0 - patch->odd_y + 2 * (i / COARSE_STRIDE - FAR), bottom);
+        const float like = fmaxf(1 - 4 * change_at(part, x, y), 0);
+        float local[3] = {0, 0, 0};
+
+        if (like > 0) {
+            local_of(tone, part, x, y, local);
+        }
         for (int c = 0; c < 3; c++) {
-            patch->local[c][i] = tone->light[base_at(part, x, y)[c]] - shown[c];
-            patch->kept[c][i] = like * patch->local[c][i];
+            patch->kept[c][i] = like * local[c];
         }
     }
 }
 
-/* Makes values means of those around, from the first on: the mean around (x, y) comes to where the
- * first of them was. */
-static void average(float *values)
+/* Makes values means of those around, up to `reach` away, from the first on: the mean around (x, y)
+ * comes to where the first of them was. */
+static void average(float *values, int stride, int rows, int reach)
 {
-    for (int i = 0; i < ROWS * STRIDE - 2 * REACH; i++) {
-        for (int k = 1; k <= 2 * REACH; k++) {
+    const int side = 2 * reach + 1;
+
+    for (int i = 0; i < rows * stride - 2 * reach; i++) {
+        for (int k = 1; k < side; k++) {
             values[i] += values[i + k];
         }
     }
-    for (int i = 0; i < HIGH * STRIDE; i++) {
-        for (int k = 1; k <= 2 * REACH; k++) {
-            values[i] += values[i + k * STRIDE];
+    for (int i = 0; i < (rows - 2 * reach) * stride; i++) {
+        for (int k = 1; k < side; k++) {
+            values[i] += values[i + k * stride];
         }
-        values[i] /= AROUND;
+        values[i] /= (float)(side * side);
     }
 }
+
+/* The mean that a pixel takes, between the pixels that were looked at. */
+static float kept_at(const struct patch *patch, int x, int y, int c)
+{
+    const int u = x + patch->odd_x, v = y + patch->odd_y;
+    const float *const above = patch->kept[c] + v / 2 * COARSE_STRIDE;
+    const float *const below = patch->kept[c] + (v + 1) / 2 * COARSE_STRIDE;
+
+    return (above[u / 2] + above[(u + 1) / 2] + below[u / 2] + below[(u + 1) / 2]) / 4;
+}
+
+/* Light that a pixel is shown with beyond the curves: its own by a part `own`, else what pixels
+ * around keep, but no more than a quarter of what it is shown with: a dark pixel beside a bright
+ * line would have its haze. */
+struct beyond {
+    float own, local[3], kept[3];
+};
+enum { MOST_KEPT = 4 };
 
 /* The mean light of the photo around a pixel, between blocks. */
 static float mean_around(const struct rf_tone *tone, int x, int y, int c)
@@ -202,7 +251,7 @@ static uint16_t beyond_full(const struct rf_tone *tone, int x, int y, int c, uin
 }
 
 static void show_pixel(const struct rf_tone *tone, const struct rf_tone_part *part, int x, int y,
-                       const float more[3])
+                       const struct beyond *beyond)
 {
     const uint16_t *const own = own_at(part, x, y);
     uint8_t *const out = part->out->plane[0] + y * part->out->stride[0] + 3 * (ptrdiff_t)x;
@@ -222,7 +271,10 @@ static void show_pixel(const struct rf_tone *tone, const struct rf_tone_part *pa
     }
     show(tone, part->x + x, part->y + y, light, shown);
     for (int c = 0; c < 3; c++) {
-        out[c] = code_of(tone, shown[c] + more[c],
+        const float most = shown[c] / MOST_KEPT;
+        const float kept = fmaxf(-most, fminf(beyond->kept[c], most));
+
+        out[c] = code_of(tone, shown[c] + between(kept, beyond->local[c], beyond->own),
                          part->thresholds[((part->y + y) & 7) * 8 + ((part->x + x) & 7)]);
     }
 }
@@ -230,27 +282,28 @@ static void show_pixel(const struct rf_tone *tone, const struct rf_tone_part *pa
 /* Tones that were chosen pixel by pixel are not in the curves. What a pixel is shown with beyond
  * them, it keeps where its light and that around it is its own, so that nothing shows where blur
  * sets in; where it is nearly that, it takes the mean of what pixels around keep: light that is
- * blurred is a pixel's own by chance along lines, at edges, which must not show, nor must what is
- * coarse in the gain map. */
+ * blurred is a pixel's own by chance along lines, at edges and in clouds, which must not show, nor
+ * must what is coarse in the gain map. */
 static void show_patch(const struct rf_tone *tone, const struct rf_tone_part *part, int x0, int y0)
 {
     struct patch patch;
 
     read_patch(tone, part, x0, y0, &patch);
     for (int c = 0; c < 3; c++) {
-        average(patch.kept[c]);
+        average(patch.kept[c], COARSE_STRIDE, COARSE_ROWS, FAR);
     }
-    average(patch.change);
+    average(patch.change, STRIDE, ROWS, NEAR);
     for (int y = 0; y < HIGH && y0 + y < part->light->height; y++) {
         for (int x = 0; x < WIDE && x0 + x < part->light->width; x++) {
-            const int at = y * STRIDE + x, middle = at + REACH * STRIDE + REACH;
-            const float own = fmaxf(1 - 16 * patch.change[at], 0);
-            float more[3];
+            struct beyond beyond = {.own = fmaxf(1 - 16 * patch.change[y * STRIDE + x], 0)};
 
-            for (int c = 0; c < 3; c++) {
-                more[c] = between(patch.kept[c][at], patch.local[c][middle], own);
+            if (beyond.own > 0) {
+                local_of(tone, part, x0 + x, y0 + y, beyond.local);
             }
-            show_pixel(tone, part, x0 + x, y0 + y, more);
+            for (int c = 0; c < 3; c++) {
+                beyond.kept[c] = kept_at(&patch, x, y, c);
+            }
+            show_pixel(tone, part, x0 + x, y0 + y, &beyond);
         }
     }
 }
