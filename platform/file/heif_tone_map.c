@@ -77,7 +77,7 @@ static bool next_item(struct rf_bytes *rest, struct item *item)
     return false;
 }
 
-/* The item of a type, or if there is none the one of a number. */
+/* The first item of a type or, where `type` is NULL, the one of a number. */
 static bool find_item(struct rf_bytes meta, const char *type, uint32_t number, struct item *item)
 {
     struct fields iinf = {{NULL, 0}, false};
@@ -85,7 +85,7 @@ static bool find_item(struct rf_bytes meta, const char *type, uint32_t number, s
     if (!rf_heif_find(meta, "iinf", &iinf.left)) {
         return false;
     }
-    take(&iinf, take_version(&iinf) == 0 ? 2 : 4); /* how many there are */
+    take(&iinf, take_version(&iinf) == 0 ? 2 : 4); /* the count is passed over: the boxes tell */
     while (next_item(&iinf.left, item)) {
         if (type ? strcmp(item->type, type) == 0 : item->number == number) {
             return true;

@@ -239,10 +239,10 @@ REFOCUS_API const struct refocus_image *refocus_light_image(const struct refocus
  * between in proportion (a bilateral grid: Chen, Paris, Durand 2007), as tones are chosen place by
  * place. What a pixel of the photo has beyond its curves fades as its light changes, within a
  * sixteenth, and its mean over 17 x 17 pixels within a quarter; so a part of a photo may differ
- * from the whole in nine pixels at its sides. Refocused light saturates at 4 times white: it is
- * shown as the mean of the photo around, of 64 blocks along the longer side, where that is more,
- * and from 3 times white on it leads there. Pixels that nothing changed, byte by byte, have the
- * photo's own codes.
+ * a little from the whole in nine pixels at its sides. Refocused light saturates at 4 times white:
+ * it is shown as the mean of the photo around, of 64 blocks along the longer side, where that is
+ * more, and from 3 times white on it leads there. Pixels that nothing changed, byte by byte, have
+ * the photo's own codes.
  *
  * @param refocused  REFOCUS_FORMAT_RGB_HALF, linear, 1 = white: as refocus_render() makes it of
  *                   the object's image
