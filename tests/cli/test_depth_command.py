@@ -2,6 +2,7 @@
 """The refocus command: depth maps that `depth` makes, and facts that `info` tells.
 Usage: test_depth_command.py REFOCUS [unittest arguments]"""
 import json
+import math
 import os
 import re
 import shutil
@@ -66,6 +67,31 @@ class DepthAndInfo(Case):
             self.assertNotIn('doubtful', self.succeeds('info', 'other.pgm'))
         pictures.pgm('other.pgm', W, H, lambda x, y: (100, 32767, 0)[x % 3], 65535)
         self.assertIn('doubtful', self.succeeds('info', 'other.pgm'))
+
+    def test_lower_half_farther(self):
+        """Where 3 of 4 samples that differ say so, and a quarter differs."""
+        told = ('as disparities, %s = near, its lower half is the farther one; if that is wrong, '
+                'give --depth-unit inverse, mm, m or 5000/m, else disparity')
+        pictures.pgm('down.pgm', W, H, lambda x, y: 200 - 2 * y)
+        pictures.pfm('down.pfm', W, H, lambda x, y: -1.0 * y if x else math.nan)
+        for name, most in ('down.pgm', 'bright'), ('down.pfm', 'greater'):
+            paths = (('render', 'photo.ppm', '--depth', name, '-o', 'a.ppm'),
+                     ('depth', name, '-o', 'a.png'))
+            for arguments in paths:
+                self.warns('%s: %s' % (name, told % most), *arguments)
+                for unit in 'disparity', 'inverse':
+                    self.succeeds(*arguments, '--depth-unit', unit)
+            self.assertIn('doubtful      %s\n' % told % most, self.succeeds('info', name))
+            # once it is turned, another half is the lower one
+            self.succeeds('depth', name, '-o', 'a.png', '--orient-depth', '180')
+        bounds = ((lambda x, y: 200 - 2 * y if 4 * x < 3 * W else 2 * y + 1, True),
+                  (lambda x, y: 200 - 2 * y if 4 * x < 3 * W - 4 else 2 * y + 1, False),
+                  (lambda x, y: 200 - 2 * y if 4 * x < W else 9, True),
+                  (lambda x, y: 200 - 2 * y if 4 * x < W - 4 else 9, False),
+                  (lambda x, y: 200 - 2 * y if 2 * y < H else 0, False))
+        for sample, doubtful in bounds:
+            pictures.pgm('other.pgm', W, H, sample)
+            self.assertEqual('doubtful' in self.succeeds('info', 'other.pgm'), doubtful)
 
     def test_depth_of_pictures(self):
         self.fails(1, re.compile(r'^refocus: depth.pgm: (the two pictures do not match|too few '

@@ -162,7 +162,8 @@ class DepthInputs(Case):
                      'upright.pgm', '--orient-depth', '90')
         # a photo that lies on its side by EXIF, and a map that lies as its pixels are stored
         pictures.ppm('stored.ppm', H, W, lambda x, y: (9 * x & 255, 5 * y & 255, 99))
-        self.succeeds('render', 'stored.ppm', '--depth', '90.pgm', '--blur', '0', '-o', 'side.jpg')
+        self.succeeds('render', 'stored.ppm', '--depth', '90.pgm', '--depth-unit',
+                      'disparity', '--blur', '0', '-o', 'side.jpg')
         for orientation, name in ((6, '90.pgm'), (8, '270.pgm')):
             exif = (b'Exif\0\0MM\0*\0\0\0\x08\0\1\x01\x12\0\3\0\0\0\1\0' +
                     bytes([orientation]) + bytes(6))

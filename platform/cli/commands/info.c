@@ -330,7 +330,7 @@ static int measure_depth(struct input *input, const struct settings *settings,
     if (status != EXIT_DONE)
         return status;
     found->unit_is_doubtful =
-        unit_is_doubtful(input->photo, found->unit_line, sizeof found->unit_line);
+        unit_is_doubtful(input->photo, false, found->unit_line, sizeof found->unit_line);
     input->disparity = samples <= SIZE_MAX / 2 ? malloc((size_t)samples * 2) : NULL;
     status = input->disparity ? refocus_depth_repair(map, &params, input->disparity,
                                                      (ptrdiff_t)map->width * 2, report)

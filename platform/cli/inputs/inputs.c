@@ -95,7 +95,6 @@ static int report_no_depth(const char *photo, const struct refocus_photo *read)
 static int read_side(struct input *input, const char *file, const struct depth_settings *settings)
 {
     struct refocus_reason reason = {""};
-    char line[REFOCUS_INFO_LENGTH];
     int status;
 
     input->depth_name = file;
@@ -108,9 +107,16 @@ static int read_side(struct input *input, const char *file, const struct depth_s
         return report_failure(input_exit_code(status), file, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
     input->depth_from = input->side;
-    if (!settings->unit && unit_is_doubtful(input->side, line, sizeof line))
-        report_warning(file, "%s", line);
     return EXIT_DONE;
+}
+
+/* The depth file has been read, and how it lies is known. */
+static void tell_doubt(const struct input *input, const struct depth_settings *settings)
+{
+    char line[REFOCUS_INFO_LENGTH];
+
+    if (!settings->unit && unit_is_doubtful(input->side, input->orientation > 1, line, sizeof line))
+        report_warning(input->depth_name, "%s", line);
 }
 
 void input_tell_bits(const struct refocus_photo *photo, const char *name)
@@ -293,6 +299,8 @@ int input_read(struct input *input, const char *photo, const struct depth_settin
     }
     if (status == EXIT_DONE && !settings->make)
         status = settle_shape(input, settings);
+    if (status == EXIT_DONE && input->side && !settings->make)
+        tell_doubt(input, settings);
     if (status == EXIT_DONE)
         status = settle_matte(input, settings->matte);
     return status == EXIT_DONE ? input_convert(input, settings) : status;
@@ -306,6 +314,8 @@ int input_read_depth(struct input *input, const char *file, const struct depth_s
     input->photo_name = file;
     status = read_side(input, file, settings);
     input->orientation = orient_choose((enum orient)settings->orient, false, 1, false);
+    if (status == EXIT_DONE)
+        tell_doubt(input, settings);
     return status == EXIT_DONE ? input_convert(input, settings) : status;
 }
 

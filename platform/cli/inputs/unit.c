@@ -1,35 +1,92 @@
-/* unit.c: the samples of a depth file that says no unit are taken for disparities, bright near.
- * Depth cameras write distances as often, and bright is far then. */
+/* unit.c: the samples of a depth file that says no unit are taken for disparities, greatest
+ * nearest. Depth cameras write distances as often, others the inverse, and then what is nearest
+ * comes out as farthest. */
 #include "inputs/unit.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* Rooms and streets in millimetres, and in fifths of them, lie within these, and have a nearest and
  * a farthest place; disparities that fill 16 bits do not. */
 enum { LEAST = 100, MOST = 32767 };
 
-bool unit_is_doubtful(const struct refocus_photo *photo, char *line, size_t size)
-{
-    const struct refocus_depth_map *const map = photo->depth;
-    unsigned least = UINT16_MAX, most = 0;
+/* The ground before a camera comes nearer from row to row, so in most pictures what lies lower is
+ * nearer. The halves differ enough where a quarter of the samples do. */
+enum { LESS = 3, OF_LESS = 4, OF_ALL = 4 };
 
-    if (photo->info->depth_source != REFOCUS_DEPTH_SOURCE_FILE ||
-        map->meaning != REFOCUS_DEPTH_DISPARITY || map->sample != REFOCUS_SAMPLE_U16)
+/* A sample, or 0 where there is none: 0 itself stands for that in many maps. */
+static double sample_at(const struct refocus_depth_map *map, int32_t x, int32_t y)
+{
+    const uint8_t *const row = (const uint8_t *)map->samples + y * map->stride;
+    uint16_t code;
+    float value;
+
+    if (map->sample == REFOCUS_SAMPLE_U8)
+        return row[x];
+    if (map->sample == REFOCUS_SAMPLE_U16) {
+        memcpy(&code, row + 2 * (size_t)x, sizeof code);
+        return code;
+    }
+    memcpy(&value, row + 4 * (size_t)x, sizeof value);
+    return isfinite(value) ? value : 0;
+}
+
+/* Whether 16-bit samples lie within the range of distances. */
+static bool are_distances(const struct refocus_depth_map *map, char *line, size_t size)
+{
+    double least = UINT16_MAX, most = 0;
+
+    if (map->sample != REFOCUS_SAMPLE_U16)
         return false;
     for (int32_t y = 0; y < map->height; y++) {
-        const void *const row = (const char *)map->samples + y * map->stride;
-        const uint16_t *const sample = row;
-
         for (int32_t x = 0; x < map->width; x++) {
-            if (sample[x] > 0 && sample[x] < least)
-                least = sample[x];
-            if (sample[x] > most)
-                most = sample[x];
+            const double sample = sample_at(map, x, y);
+
+            if (sample > 0 && sample < least)
+                least = sample;
+            if (sample > most)
+                most = sample;
         }
     }
     snprintf(line, size,
-             "its samples from %u to %u are taken for disparities, bright = near; if they are "
+             "its samples from %.0f to %.0f are taken for disparities, bright = near; if they are "
              "distances, give --depth-unit mm, or 5000/m, else disparity",
              least, most);
     return least >= LEAST && most <= MOST && 2 * most > 3 * least;
+}
+
+/* Whether the lower half has less of the samples that differ from their mirror images in the upper
+ * half, LESS of OF_LESS of them. */
+static bool are_upside_down(const struct refocus_depth_map *map, char *line, size_t size)
+{
+    const int32_t half = map->height / 2;
+    int64_t less = 0, differ = 0;
+
+    for (int32_t y = 0; y < half; y++) {
+        for (int32_t x = 0; x < map->width; x++) {
+            const double upper = sample_at(map, x, y);
+            const double lower = sample_at(map, x, map->height - 1 - y);
+
+            if (upper != 0 && lower != 0) {
+                less += lower < upper;
+                differ += lower != upper;
+            }
+        }
+    }
+    snprintf(line, size,
+             "as disparities, %s = near, its lower half is the farther one; if that is wrong, give "
+             "--depth-unit inverse, mm, m or 5000/m, else disparity",
+             map->sample == REFOCUS_SAMPLE_F32 ? "greater" : "bright");
+    return OF_ALL * differ >= (int64_t)half * map->width && differ > 0 &&
+           OF_LESS * less >= LESS * differ;
+}
+
+bool unit_is_doubtful(const struct refocus_photo *photo, bool turned, char *line, size_t size)
+{
+    const struct refocus_depth_map *const map = photo->depth;
+
+    return photo->info->depth_source == REFOCUS_DEPTH_SOURCE_FILE &&
+           map->meaning == REFOCUS_DEPTH_DISPARITY &&
+           (are_distances(map, line, size) || (!turned && are_upside_down(map, line, size)));
 }

@@ -6,7 +6,7 @@
 #include <refocus/platform/file.h>
 
 /* Writes a line where samples that are taken for disparities, as no unit is known, look like
- * distances. */
-bool unit_is_doubtful(const struct refocus_photo *map, char *line, size_t size);
+ * distances or the inverse. Of a map that will be turned, upper and lower half are not known. */
+bool unit_is_doubtful(const struct refocus_photo *photo, bool turned, char *line, size_t size);
 
 #endif
