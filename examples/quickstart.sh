@@ -64,7 +64,7 @@ fi
 
 build=${REFOCUS_BUILD:-$top/build}
 need_packages "${core_packages[@]}" "${feature_packages[@]}"
-configure -D{tools,jpeg,png,xmp,heic,tiff,openexr,webp,jxl,raw,v4l2,libcamera,pipewire,sdl2,sdl2_ttf,web,opencv,gstreamer,gegl}=enabled
+configure -D{tools,jpeg,png,xmp,heic,tiff,openexr,webp,jxl,raw,npz,v4l2,libcamera,pipewire,sdl2,sdl2_ttf,web,opencv,gstreamer,gegl}=enabled
 # The command, and what it loads when it is asked for.
 ninja --quiet -C "$build" command >&2
 for focus in 0.689 0.257 0.000; do

@@ -6,7 +6,7 @@ feature_packages=(pkg-config g++ libpng-dev libturbojpeg0-dev libexpat1-dev libh
     libjansson-dev libsdl2-dev libsdl2-ttf-dev fonts-dejavu-core libcamera-dev
     libopencv-core-dev libopencv-imgproc-dev
     libopencv-calib3d-dev libopencv-dnn-dev libtiff-dev libopenexr-dev libwebp-dev libjxl-dev
-    libraw-dev libmicrohttpd-dev libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev
+    libraw-dev libzip-dev libmicrohttpd-dev libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev
     libgegl-dev libpipewire-0.3-dev)
 
 # The page of `refocus serve` is tried in a browser: tests/run.sh --full.

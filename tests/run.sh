@@ -376,8 +376,8 @@ need_packages meson ninja-build pkg-config gcc g++ libc6-dev python3 libcmocka-d
 need_packages libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libopencv-dnn-dev \
     libturbojpeg0-dev libpng-dev libexpat1-dev libheif-dev libjansson-dev ||
     skip 'picture files and the refocus command' 'their libraries are missing'
-need_packages libtiff-dev libopenexr-dev libwebp-dev libjxl-dev libraw-dev ||
-    skip 'TIFF, OpenEXR, WebP, JPEG XL and camera raw' 'their libraries are missing'
+need_packages libtiff-dev libopenexr-dev libwebp-dev libjxl-dev libraw-dev libzip-dev ||
+    skip 'TIFF, OpenEXR, WebP, JPEG XL, camera raw and archives of NumPy' 'their libraries are missing'
 need_packages libheif-examples libjxl-tools webp ||
     skip 'AVIF, JPEG XL and WebP in the corpus of photos' 'the programs that write them are missing'
 need_packages libcamera-dev || skip libcamera 'its library is missing'

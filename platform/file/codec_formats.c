@@ -90,3 +90,21 @@ const struct rf_format rf_format_jxl = {
     .read = read_jxl,
 #endif
 };
+
+/* Any ZIP archive. */
+static bool is_npz(struct rf_bytes file)
+{
+    return begins(file, "PK\3\4", 4) || begins(file, "PK\5\6", 4);
+}
+
+#ifdef RF_HAVE_NPZ
+RF_CODEC_READ(npz)
+#endif
+const struct rf_format rf_format_npz = {
+    .name = "NPZ",
+    .library = "libzip",
+    .recognise = is_npz,
+#ifdef RF_HAVE_NPZ
+    .read = read_npz,
+#endif
+};

@@ -35,6 +35,8 @@ struct rf_format {
     FORMAT(openexr)                                                                                \
     FORMAT(webp)                                                                                   \
     FORMAT(jxl)                                                                                    \
+    FORMAT(npy)                                                                                    \
+    FORMAT(npz)                                                                                    \
     FORMAT(ppm)                                                                                    \
     FORMAT(pgm)                                                                                    \
     FORMAT(pfm)

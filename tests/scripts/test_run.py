@@ -11,7 +11,7 @@ import stubs
 EVERYTHING = ('meson ninja-build pkg-config gcc g++ libc6-dev python3 libcmocka-dev clang '
               'libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev libopencv-dnn-dev '
               'libturbojpeg0-dev libpng-dev libexpat1-dev libheif-dev libjansson-dev '
-              'libtiff-dev libopenexr-dev libwebp-dev libjxl-dev libraw-dev '
+              'libtiff-dev libopenexr-dev libwebp-dev libjxl-dev libraw-dev libzip-dev '
               'libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev gstreamer1.0-tools '
               'gstreamer1.0-plugins-base gstreamer1.0-plugins-good libgegl-dev gegl gimp '
               'libpipewire-0.3-dev pipewire pipewire-bin wireplumber dbus-daemon gstreamer1.0-pipewire '

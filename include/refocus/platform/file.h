@@ -261,7 +261,8 @@ REFOCUS_API void refocus_light_destroy(struct refocus_light **light);
 /**
  * Read a depth file of its own: greyscale (or grey-valued) PNG, PGM or JPEG of 8 or 16
  * bits or TIFF of the same or of floats, OpenEXR (channel Z, or the only one), PFM (both byte
- * orders), or any photo with depth in it. The result has no image,
+ * orders), NumPy's arrays of two sides, alone (.npy) or in archives (.npz: the one called depth or
+ * disparity, else the first), or any photo with depth in it. The result has no image,
  * only depth.
  *
  * @param unit  how to read the samples, the words of the command line: "disparity"

@@ -15,7 +15,8 @@ const char *gain_map_summary(uint32_t index);
         .kind = OPTION_TEXT, .name = "--depth", .argument = "FILE",                                \
         .offset = offsetof(type, member.file),                                                     \
         .brief = "depth map; without it the one that the photo carries",                           \
-        .help = "depth map: PNG, PGM or JPEG of 8 or 16 bits, PFM, or a photo that "               \
+        .help = "depth map: PNG, PGM or JPEG of 8 or 16 bits, PFM, NumPy's .npy or .npz, or a "    \
+                "photo that "                                                                      \
                 "carries one; without it the depth that the photo itself carries"                  \
     }
 #define DEPTH_RANGE_OPTIONS(type, member)                                                          \

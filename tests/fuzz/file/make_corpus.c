@@ -47,6 +47,8 @@ static void seed_samples(void)
         bytes_free(&depth);
         if (strncmp(b->data ? (const char *)b->data : "", "Pf", 2) == 0) {
             seed("pfm", samples[i].name, b->data, b->size);
+        } else if (strstr(samples[i].name, ".npy")) {
+            seed("npy", samples[i].name, b->data, b->size);
         } else if (b->data[0] == 'P') {
             seed("pnm", samples[i].name, b->data, b->size);
         } else if (strcmp(samples[i].name, "extended.jpg") == 0) {

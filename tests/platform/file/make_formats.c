@@ -253,3 +253,16 @@ struct bytes make_dng(int width, int height, unsigned level, struct bytes previe
     }
     return file;
 }
+
+struct bytes make_npy(int version, const char *header, const void *samples, size_t size)
+{
+    struct bytes file = {NULL, 0};
+
+    bytes_add(&file, "\x93NUMPY", 6);
+    bytes_number(&file, (uint64_t)version, 1, false);
+    bytes_number(&file, 0, 1, false);
+    bytes_number(&file, strlen(header), version == 1 ? 2 : 4, false);
+    bytes_text(&file, header);
+    bytes_add(&file, samples, size);
+    return file;
+}

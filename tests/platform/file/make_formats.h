@@ -30,4 +30,7 @@ struct bytes make_exr_parts(int height, const struct exr_part *parts, int count)
  * JPEG lies behind it if there is one; it is freed. */
 struct bytes make_dng(int width, int height, unsigned level, struct bytes preview);
 
+/* A NumPy array of that version: 1 to 3, the text of its header, and its samples. */
+struct bytes make_npy(int version, const char *header, const void *samples, size_t size);
+
 #endif

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "make_formats.h"
+
 static void put(struct sample *samples, int *count, const char *name, struct bytes bytes,
                 bool photo, bool depth)
 {
@@ -113,6 +115,16 @@ static void put_phone(struct sample *samples, int *count)
 }
 #endif
 
+static void put_npy(struct sample *samples, int *count)
+{
+    put(samples, count, "f2.npy",
+        make_npy(1, "{'descr': '<f2', 'fortran_order': False, 'shape': (1, 2), }", "\0\74\0\74", 4),
+        false, true);
+    put(samples, count, "u2.npy",
+        make_npy(2, "{'descr': '>u2', 'fortran_order': True, 'shape': (2, 1), }", "\0\1\0\2", 4),
+        false, true);
+}
+
 int make_samples(struct sample *samples)
 {
     int count = 0;
@@ -127,6 +139,7 @@ int make_samples(struct sample *samples)
 #if defined(RF_HAVE_JPEG) && defined(RF_HAVE_XMP)
     put_phone(samples, &count);
 #endif
+    put_npy(samples, &count);
     return count;
 }
 

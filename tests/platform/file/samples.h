@@ -13,7 +13,7 @@ struct sample {
     bool loose_end;    /* the last bytes of the file may be cut and it still makes sense */
 };
 
-enum { SAMPLES_MAX = 24 };
+enum { SAMPLES_MAX = 26 };
 /* Fill the array; returns how many. Free with free_samples(). */
 int make_samples(struct sample *samples);
 void free_samples(struct sample *samples, int count);

@@ -359,7 +359,8 @@ static void modules_are_missed_in_words(void **state)
     } formats[] = {{"II*\0\10\0\0\0", 8, "libtiff"},
                    {"\x76\x2f\x31\x01", 4, "OpenEXR"},
                    {"RIFF\4\0\0\0WEBP", 12, "libwebp"},
-                   {"\xff\x0a", 2, "libjxl"}};
+                   {"\xff\x0a", 2, "libjxl"},
+                   {"PK\3\4", 4, "libzip"}};
 
     (void)state;
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
