@@ -52,12 +52,12 @@ struct rf_highlight {
     uint8_t size; /* pixels that the highlight is wide in its narrow direction, or so; 255: more */
 
     /* For this lens: */
-    int16_t blur;           /* mean of the pixels, as is stored, or of most; RF_NO_BLUR where they
-                               differ */
-    uint8_t pixels;         /* pixels of the run that are in the window */
-    uint16_t subtracted[3]; /* Q12 light that was subtracted from what rays hit, mean of these */
-    uint8_t rows;  /* rows from this one on that are splatted as one; 0: splatted with one above */
-    uint8_t below; /* how much further on in the list the next of these rows is */
+    int16_t blur;   /* mean of the pixels, as is stored, or of most; RF_NO_BLUR where they
+                       differ */
+    uint8_t pixels; /* pixels of the run that are in the window */
+    uint8_t rows;   /* rows from this one on that are splatted as one; 0: splatted with one above */
+    uint16_t below; /* how much further on in the list the next of these rows is */
+    uint16_t subtracted[3]; /* Q12 light that was subtracted from what rays hit, mean of `pixels` */
 };
 
 /* The photo's rows are listed in parts, each with room for one run in 76 pixels, or in 12 where

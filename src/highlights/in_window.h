@@ -13,6 +13,11 @@ struct rf_highlight_parts {
 };
 struct rf_highlight_parts rf_parts_in(const struct rf_viewport *view);
 
+/* The first run of a sorted list, from `run` to `end`, that is at (x, y) of the photo or behind it:
+ * farther right, or lower; `end` if there is none. */
+struct rf_highlight *rf_first_run(struct rf_highlight *run, const struct rf_highlight *end, int x,
+                                  int y);
+
 /* The most that blurs around one may differ by for a run to be drawn as one disc, 1/256 pixel: half
  * a pixel, and 1/32 of large ones. */
 static inline int rf_alike_within(int blur)

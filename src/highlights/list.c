@@ -67,3 +67,18 @@ bool rf_has_highlights(const struct rf_highlights *highlights, const struct rf_v
             return true;
     return false;
 }
+
+struct rf_highlight *rf_first_run(struct rf_highlight *run, const struct rf_highlight *end, int x,
+                                  int y)
+{
+    ptrdiff_t count = end - run;
+
+    while (count > 0) {
+        struct rf_highlight *const middle = run + count / 2;
+        const bool before = middle->y < y || (middle->y == y && middle->x < x);
+
+        run = before ? middle + 1 : run;
+        count = before ? count - count / 2 - 1 : count / 2;
+    }
+    return run;
+}

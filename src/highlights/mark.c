@@ -15,6 +15,7 @@ enum {
     STACKED = 4096,   /* Q7.8: from this blur on two rows of a highlight are splatted as one, from
                          twice that on four */
     STACK_EDGE = 512, /* Q7.8: stacked rows reach farther by this at most, as their ends differ */
+    END_STEP = 2,     /* pixels that the ends of stacked rows are apart at most, from row to row */
 };
 
 /* How far the disc of a pixel so blurred may reach where it is splatted with others. */
@@ -98,11 +99,10 @@ static struct rf_highlight *find_below(struct rf_highlight *run, const struct rf
 {
     const int last = run->x + run->count;
     const int within = rf_alike_within(rf_in_pixels(run->blur, unit)) / 2;
+    struct rf_highlight *under = rf_first_run(run + 1, end, run->x - END_STEP, run->y + 1);
 
-    for (struct rf_highlight *under = run + 1;
-         under < end && under <= run + UINT8_MAX && under->y <= run->y + 1; under++)
-        if (under->y > run->y && is_even(under) && abs(under->x - run->x) <= 2 &&
-            abs(under->x + under->count - last) <= 2 &&
+    for (; under < end && under->y == run->y + 1 && under->x <= run->x + END_STEP; under++)
+        if (is_even(under) && abs(under->x + under->count - last) <= END_STEP &&
             rf_in_pixels(abs(under->blur - run->blur), unit) <= within)
             return under;
     return NULL;
@@ -122,7 +122,7 @@ static void stack(const struct rf_highlight_list *list, int unit)
         if (!is_even(top))
             continue;
         while ((lowest->y & (most - 1)) != most - 1 && (under = find_below(lowest, end, unit))) {
-            lowest->below = (uint8_t)(under - lowest);
+            lowest->below = (uint16_t)(under - lowest);
             under->rows = 0;
             top->rows++;
             lowest = under;

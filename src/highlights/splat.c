@@ -287,7 +287,7 @@ static bool has_end(const struct rf_disc_job *job)
 /* Draws them as one where nothing hides them; else in parts, for each to see past that by other
  * ways. At the ends of a sprite some rows have no chord, and with the mean of all of them it would
  * end in a point, which shows if it is as bright as known light may be: there each row is drawn by
- * itself. */
+ * itself, but for discs of wide areas, which have others beside and below them. */
 static void draw_stack(struct canvas *canvas, const struct rf_highlight *top,
                        struct rf_splat_run run, int layer)
 {
@@ -304,7 +304,8 @@ static void draw_stack(struct canvas *canvas, const struct rf_highlight *top,
     hidden = rf_run_hidden(&canvas->tile, &sprite.job, &run, &clear);
     if (hidden == RF_HIDDEN_WHOLLY)
         return;
-    ends = canvas->splat->window.known && has_end(&sprite.job);
+    ends = canvas->splat->window.known && has_end(&sprite.job) &&
+           (top->size != UINT8_MAX || !rf_aperture_is_disc(canvas->splat->aperture));
     if (hidden == RF_HIDDEN_NOWHERE && !ends) {
         add_sprite(canvas, &sprite, &run);
         return;
@@ -353,7 +354,7 @@ void rf_splat_highlights(const struct rf_splat *splat, const struct rf_tile_plan
     const int x0 = view->x0 + tx * RF_TILE - reach - RF_HIGHLIGHT_RUN;
     const int y0 = rf_larger(view->y0 + ty * RF_TILE - reach - RF_HIGHLIGHT_STACK, 0);
     const int y1 = rf_smaller(view->y0 + (ty + 1) * RF_TILE + reach, view->photo_height);
-    const unsigned wide = (unsigned)(RF_TILE + 2 * reach + RF_HIGHLIGHT_RUN);
+    const int x1 = x0 + RF_TILE + 2 * reach + RF_HIGHLIGHT_RUN;
     struct canvas *const canvas = share; /* not all of it is set */
 
     if (!plan->highlight)
@@ -364,13 +365,16 @@ void rf_splat_highlights(const struct rf_splat *splat, const struct rf_tile_plan
     rf_visibility_begin(&canvas->tile, splat, plan, tx, ty);
     for (int part = y0 / RF_HIGHLIGHT_ROWS; part * RF_HIGHLIGHT_ROWS < y1; part++) {
         const struct rf_highlight_list *list = &splat->window.highlights->part[part];
-        const struct rf_highlight *run = list->run, *const end = run + list->count;
+        struct rf_highlight *const end = list->run + list->count;
+        struct rf_highlight *run = rf_first_run(list->run, end, x0, y0);
 
-        while (run < end && run->y < y0)
-            run++;
-        for (; run < end && run->y < y1; run++)
-            if ((unsigned)(run->x - x0) < wide)
-                draw_highlight(canvas, run);
+        while (run < end && run->y < y1)
+            if (run->x < x0)
+                run = rf_first_run(run, end, x0, run->y);
+            else if (run->x >= x1)
+                run = rf_first_run(run, end, x0, run->y + 1);
+            else
+                draw_highlight(canvas, run++);
     }
     add_rest(canvas);
 }

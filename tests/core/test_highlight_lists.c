@@ -1,0 +1,106 @@
+/* test_highlight_lists.c: runs of highlights are found in their list, and rows of one highlight are
+ * splatted as one, however many runs lie between them. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+#include <string.h>
+
+#include "highlights/highlights.h"
+#include "highlights/in_window.h"
+#include "support/places.h"
+
+static uint32_t noise(uint32_t *seed)
+{
+    *seed = *seed * 1664525 + 1013904223;
+    return *seed >> 8;
+}
+
+/* Each place around, by a search from the first run on. */
+static void the_first_run_is_found(void **state)
+{
+    enum { RUNS = 40, SIDE = 12 };
+    static struct rf_highlight run[RUNS];
+    uint32_t seed = 5;
+
+    (void)state;
+    for (int count = 0; count <= RUNS; count++) {
+        for (int i = 0; i < count; i++)
+            run[i] = (struct rf_highlight){.x = (uint16_t)(noise(&seed) % SIDE),
+                                           .y = (uint16_t)(noise(&seed) % SIDE)};
+        rf_sort_places(run, (uint32_t)count, sizeof *run);
+        for (int y = -1; y <= SIDE; y++)
+            for (int x = -1; x <= SIDE; x++) {
+                int first = 0;
+
+                while (first < count &&
+                       (run[first].y < y || (run[first].y == y && run[first].x < x)))
+                    first++;
+                assert_ptr_equal(rf_first_run(run, run + count, x, y), run + first);
+            }
+    }
+}
+
+/* A window of 16 rows that is all one highlight, in runs of 4 pixels: more in a row than a byte
+ * counts. */
+static void rows_of_wide_photos_are_stacked(void **state)
+{
+    enum { WIDTH = 4096, COUNT = 4, IN_ROW = WIDTH / COUNT, BLUR = 40 * 256 };
+    const uint32_t runs = IN_ROW * RF_TILE;
+    int16_t *const blur = malloc((size_t)WIDTH * RF_TILE * sizeof *blur);
+    struct rf_highlight *const run = malloc(runs * sizeof *run);
+    struct rf_bins *const bins = calloc(WIDTH / RF_TILE, sizeof *bins);
+    static struct rf_highlight_list part[RF_HIGHLIGHT_PARTS];
+    struct rf_highlights highlights = {part, NULL};
+    const struct rf_viewport view = {.photo_width = WIDTH,
+                                     .photo_height = RF_TILE,
+                                     .width = WIDTH,
+                                     .height = RF_TILE,
+                                     .tiles_x = WIDTH / RF_TILE,
+                                     .tiles_y = 1};
+    struct rf_highlight_window window = {.view = &view,
+                                         .blur = {blur, WIDTH, 0},
+                                         .highlights = &highlights,
+                                         .bins = bins,
+                                         .channels = 3};
+    struct rf_pool pool;
+    const struct rf_executor exec = {.pool = &pool};
+
+    (void)state;
+    assert_non_null(blur);
+    assert_non_null(run);
+    assert_non_null(bins);
+    part[0] = (struct rf_highlight_list){run, 0, runs};
+    assert_int_equal(rf_pool_start(&pool, 1, NULL, NULL), REFOCUS_OK);
+    for (int i = 0; i < WIDTH * RF_TILE; i++)
+        blur[i] = BLUR;
+    for (uint32_t i = 0; i < runs; i++) {
+        const struct rf_highlight one = {.x = (uint16_t)(i % IN_ROW * COUNT),
+                                         .y = (uint16_t)(i / IN_ROW),
+                                         .count = COUNT,
+                                         .size = UINT8_MAX};
+        rf_list_highlight(&highlights, &one);
+    }
+    rf_sort_highlights(&exec, &highlights);
+    rf_mark_highlights(&exec, &window, true);
+    for (uint32_t i = 0; i < runs; i++) {
+        assert_int_equal(run[i].blur, BLUR);
+        assert_int_equal(run[i].rows, run[i].y % RF_HIGHLIGHT_STACK ? 0 : RF_HIGHLIGHT_STACK);
+        assert_int_equal(run[i].below, (run[i].y + 1) % RF_HIGHLIGHT_STACK ? IN_ROW : 0);
+    }
+    rf_pool_end(&pool);
+    free(blur);
+    free(run);
+    free(bins);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_first_run_is_found),
+        cmocka_unit_test(rows_of_wide_photos_are_stacked),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
