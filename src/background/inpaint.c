@@ -49,9 +49,9 @@ static void push_rows(const struct rf_executor *exec, const struct rf_pyramid *p
 }
 
 void rf_background_push_band(const struct rf_executor *exec, const struct rf_pyramid *pyramid,
-                             int band, int levels)
+                             int band, int from, int to)
 {
-    for (int i = 0; i < levels && i < RF_BAND_LEVELS; i++) {
+    for (int i = from; i < to && i < RF_BAND_LEVELS; i++) {
         const int height = pyramid->level[i + 1].height, end = (band + 1) * RF_TILE >> (i + 1);
 
         push_rows(exec, pyramid, i, band * RF_TILE >> (i + 1), end < height ? end : height);

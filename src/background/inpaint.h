@@ -19,11 +19,11 @@
 #include "image/viewport.h"
 #include "support/executor.h"
 
-/* Push as far as a row of tiles goes by itself: up to level `levels`, and RF_BAND_LEVELS, whose
- * pixels are as high as the row. */
+/* Push as far as a row of tiles goes by itself: from a level to another, or to RF_BAND_LEVELS,
+ * whose pixels are as high as the row. */
 enum { RF_BAND_LEVELS = 4 };
 void rf_background_push_band(const struct rf_executor *exec, const struct rf_pyramid *pyramid,
-                             int band, int levels);
+                             int band, int from, int to);
 
 /* Push from a level to another, and pull from `to` down to `from`; level 0 gets its border. All of
  * it is from 0 to pyramid->levels. */

@@ -41,19 +41,28 @@ static int excess_of(float exact)
     return light > 0 ? (int)((light < most ? light : most) + 0.5f) : 0;
 }
 
+void rf_known_excess(const struct rf_deep *photo, int x, int y, int excess[3])
+{
+    float exact[3];
+
+    rf_deep_light(photo, x, y, exact);
+    for (int c = 0; c < 3; c++)
+        excess[c] = excess_of(exact[c]);
+}
+
 /* Reads the pixels x0 <= x < x1 of row y. Returns how many are above white. */
 static int read_row(const struct rf_deep *photo, struct patch *patch, int at, int x0, int x1, int y)
 {
     int count = 0;
 
     for (int x = x0; x < x1; x++, at++) {
-        float exact[3];
+        int excess[3];
 
         patch->any[at] = false;
-        rf_deep_light(photo, x, y, exact);
+        rf_known_excess(photo, x, y, excess);
         for (int c = 0; c < 3; c++) {
-            patch->excess[c][at] = excess_of(exact[c]);
-            patch->any[at] |= patch->excess[c][at] > LEAST;
+            patch->excess[c][at] = excess[c];
+            patch->any[at] |= excess[c] > LEAST;
         }
         count += patch->any[at];
     }
@@ -246,11 +255,11 @@ void rf_known_light(const struct rf_deep *photo, const struct rf_highlight *run,
 {
     light[0] = light[1] = light[2] = 0;
     for (int i = from; i < to; i++) {
-        float exact[3];
+        int excess[3];
 
-        rf_deep_light(photo, run->x + i, run->y, exact);
+        rf_known_excess(photo, run->x + i, run->y, excess);
         for (int c = 0; c < 3; c++)
-            light[c] += excess_of(exact[c]);
+            light[c] += excess[c];
     }
 }
 
@@ -272,8 +281,7 @@ struct boost {
     int most;
 };
 
-/* Whether a tile of the window is left to the rays. */
-static bool is_left(const struct rf_highlight_window *w, int tx, int ty)
+bool rf_known_is_left(const struct rf_highlight_window *w, int tx, int ty)
 {
     const struct rf_viewport *view = w->view;
     const int tiles_x = (view->photo_width + RF_TILE - 1) / RF_TILE;
@@ -287,7 +295,7 @@ static bool is_left(const struct rf_highlight_window *w, int tx, int ty)
 static bool is_near_left(const struct rf_highlight_window *w, int tx, int ty)
 {
     for (int i = 0; i < 9; i++)
-        if (is_left(w, tx + i % 3 - 1, ty + i / 3 - 1))
+        if (rf_known_is_left(w, tx + i % 3 - 1, ty + i / 3 - 1))
             return true;
     return false;
 }
@@ -307,7 +315,7 @@ static void read_left(const struct rf_highlight_window *w, int tx, int ty, struc
             rf_smaller(rf_smaller((nx + 1) * RF_TILE, x0 + PATCH), view->width),
             rf_smaller(rf_smaller((ny + 1) * RF_TILE, y0 + PATCH), view->height)};
 
-        for (int y = part.y0; y < part.y1 && part.x0 < part.x1 && is_left(w, nx, ny); y++)
+        for (int y = part.y0; y < part.y1 && part.x0 < part.x1 && rf_known_is_left(w, nx, ny); y++)
             read_row(w->known, patch, (y - y0) * PATCH + part.x0 - x0, view->x0 + part.x0,
                      view->x0 + part.x1, view->y0 + y);
     }
@@ -399,7 +407,7 @@ void rf_raise_known(const struct rf_executor *exec, const struct rf_highlight_wi
 
     for (int ty = 0; ty < view->tiles_y && !rf_cancelled(exec); ty++)
         for (int tx = 0; tx < view->tiles_x; tx++)
-            if (is_left(window, tx, ty))
+            if (rf_known_is_left(window, tx, ty))
                 rf_force_foreground(view, foreground,
                                     (struct rf_rect){tx * RF_TILE - REACH, ty * RF_TILE - REACH,
                                                      (tx + 1) * RF_TILE + REACH,

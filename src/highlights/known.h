@@ -8,6 +8,7 @@
 #ifndef RF_HIGHLIGHTS_KNOWN_H
 #define RF_HIGHLIGHTS_KNOWN_H
 
+#include "background/pyramid.h"
 #include "highlights/highlights.h"
 
 /* The gain that lists of known light are for: they hold up to 65535 (RF_KNOWN_GAIN - 1) / 3 of Q12
@@ -26,12 +27,18 @@ void rf_lay_out_known(struct rf_highlights *highlights, struct rf_arena *arena, 
 void rf_list_known(const struct rf_executor *exec, const struct rf_deep *photo,
                    struct rf_highlights *highlights);
 
+/* The light above white of a pixel of the photo, Q12. */
+void rf_known_excess(const struct rf_deep *photo, int x, int y, int excess[3]);
+
 /* The light above white of pixels `from` to `to` - 1 of a run, in all, Q12. */
 void rf_known_light(const struct rf_deep *photo, const struct rf_highlight *run, int from, int to,
                     double light[3]);
 
 /* Whether any light of the photo is left to the rays. */
 bool rf_leaves_known(const struct rf_highlight_window *window);
+
+/* Whether a tile of the window is left to the rays. */
+bool rf_known_is_left(const struct rf_highlight_window *window, int tx, int ty);
 
 /* Adds the light that is left to the rays to `smooth`, up to `most` there; notes the brightest in
  * bins. `gap` as of rf_boost_highlights(). */
@@ -41,5 +48,13 @@ void rf_boost_known(const struct rf_executor *exec, const struct rf_highlight_wi
 /* Counts its tiles as foreground: see rf_raise_highlights(). */
 void rf_raise_known(const struct rf_executor *exec, const struct rf_highlight_window *window,
                     const struct rf_foreground_cells *foreground);
+
+/* The hidden background is inpainted from light up to white. Adds the light above it that wide
+ * areas have, in a row of tiles, to level 1 of the pyramid that has been pushed from level 0: up to
+ * 4 times white in all. Afterwards notes in bins how bright what was inpainted is there. */
+void rf_push_known(const struct rf_highlight_window *window, const struct rf_pyramid *pyramid,
+                   int band);
+void rf_note_behind(const struct rf_executor *exec, const struct rf_highlight_window *window,
+                    struct rf_light_q12 behind, int band);
 
 #endif

@@ -366,7 +366,7 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
             r->cache = (struct rf_pass_cache){0};
         make_in_window(f, &parts, layers);
     }
-    if (layers && !rf_cancelled(&r->exec) && !r->cache.boosted && f->bright != RF_WHITE) {
+    if (layers && !rf_cancelled(&r->exec) && !r->cache.boosted && rf_boosts(f)) {
         rf_pass_boost(f);
         r->cache.boosted = true;
     }

@@ -191,11 +191,18 @@ static void mark_highlights(struct rf_frame *f)
     f->bright = !rf_leaves_known(window) ? RF_WHITE : rf_is_search(f) ? RF_BRIGHTER : RF_BRIGHTEST;
     if (f->params->highlight_gain <= 1 || !rf_has_highlights(window->highlights, window->view))
         return;
+    if (window->known) /* the hidden background is inpainted from it, too */
+        f->bright = (enum rf_bright)rf_larger(f->bright, RF_BRIGHT);
     rf_mark_highlights(f->exec, window, f->splats);
     if (f->splats)
         return;
     rf_note_undersampled(f->exec, window, rf_ray_gap(f->params->rays));
     f->bright = (enum rf_bright)rf_larger(f->bright, rf_bright_of(rf_gathered_gain(f)));
+}
+
+bool rf_boosts(const struct rf_frame *f)
+{
+    return f->bright != RF_WHITE && (!f->splats || rf_leaves_known(&f->splat.window));
 }
 
 void rf_pass_boost(struct rf_frame *f)

@@ -13,10 +13,27 @@
 struct mark {
     const struct refocus_renderer *r;
     struct rf_mark pass;
-    const struct rf_behind_pass *behind; /* NULL: the scene has none */
-    const struct rf_thin_pass *thin;     /* NULL: it hides nothing */
+    const struct rf_behind_pass *behind;     /* NULL: the scene has none */
+    const struct rf_thin_pass *thin;         /* NULL: it hides nothing */
+    const struct rf_highlight_window *known; /* NULL: no light above white is known */
     int levels;
 };
+
+/* The window, if the photo has light above white; else NULL. */
+static const struct rf_highlight_window *known_of(const struct rf_frame *f)
+{
+    return f->splat.window.known && f->bright != RF_WHITE ? &f->splat.window : NULL;
+}
+
+static void push_band(const struct mark *mark, int band)
+{
+    const struct refocus_renderer *r = mark->r;
+
+    rf_background_push_band(&r->exec, &r->pyramid, band, 0, rf_smaller(mark->levels, 1));
+    if (mark->known)
+        rf_push_known(mark->known, &r->pyramid, band);
+    rf_background_push_band(&r->exec, &r->pyramid, band, 1, mark->levels);
+}
 
 static void dilate_item(void *context, int upwards, int worker)
 {
@@ -39,7 +56,7 @@ static void mark_band(void *context, int band, int worker)
         rf_behind_rows(&r->exec, &r->view, mark->behind, rf_band_start(band),
                        rf_band_end(&r->view, band), worker);
     if (!r->yuv->on)
-        rf_background_push_band(&r->exec, &r->pyramid, band, mark->levels);
+        push_band(mark, band);
 }
 
 static void mark_and_push(struct refocus_renderer *r, struct mark *mark)
@@ -68,6 +85,7 @@ void rf_pass_mark_background(struct rf_frame *f, int levels)
     struct mark mark = {.r = r,
                         .behind = r->photo.behind.width ? &behind : NULL,
                         .thin = f->textured && f->thin.disc_scale ? &f->thin : NULL,
+                        .known = known_of(f),
                         .pass = {.planes = r->yuv->on ? 1 : 3,
                                  .reach = rf_mark_reach(f->plan.plain, r->view.pad, f->focus.unit),
                                  .blur = r->blur,
@@ -88,9 +106,12 @@ void rf_pass_mark_background(struct rf_frame *f, int levels)
 
 static void note_band(void *context, int band, int worker)
 {
-    struct refocus_renderer *r = context;
+    const struct rf_frame *f = context;
+    struct refocus_renderer *r = rf_renderer_of(f);
 
     (void)worker;
+    if (known_of(f))
+        rf_note_behind(&r->exec, known_of(f), r->background.light, band);
     rf_note_background_blur(&r->view, r->background.blur, r->bins, band);
     rf_foreground_rows(&r->exec, &r->view, r->blur, r->background.blur, &r->foreground, band);
 }
@@ -155,7 +176,7 @@ void rf_pass_inpaint(struct rf_frame *f, int levels)
     else
         rf_background_pull(&r->exec, &r->view, &r->pyramid, 0, levels, apart_of(f));
     rf_plane_begin(&r->lifetimes, RF_PLANE_FOREGROUND);
-    rf_pool_run(&r->pool, note_band, r, rf_bands(&r->view));
+    rf_pool_run(&r->pool, note_band, f, rf_bands(&r->view));
     if (f->bright != RF_WHITE && !f->splats)
         rf_raise_highlights(f->exec, &f->splat.window, &r->foreground, rf_ray_gap(f->params->rays));
     if (f->bright != RF_WHITE && rf_leaves_known(&f->splat.window))

@@ -189,7 +189,7 @@ static void known_band(void *context, int band, int worker)
     (void)worker;
     rf_known_mark_rows(&r->in_place.known, &r->view, &pass, rf_band_start(band),
                        rf_band_end(&r->view, band));
-    rf_background_push_band(&r->exec, &r->pyramid, band, RF_KEPT - 1);
+    rf_background_push_band(&r->exec, &r->pyramid, band, 0, RF_KEPT - 1);
 }
 
 /* Computes the background of the window from the marks and levels that were stored. */

@@ -1,0 +1,159 @@
+/* test_deep_behind.c: a sky brighter than white is as bright beside what stands in focus before it
+ * as it is elsewhere: what is inpainted behind that is brighter than white, too. A lamp is not
+ * spread there. */
+#include "deep_pictures.h"
+
+enum { W = 240, H = 240 };
+static const float sky = 2.5f, dark = 0.125f;
+
+/* The square of the photo that stands in focus begins at (x, y). */
+struct square {
+    int x, y, side;
+};
+
+static bool is_before(const struct square *square, int x, int y)
+{
+    return x >= square->x && x < square->x + square->side && y >= square->y &&
+           y < square->y + square->side;
+}
+
+/* Renders a dark square in focus before `photo`. */
+static struct deep render_before(const struct deep *photo, const struct square *square, float blur,
+                                 int blades)
+{
+    struct deep out = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H);
+    static uint16_t map[W * H];
+    const struct refocus_disparity disparity = refocus_disparity16(map, W, H, 2 * W);
+    struct refocus_settings params = refocus_settings_default(1, blur);
+    struct refocus_aperture_params shape = refocus_aperture_params_default();
+    struct refocus_renderer *renderer = deep_renderer(W, H, blur, 2);
+    struct refocus_aperture *aperture;
+
+    for (int i = 0; i < W * H; i++) {
+        map[i] = is_before(square, i % W, i / W) ? 65535 : 0;
+        for (int c = 0; c < 3 && map[i]; c++)
+            deep_put(photo, i % W, i / W, c, dark);
+    }
+    shape.blades = blades;
+    assert_int_equal(refocus_aperture_create(&aperture, &shape), REFOCUS_OK);
+    params.render.aperture = aperture;
+    assert_int_equal(refocus_prepare(renderer, &photo->image, &disparity), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(renderer, &params, &out.image), REFOCUS_OK);
+    refocus_aperture_destroy(&aperture);
+    refocus_renderer_destroy(&renderer);
+    return out;
+}
+
+/* Compares what lies up to 30 pixels beside the square with the sky. */
+static void expect_sky(struct square square, float blur, int blades)
+{
+    struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H), out;
+    double worst = 0;
+
+    deep_fill(&photo, sky);
+    out = render_before(&photo, &square, blur, blades);
+    for (int i = 0; i < W * H; i++) {
+        const int x = i % W, y = i / W;
+        const double off = fabs((double)deep_get(&out, x, y, 1) / (double)sky - 1);
+
+        if (is_before(&square, x, y))
+            assert_true(deep_get(&out, x, y, 1) == dark);
+        else if (x >= square.x - 30 && x < square.x + square.side + 30 && y >= square.y - 30 &&
+                 y < square.y + square.side + 30)
+            worst = off > worst ? off : worst;
+    }
+    if (worst > 0.05)
+        fail_msg("beside a square at (%d, %d) the sky is off by %.3f at a blur of %g, %d blades",
+                 square.x, square.y, worst, (double)blur, blades);
+    free(photo.memory);
+    free(out.memory);
+}
+
+/* Squares that tiles begin with, and others; one at a side of the photo, where light is left to the
+ * rays. */
+static void skies(void **state)
+{
+    static const struct square squares[] = {{96, 96, 64}, {90, 85, 61}, {96, 0, 64}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof squares / sizeof *squares; i++) {
+        expect_sky(squares[i], 6, 0);
+        expect_sky(squares[i], 20, 0);
+        expect_sky(squares[i], 60, 6);
+    }
+}
+
+/* A lamp that is beside the square, three pixels wide, adds no more than its own light. */
+static void lamps(void **state)
+{
+    const struct square square = {96, 96, 64};
+    struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H), out;
+    double sum = 0;
+
+    (void)state;
+    deep_fill(&photo, dark);
+    for (int i = 0; i < 3 * 9; i++)
+        deep_put(&photo, 90 + i / 3 % 3, 120 + i / 9, i % 3, 30);
+    out = render_before(&photo, &square, 20, 0);
+    for (int i = 0; i < W * H; i++)
+        sum += (double)deep_get(&out, i % W, i / W, 1) - (double)dark;
+    assert_true(sum < 9 * 30);
+    free(photo.memory);
+    free(out.memory);
+}
+
+/* One thread and four, the whole and a part, after another focus and at once: the same. */
+static void same_bytes(void **state)
+{
+    enum { WIDE = 600, HIGH = 400, X = 230, Y = 150, PART = 70 };
+    struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, WIDE, HIGH);
+    struct deep one = deep_make(REFOCUS_FORMAT_RGB_FLOAT, WIDE, HIGH);
+    struct deep other = deep_make(REFOCUS_FORMAT_RGB_FLOAT, WIDE, HIGH);
+    struct deep part = deep_make(REFOCUS_FORMAT_RGB_FLOAT, PART, PART);
+    uint16_t *const map = malloc(sizeof *map * WIDE * HIGH);
+    const struct refocus_disparity disparity = refocus_disparity16(map, WIDE, HIGH, 2 * WIDE);
+    const struct square square = {250, 100, 90};
+    struct refocus_renderer *single = deep_renderer(WIDE, HIGH, 8, 1);
+    struct refocus_renderer *many = deep_renderer(WIDE, HIGH, 8, 4);
+    struct refocus_settings region = refocus_settings_default(1, 8);
+    uint32_t seed = 3;
+
+    (void)state;
+    assert_non_null(map);
+    for (int i = 0; i < WIDE * HIGH; i++) {
+        map[i] = is_before(&square, i % WIDE, i / WIDE) ? 65535 : (uint16_t)(i / WIDE * 20);
+        for (int c = 0; c < 3; c++) {
+            seed = seed * 1664525 + 1013904223;
+            deep_put(&photo, i % WIDE, i / WIDE, c,
+                     map[i] == 65535 ? dark : sky * (float)(seed >> 24) / 128);
+        }
+    }
+    assert_int_equal(refocus_prepare(single, &photo.image, &disparity), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(many, &photo.image, &disparity), REFOCUS_OK);
+    assert_int_equal(deep_render(single, 1, 8, &one.image), REFOCUS_OK);
+    assert_int_equal(deep_render(many, 0.2f, 5, &other.image), REFOCUS_OK);
+    assert_int_equal(deep_render(many, 1, 8, &other.image), REFOCUS_OK);
+    assert_memory_equal(one.memory, other.memory, one.size);
+    region.render.region_x = X;
+    region.render.region_y = Y;
+    region.render.region_width = region.render.region_height = PART;
+    assert_int_equal(refocus_prepare(many, &photo.image, &disparity), REFOCUS_OK);
+    assert_int_equal(refocus_render_settings(many, &region, &part.image), REFOCUS_OK);
+    for (int y = 0; y < PART; y++)
+        assert_memory_equal(deep_at(&one, X, Y + y, 0), deep_at(&part, 0, y, 0), PART * 12);
+    refocus_renderer_destroy(&single);
+    refocus_renderer_destroy(&many);
+    free(photo.memory);
+    free(one.memory);
+    free(other.memory);
+    free(part.memory);
+    free(map);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(skies), cmocka_unit_test(lamps),
+                                       cmocka_unit_test(same_bytes)};
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
