@@ -1,5 +1,8 @@
 /* encode_deep.c: writes means to an output picture of more than 8 bits a channel. */
+#include <stdlib.h>
+
 #include "gather/frame.h"
+#include "highlights/known.h"
 #include "image/format.h"
 #include "support/bayer.h"
 
@@ -12,17 +15,35 @@ struct means {
     int scale;
 };
 
+/* Whether a mean is the light of a pixel. */
+static bool is_own(const struct rf_light_q12 *light, const struct means *m, ptrdiff_t at, int x,
+                   int y)
+{
+    bool same = true;
+
+    for (int c = 0; same && c < 3; c++)
+        same = m->scale * m->mean[c][at] == 4 * light->channel[c][y * light->stride + x];
+    return same;
+}
+
+/* Whether a pixel is in focus: what rays hit there has the light above white that it has itself
+ * (highlights/known.h). */
+static bool is_in_focus(const struct rf_frame *f, int x, int y)
+{
+    const int blur = rf_in_pixels(f->blur.at[y * f->blur.stride + x], f->blur.unit);
+
+    return abs(blur) < RF_KNOWN_FROM && !f->premultiplied;
+}
+
 /* The light of a pixel: its own, as exact as the photo has it, where nothing changed it. Returns
  * whether nothing did. */
 static bool light_of(const struct rf_frame *f, const struct means *m, int x, int y, float light[3])
 {
     const struct rf_deep *in = f->deep;
     const ptrdiff_t at = (y - m->rect.y0) * m->pitch + x - m->rect.x0;
-    const ptrdiff_t own = y * f->light.stride + x;
-    bool same = in->on;
+    const bool same = in->on && (is_own(&f->light, m, at, x, y) ||
+                                 (is_in_focus(f, x, y) && is_own(&f->smooth, m, at, x, y)));
 
-    for (int c = 0; same && c < 3; c++)
-        same = m->scale * m->mean[c][at] == 4 * f->light.channel[c][own];
     if (same)
         rf_deep_light(in, f->view->x0 + x, f->view->y0 + y, light);
     else

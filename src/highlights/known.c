@@ -277,6 +277,7 @@ struct boost {
     const struct rf_executor *exec;
     const struct rf_highlight_window *window;
     struct rf_light_q12 smooth;
+    struct rf_background background;
     double gap;
     int most;
 };
@@ -343,20 +344,66 @@ static void mean_around(const struct boost *b, const struct patch *patch, int x,
         mean[c] = (int)((sum[c] + count / 2) / count);
 }
 
-static void boost_tile(void *context, int item, int worker)
+/* Adds light to a pixel. Returns the brightest of its channels. */
+static int add_light(const struct boost *b, int x, int y, const int more[3])
 {
-    const struct boost *b = context;
+    int brightest = 0;
+
+    for (int c = 0; c < 3; c++) {
+        uint16_t *light = &b->smooth.channel[c][y * b->smooth.stride + x];
+        const int64_t sum = *light + (int64_t)more[c];
+
+        *light = (uint16_t)(sum < b->most ? sum : b->most);
+        brightest = rf_larger(brightest, *light);
+    }
+    return brightest;
+}
+
+/* Rays may find a pixel that nothing hides in the hidden background. */
+static void copy_behind(const struct boost *b, int x, int y)
+{
+    const struct rf_background *const to = &b->background;
+
+    if (to->blur.at[y * to->blur.stride + x] != b->window->blur.at[y * b->window->blur.stride + x])
+        return;
+    for (int c = 0; c < 3; c++)
+        to->light.channel[c][y * to->light.stride + x] =
+            b->smooth.channel[c][y * b->smooth.stride + x];
+}
+
+/* Adds their own light to pixels in focus. It shows where something before them is blurred: there
+ * it is what some of the rays hit. */
+static int boost_in_focus(const struct boost *b, int tx, int ty)
+{
     const struct rf_highlight_window *w = b->window;
     const struct rf_viewport *view = w->view;
-    const int tx = item % view->tiles_x, ty = item / view->tiles_x;
+    const int x1 = rf_smaller((tx + 1) * RF_TILE, view->width);
+    const int y1 = rf_smaller((ty + 1) * RF_TILE, view->height);
+    int brightest = 0;
+
+    for (int y = ty * RF_TILE; y < y1; y++)
+        for (int x = tx * RF_TILE; x < x1; x++) {
+            int own[3];
+
+            if (abs(rf_window_blur(w, x, y)) >= RF_KNOWN_FROM)
+                continue;
+            rf_known_excess(w->known, view->x0 + x, view->y0 + y, own);
+            brightest = rf_larger(brightest, add_light(b, x, y, own));
+            copy_behind(b, x, y);
+        }
+    return brightest;
+}
+
+/* Light that is left to the rays and out of focus becomes the mean around. */
+static int boost_left(const struct boost *b, int tx, int ty)
+{
+    const struct rf_highlight_window *w = b->window;
+    const struct rf_viewport *view = w->view;
     const int x1 = rf_smaller((tx + 1) * RF_TILE, view->width);
     const int y1 = rf_smaller((ty + 1) * RF_TILE, view->height);
     struct patch patch;
     int brightest = 0;
 
-    (void)worker;
-    if (!is_near_left(w, tx, ty))
-        return;
     read_left(w, tx, ty, &patch);
     for (int y = ty * RF_TILE; y < y1; y++)
         for (int x = tx * RF_TILE; x < x1; x++) {
@@ -368,15 +415,22 @@ static void boost_tile(void *context, int item, int worker)
             if (blur < RF_KNOWN_FROM)
                 continue;
             mean_around(b, &patch, x, y, at, half < REACH ? half : REACH, mean);
-            for (int c = 0; c < 3; c++) {
-                uint16_t *light = &b->smooth.channel[c][y * b->smooth.stride + x];
-                const int64_t sum = *light + (int64_t)mean[c];
-
-                *light = (uint16_t)(sum < b->most ? sum : b->most);
-                brightest = rf_larger(brightest, *light);
-            }
+            brightest = rf_larger(brightest, add_light(b, x, y, mean));
         }
-    w->bins[item].brightest = (uint16_t)rf_larger(w->bins[item].brightest, brightest);
+    return brightest;
+}
+
+static void boost_tile(void *context, int item, int worker)
+{
+    const struct boost *b = context;
+    const struct rf_highlight_window *w = b->window;
+    const int tx = item % w->view->tiles_x, ty = item / w->view->tiles_x;
+    uint16_t *const brightest = &w->bins[item].brightest;
+
+    (void)worker;
+    *brightest = (uint16_t)rf_larger(*brightest, boost_in_focus(b, tx, ty));
+    if (is_near_left(w, tx, ty))
+        *brightest = (uint16_t)rf_larger(*brightest, boost_left(b, tx, ty));
 }
 
 /* Rays read beyond the window's sides, too. */
@@ -386,15 +440,19 @@ static void extend_band(void *context, int band, int worker)
     const struct rf_viewport *view = b->window->view;
 
     (void)worker;
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         rf_extend_rows(view, b->smooth.channel[c], b->smooth.stride, rf_band_start(band),
                        rf_band_end(view, band));
+        rf_extend_rows(view, b->background.light.channel[c], b->background.light.stride,
+                       rf_band_start(band), rf_band_end(view, band));
+    }
 }
 
 void rf_boost_known(const struct rf_executor *exec, const struct rf_highlight_window *window,
-                    struct rf_light_q12 smooth, double gap, int most)
+                    struct rf_light_q12 smooth, struct rf_background background, double gap,
+                    int most)
 {
-    struct boost boost = {exec, window, smooth, gap, most};
+    struct boost boost = {exec, window, smooth, background, gap, most};
 
     rf_pool_run(exec->pool, boost_tile, &boost, window->view->tiles_x * window->view->tiles_y);
     rf_pool_run(exec->pool, extend_band, &boost, rf_bands(window->view));

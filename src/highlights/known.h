@@ -40,10 +40,12 @@ bool rf_leaves_known(const struct rf_highlight_window *window);
 /* Whether a tile of the window is left to the rays. */
 bool rf_known_is_left(const struct rf_highlight_window *window, int tx, int ty);
 
-/* Adds the light that is left to the rays to `smooth`, up to `most` there; notes the brightest in
- * bins. `gap` as of rf_boost_highlights(). */
+/* Adds to `smooth`, up to `most` there, the light that is left to the rays and that of what is in
+ * focus, this to the hidden background, too; notes the brightest in bins. `gap` as of
+ * rf_boost_highlights(). */
 void rf_boost_known(const struct rf_executor *exec, const struct rf_highlight_window *window,
-                    struct rf_light_q12 smooth, double gap, int most);
+                    struct rf_light_q12 smooth, struct rf_background background, double gap,
+                    int most);
 
 /* Counts its tiles as foreground: see rf_raise_highlights(). */
 void rf_raise_known(const struct rf_executor *exec, const struct rf_highlight_window *window,
@@ -52,8 +54,8 @@ void rf_raise_known(const struct rf_executor *exec, const struct rf_highlight_wi
 /* The hidden background is inpainted from light up to white. Adds the light above it that wide
  * areas have, in a row of tiles, to level 1 of the pyramid that has been pushed from level 0: up to
  * 4 times white in all. Afterwards notes in bins how bright what was inpainted is there. */
-void rf_push_known(const struct rf_highlight_window *window, const struct rf_pyramid *pyramid,
-                   int band);
+void rf_push_known(const struct rf_highlight_window *window, struct rf_disparity_q16 disparity,
+                   const struct rf_pyramid *pyramid, int band);
 void rf_note_behind(const struct rf_executor *exec, const struct rf_highlight_window *window,
                     struct rf_light_q12 behind, int band);
 

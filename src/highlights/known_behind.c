@@ -14,8 +14,12 @@
 enum { MOST = 4 * RF_LIGHT_MAX };
 static_assert(4 * MOST + 2 <= UINT16_MAX, "four children of push fit 16 bits");
 
+/* The farthest disparities, of 65535. */
+enum { FAR = 4096 };
+
 struct behind {
     const struct rf_highlight_window *window;
+    struct rf_disparity_q16 disparity;
     const struct rf_level *fine, *coarse;
 };
 
@@ -25,14 +29,15 @@ struct tile {
     int excess[3][RF_TILE * RF_TILE];
 };
 
-/* Whether a pixel is behind the focus, and nothing hides what is farther there. Bright things in
- * focus and before it hide what is dark. */
+/* Whether a pixel is behind the focus, or as far as any, and hides nothing that is farther. Other
+ * bright things hide what is dark. */
 static bool is_background(const struct behind *b, int x, int y)
 {
     const struct rf_blur_q8 *const own = &b->window->blur, *const background = &b->fine->blur;
     const int blur = own->at[y * own->stride + x];
 
-    return rf_in_pixels(blur, own->unit) >= RF_KNOWN_FROM &&
+    return (rf_in_pixels(blur, own->unit) >= RF_KNOWN_FROM ||
+            b->disparity.at[y * b->disparity.stride + x] < FAR) &&
            background->at[y * background->stride + x] == blur;
 }
 
@@ -126,10 +131,10 @@ static void add_to_parents(const struct behind *b, const struct tile *tile)
         }
 }
 
-void rf_push_known(const struct rf_highlight_window *window, const struct rf_pyramid *pyramid,
-                   int band)
+void rf_push_known(const struct rf_highlight_window *window, struct rf_disparity_q16 disparity,
+                   const struct rf_pyramid *pyramid, int band)
 {
-    const struct behind b = {window, &pyramid->level[0], &pyramid->level[1]};
+    const struct behind b = {window, disparity, &pyramid->level[0], &pyramid->level[1]};
 
     for (int tx = 0; tx < window->view->tiles_x && pyramid->levels > 0; tx++) {
         const bool is_left = rf_known_is_left(window, tx, band);

@@ -202,7 +202,7 @@ static void mark_highlights(struct rf_frame *f)
 
 bool rf_boosts(const struct rf_frame *f)
 {
-    return f->bright != RF_WHITE && (!f->splats || rf_leaves_known(&f->splat.window));
+    return f->bright != RF_WHITE && (!f->splats || f->splat.window.known);
 }
 
 void rf_pass_boost(struct rf_frame *f)
@@ -212,8 +212,8 @@ void rf_pass_boost(struct rf_frame *f)
 
     if (f->bright != RF_WHITE && !f->splats)
         rf_boost_highlights(f->exec, &f->splat.window, f->smooth, rf_gathered_gain(f), gap, most);
-    if (f->bright != RF_WHITE && rf_leaves_known(&f->splat.window))
-        rf_boost_known(f->exec, &f->splat.window, f->smooth, gap, most);
+    if (f->bright != RF_WHITE && f->splat.window.known)
+        rf_boost_known(f->exec, &f->splat.window, f->smooth, f->background, gap, most);
 }
 
 /* Afterwards the light is the photo's again, whatever happens, as the next frame needs it too. */

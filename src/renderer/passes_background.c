@@ -31,7 +31,7 @@ static void push_band(const struct mark *mark, int band)
 
     rf_background_push_band(&r->exec, &r->pyramid, band, 0, rf_smaller(mark->levels, 1));
     if (mark->known)
-        rf_push_known(mark->known, &r->pyramid, band);
+        rf_push_known(mark->known, r->disparity, &r->pyramid, band);
     rf_background_push_band(&r->exec, &r->pyramid, band, 1, mark->levels);
 }
 

@@ -1,6 +1,6 @@
-/* test_deep_behind.c: a sky brighter than white is as bright beside what stands in focus before it
- * as it is elsewhere: what is inpainted behind that is brighter than white, too. A lamp is not
- * spread there. */
+/* test_deep_behind.c: a sky brighter than white is as bright beside what stands before it as it is
+ * elsewhere, which of both is in focus: what is inpainted is brighter than white, too. A lamp is
+ * not spread there. */
 #include "deep_pictures.h"
 
 enum { W = 240, H = 240 };
@@ -17,14 +17,14 @@ static bool is_before(const struct square *square, int x, int y)
            y < square->y + square->side;
 }
 
-/* Renders a dark square in focus before `photo`. */
-static struct deep render_before(const struct deep *photo, const struct square *square, float blur,
-                                 int blades)
+/* Renders a dark square, `times` as bright, before `photo`, with a disparity in focus. */
+static struct deep render_before(const struct deep *photo, const struct square *square, float times,
+                                 float focus, float blur, int blades)
 {
     struct deep out = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H);
     static uint16_t map[W * H];
     const struct refocus_disparity disparity = refocus_disparity16(map, W, H, 2 * W);
-    struct refocus_settings params = refocus_settings_default(1, blur);
+    struct refocus_settings params = refocus_settings_default(focus, blur);
     struct refocus_aperture_params shape = refocus_aperture_params_default();
     struct refocus_renderer *renderer = deep_renderer(W, H, blur, 2);
     struct refocus_aperture *aperture;
@@ -32,7 +32,7 @@ static struct deep render_before(const struct deep *photo, const struct square *
     for (int i = 0; i < W * H; i++) {
         map[i] = is_before(square, i % W, i / W) ? 65535 : 0;
         for (int c = 0; c < 3 && map[i]; c++)
-            deep_put(photo, i % W, i / W, c, dark);
+            deep_put(photo, i % W, i / W, c, times * dark);
     }
     shape.blades = blades;
     assert_int_equal(refocus_aperture_create(&aperture, &shape), REFOCUS_OK);
@@ -51,7 +51,7 @@ static void expect_sky(struct square square, float blur, int blades)
     double worst = 0;
 
     deep_fill(&photo, sky);
-    out = render_before(&photo, &square, blur, blades);
+    out = render_before(&photo, &square, 1, 1, blur, blades);
     for (int i = 0; i < W * H; i++) {
         const int x = i % W, y = i / W;
         const double off = fabs((double)deep_get(&out, x, y, 1) / (double)sky - 1);
@@ -83,6 +83,36 @@ static void skies(void **state)
     }
 }
 
+/* A blurred square before a sky in focus: the picture of a fifth of the light, which is not above
+ * white, is a fifth as bright. */
+static void blurred_before_a_sky(void **state)
+{
+    static const struct square squares[] = {{96, 96, 64}, {90, 85, 61}, {90, 0, 61}};
+    struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H);
+
+    (void)state;
+    for (size_t i = 0; i < sizeof squares / sizeof *squares; i++)
+        for (int blur = 6; blur <= 60; blur *= 3) {
+            struct deep bright, fifth;
+
+            deep_fill(&photo, sky);
+            bright = render_before(&photo, &squares[i], 1, 0, (float)blur, 0);
+            deep_fill(&photo, sky / 5);
+            fifth = render_before(&photo, &squares[i], 0.2f, 0, (float)blur, 0);
+            for (int k = 0; k < W * H; k++) {
+                const float got = deep_get(&bright, k % W, k / W, 1);
+                const float expected = 5 * deep_get(&fifth, k % W, k / W, 1);
+
+                if (fabsf(got - expected) > 0.1f)
+                    fail_msg("square %zu, a blur of %d: (%d, %d) is %.3f, expected %.3f", i, blur,
+                             k % W, k / W, (double)got, (double)expected);
+            }
+            free(bright.memory);
+            free(fifth.memory);
+        }
+    free(photo.memory);
+}
+
 /* A lamp that is beside the square, three pixels wide, adds no more than its own light. */
 static void lamps(void **state)
 {
@@ -94,7 +124,7 @@ static void lamps(void **state)
     deep_fill(&photo, dark);
     for (int i = 0; i < 3 * 9; i++)
         deep_put(&photo, 90 + i / 3 % 3, 120 + i / 9, i % 3, 30);
-    out = render_before(&photo, &square, 20, 0);
+    out = render_before(&photo, &square, 1, 1, 20, 0);
     for (int i = 0; i < W * H; i++)
         sum += (double)deep_get(&out, i % W, i / W, 1) - (double)dark;
     assert_true(sum < 9 * 30);
@@ -134,6 +164,10 @@ static void same_bytes(void **state)
     assert_int_equal(deep_render(many, 0.2f, 5, &other.image), REFOCUS_OK);
     assert_int_equal(deep_render(many, 1, 8, &other.image), REFOCUS_OK);
     assert_memory_equal(one.memory, other.memory, one.size);
+    assert_int_equal(deep_render(single, 0, 8, &one.image), REFOCUS_OK);
+    assert_int_equal(deep_render(many, 0, 8, &other.image), REFOCUS_OK);
+    assert_memory_equal(one.memory, other.memory, one.size);
+    region = refocus_settings_default(0, 8);
     region.render.region_x = X;
     region.render.region_y = Y;
     region.render.region_width = region.render.region_height = PART;
@@ -152,8 +186,9 @@ static void same_bytes(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(skies), cmocka_unit_test(lamps),
-                                       cmocka_unit_test(same_bytes)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(skies),
+                                       cmocka_unit_test(blurred_before_a_sky),
+                                       cmocka_unit_test(lamps), cmocka_unit_test(same_bytes)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
