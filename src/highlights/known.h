@@ -11,9 +11,9 @@
 #include "background/pyramid.h"
 #include "highlights/highlights.h"
 
-/* The gain that lists of known light are for: they hold up to 65535 (RF_KNOWN_GAIN - 1) / 3 of Q12
- * above white, 336 times white. */
-enum { RF_KNOWN_GAIN = 64 };
+/* The gain that lists of known light are for, which adds a third of `boost` RF_KNOWN_UNIT times:
+ * they hold up to 65535 RF_KNOWN_UNIT of Q12 above white, 336 times white. */
+enum { RF_KNOWN_GAIN = 64, RF_KNOWN_UNIT = (RF_KNOWN_GAIN - 1) / 3 };
 
 /* Q7.8: pixels that are less blurred have their own light, all of it (gather/encode_deep.c). */
 enum { RF_KNOWN_FROM = 128 };

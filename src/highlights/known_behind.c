@@ -65,7 +65,7 @@ static void read_listed(const struct behind *b, struct tile *tile, int y)
         for (int i = 0; i < run->count && run->x + i < x1; i++)
             for (int c = 0; c < 3; c++)
                 tile->excess[c][place_of(tile, run->x + i - view->x0, y)] =
-                    run->boost[c] * ((RF_KNOWN_GAIN - 1) / 3);
+                    run->boost[c] * RF_KNOWN_UNIT;
 }
 
 /* Reads what is left to the rays of a row. */
