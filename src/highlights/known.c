@@ -198,10 +198,11 @@ static struct counts go_through(const struct listing *listing, int part, struct 
             const struct rf_rect tile = tile_of(photo, tx, ty);
             uint8_t *by_rays = &listing->highlights->by_rays[ty * listing->tiles_x + tx];
             const int count = read_tile(photo, &patch, tile);
-            const bool whole = count == (tile.x1 - tile.x0) * (tile.y1 - tile.y0);
+            const int pixels = (tile.x1 - tile.x0) * (tile.y1 - tile.y0);
+            const bool whole = count == pixels;
 
-            *by_rays = count && (choice.all_by_rays ||
-                                 (whole && (choice.large_by_rays || is_at_side(photo, tile))));
+            *by_rays = count && (choice.all_by_rays || (whole && choice.large_by_rays) ||
+                                 (2 * count >= pixels && is_at_side(photo, tile)));
             if (count && !*by_rays)
                 *(whole ? &runs.whole : &runs.some) +=
                     take_runs(listing, &patch, tile, choice.doublings, lists);

@@ -2,7 +2,8 @@
  *
  * Runs of pixels above white are listed as highlights with just that light. Where a part of the
  * photo has more of them than its list holds, tiles that are above white as a whole are left to the
- * rays, or all of them if that does not suffice: rf_boost_known() adds their light to what rays hit
+ * rays, or all of them if that does not suffice, and at the sides of the photo those that are so by
+ * half, as rays find them repeated beyond: rf_boost_known() adds their light to what rays hit
  * then, spread as the pre-filter spreads light up to white.
  */
 #ifndef RF_HIGHLIGHTS_KNOWN_H

@@ -73,7 +73,7 @@ static void expect_sky(struct square square, float blur, int blades)
  * rays. */
 static void skies(void **state)
 {
-    static const struct square squares[] = {{96, 96, 64}, {90, 85, 61}, {96, 0, 64}};
+    static const struct square squares[] = {{96, 96, 64}, {90, 85, 61}, {96, 0, 64}, {90, 0, 61}};
 
     (void)state;
     for (size_t i = 0; i < sizeof squares / sizeof *squares; i++) {
