@@ -56,7 +56,7 @@ struct rf_highlight {
                        differ */
     uint8_t pixels; /* pixels of the run that are in the window */
     uint8_t rows;   /* rows from this one on that are splatted as one; 0: splatted with one above */
-    uint16_t below; /* how much further on in the list the next of these rows is */
+    uint16_t below; /* the next of these rows is so many entries further on in the list */
     uint16_t subtracted[3]; /* Q12 light that was subtracted from what rays hit, mean of `pixels` */
 };
 

@@ -37,7 +37,7 @@ void rf_pass_silhouettes(struct rf_frame *f);       /* after rf_pass_blur() */
 void rf_pass_thin(struct rf_frame *f);              /* after rf_pass_blur() */
 void rf_pass_smooth(struct rf_frame *f);            /* ranges and the smooth light */
 void rf_pass_prefilter(struct rf_frame *f);         /* the smooth light alone */
-bool rf_boosts(const struct rf_frame *f);           /* whether rf_pass_boost() adds any */
+bool rf_boosts(const struct rf_frame *f);           /* tells whether rf_pass_boost() adds light */
 void rf_pass_boost(struct rf_frame *f);             /* gathered highlights, after the background */
 void rf_pass_weights(struct rf_frame *f);
 
