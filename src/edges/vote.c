@@ -7,13 +7,20 @@
  *     p is near where  (near - far) / (near + far) + a - 1/2 > 0
  *
  * and takes the mean of those that it was given to. The second term is what the map itself says: it
- * decides where the photo does not.
+ * decides where the photo does not. A ramp of little contrast may as well be a slope, or what a
+ * network is off by within a surface: its pixels stay as they are unless the photo is sure of them.
  */
 #include "edges/window.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "depth/median.h"
+
+enum {
+    LOW_CONTRAST = 6554, /* 0.1, of a ramp that the photo has to be sure of */
+    SURE = 80,           /* percent of all votes that one side has more than the other */
+};
 
 struct vote {
     struct rf_edges *e;
@@ -79,18 +86,24 @@ static uint16_t mean_of(uint32_t value, uint32_t weight, int least, uint16_t end
                   : end;
 }
 
+/* A pixel that is left alone is on no ramp for settle.c. */
 static uint16_t decide(const struct vote *vote, int x, int y)
 {
-    const struct rf_edges *e = vote->e;
+    struct rf_edges *e = vote->e;
     const ptrdiff_t at = y * e->stride + x;
     const int near = e->near[at], far = e->far[at];
     const struct rf_votes votes = ask(vote, x, y);
     const int64_t all = (int64_t)votes.near + votes.far + 1;
+    const int64_t more = (int64_t)votes.near - votes.far;
     /* Twice the sum above, times `all` and the contrast. */
-    const int64_t photo = 2 * ((int64_t)votes.near - votes.far) * (near - far);
+    const int64_t photo = 2 * more * (near - far);
     const int64_t map = (2 * ((int64_t)e->map[at] - far) - (near - far)) * all;
     const int least = rf_larger(far - (near - far) / 2, 1);
 
+    if (near - far < LOW_CONTRAST && llabs(more) * 100 < all * SURE) {
+        e->near[at] = e->far[at] = e->map[at];
+        return e->map[at];
+    }
     return photo + map > 0 ? mean_of(votes.near_value, votes.near, least, e->near[at])
                            : mean_of(votes.far_value, votes.far, least, e->far[at]);
 }
