@@ -68,7 +68,7 @@ struct rf_last_edges {
     int width, height; /* 0: there is none */
     uint16_t *result;
     uint8_t *map;    /* as it came in, upper eight bits */
-    uint8_t *still;  /* 1 where this frame's map is the same */
+    uint8_t *still;  /* 1 where this frame's map is the same, away from what moves */
     double softness; /* pixels of this size */
     bool parted;     /* the last map was soft */
     bool aligned;    /* the last map was moved */
@@ -107,7 +107,7 @@ struct rf_edges {
     struct rf_edge_range *range; /* one for each block that is looked at or left alone together */
     uint8_t *rough;              /* one for each block: whether there may be an edge */
     uint8_t *rough_cell;         /* one for each cell of ramps.c: whether a block of it is */
-    uint8_t *moved[2];           /* 1: ways in this cell still go on */
+    uint8_t *moved[2];           /* 1: ways in this cell still go on; before, of steady.c, blocks */
     struct rf_map_edge *edge;
     int edges, most_edges;
     struct rf_edge_blocks blocks;
@@ -223,8 +223,8 @@ void rf_vote(struct rf_edges *e, double softness);
 /* Takes overshoot beside ramps out of label; writes is_wide. */
 void rf_settle(struct rf_edges *e, double softness);
 
-/* Notes where the map is that of the last frame, which it replaces. */
-void rf_find_still(const struct rf_edges *e, struct rf_last_edges *last);
+/* Notes where the map is that of the last frame, which it replaces, and nothing moves near by. */
+void rf_find_still(struct rf_edges *e, struct rf_last_edges *last);
 
 /* Where it is, the result stays that of the last frame, or follows it slowly; it replaces that. */
 void rf_hold_still(struct rf_edges *e, struct rf_last_edges *last);

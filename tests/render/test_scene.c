@@ -274,10 +274,11 @@ static void guesses_count_least(void **state)
     assert_memory_equal(view, without, sizeof without);
 }
 
-/* A frame of a video: a soft disc that lies `at` pixels to the right, and a photo with noise. */
-static void draw_frame(uint32_t format, int columns, int at, uint32_t seed)
+/* A frame of a video: what is drawn moves `at` pixels to the right, and the photo gets noise. */
+static void move_on(uint32_t format, int at, uint32_t seed)
 {
-    draw(format, columns, columns * HEIGHT / WIDTH, 0, 5);
+    const int columns = drawing.disparity.width;
+
     for (int plane = 0; plane < refocus_format_planes(format); plane++) {
         const int bytes = (int)drawing.photo.stride[plane];
 
@@ -297,6 +298,13 @@ static void draw_frame(uint32_t format, int columns, int at, uint32_t seed)
         memmove(row + at * columns / WIDTH, row,
                 (size_t)(columns - at * columns / WIDTH) * sizeof *row);
     }
+}
+
+/* A soft disc. */
+static void draw_frame(uint32_t format, int columns, int at, uint32_t seed)
+{
+    draw(format, columns, columns * HEIGHT / WIDTH, 0, 5);
+    move_on(format, at, seed);
 }
 
 static void prepare_edges(struct refocus_renderer *renderer, uint32_t edges, uint16_t *view)
@@ -359,6 +367,26 @@ static void video_is_steady(void **state)
     }
 }
 
+/* The edge of a sharp map that lies 4 pixels beside the photo leaves nothing behind where it moves,
+ * although the map itself stays there: 264 pixels were wrong after a step. */
+static void video_moves(void **state)
+{
+    static uint16_t steady[WIDTH * HEIGHT], alone[WIDTH * HEIGHT];
+    struct refocus_renderer *renderer = make(2, 2), *other = make(1, 1);
+
+    (void)state;
+    for (int at = 0; at <= 12; at++) {
+        draw(REFOCUS_FORMAT_RGB8, WIDTH, HEIGHT, 4, 1);
+        move_on(REFOCUS_FORMAT_RGB8, at, 3);
+        prepare_edges(renderer, REFOCUS_DEPTH_EDGES_STEADY, steady);
+        prepare_edges(other, REFOCUS_DEPTH_EDGES_AUTO, alone);
+        assert_true(count_other(alone, drawing.map) > 200);
+        assert_int_equal(count_other(steady, alone), 0);
+    }
+    refocus_renderer_destroy(&renderer);
+    refocus_renderer_destroy(&other);
+}
+
 /* Pictures of all sizes through one renderer: nothing stays of the one before. */
 static void one_after_the_other(void **state)
 {
@@ -389,9 +417,10 @@ static void one_after_the_other(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_as_alone),   cmocka_unit_test(memory_for_edges),
-        cmocka_unit_test(same_in_strips),  cmocka_unit_test(guesses_count_least),
-        cmocka_unit_test(video_is_steady), cmocka_unit_test(one_after_the_other)};
+        cmocka_unit_test(same_as_alone),      cmocka_unit_test(memory_for_edges),
+        cmocka_unit_test(same_in_strips),     cmocka_unit_test(guesses_count_least),
+        cmocka_unit_test(video_is_steady),    cmocka_unit_test(video_moves),
+        cmocka_unit_test(one_after_the_other)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
