@@ -14,7 +14,7 @@ enum {
     LOOKED_AT = 1 << 16, /* pixels, about */
     FEWEST = 256,        /* pixels that tell anything */
     ALIKE_Q1 = 7,        /* neighbours within 3.5 deviations are of the same surface */
-    MOST_MOVED = 3,      /* deviations */
+    MOST_MOVED = 2,      /* deviations */
 };
 
 /* How far a pixel lies from the line through its neighbours, across or down: the lesser. */
@@ -37,13 +37,13 @@ static int percentile(const uint32_t *histogram, int64_t count, int share)
     return bin * BIN;
 }
 
-int rf_noise_of(struct rf_disparity_q16 map, int width, int height)
+int rf_noise_of(struct rf_disparity_q16 map, int width, int height, int step)
 {
     const int64_t pixels = (int64_t)width * height;
     const int every = (int)(pixels / LOOKED_AT) + 1;
     uint32_t histogram[BINS];
     int64_t count = 0;
-    int quarter, deviation;
+    int quarter, three_quarters, deviation;
 
     memset(histogram, 0, sizeof histogram);
     for (int y = 1; y < height - 1; y += every)
@@ -54,8 +54,9 @@ int rf_noise_of(struct rf_disparity_q16 map, int width, int height)
         return 0;
     quarter = percentile(histogram, count, 25);
     deviation = quarter * 50 / 19;
+    three_quarters = percentile(histogram, count, 75);
     /* Noise is everywhere alike; the edges of a forest of depths are not. */
-    if (deviation < LEAST || percentile(histogram, count, 75) > 8 * quarter)
+    if (deviation < LEAST || three_quarters > 8 * quarter || three_quarters <= step)
         return 0;
     return deviation;
 }

@@ -6,7 +6,9 @@
  * less: on surfaces and along edges that is noise alone. A quarter of all pixels are below 0.38 of
  * its standard deviation (0.26 to 0.43 in maps of four scenes with 0.5 to 5 % of it).
  *
- * A map without noise has none: the quarter lies at 0 in exact maps and those of 8 bits.
+ * A map without noise has none: the quarter lies at 0 in exact maps and most of those of 8 bits.
+ * Codes on a slope that is askew lie off their line all over, but by one step at most, and noise
+ * does not: by more, at a quarter of the pixels and more.
  */
 #ifndef RF_NOISE_H
 #define RF_NOISE_H
@@ -14,8 +16,8 @@
 #include "depth/smooth.h"
 
 /* The standard deviation of the noise of a map, Q16: 0 if there is too little to be seen. Of a
- * large map some rows are looked at. */
-int rf_noise_of(struct rf_disparity_q16 map, int width, int height);
+ * large map some rows are looked at. step: rf_code_step() of the map. */
+int rf_noise_of(struct rf_disparity_q16 map, int width, int height, int step);
 
 /* Smooths noise of a standard deviation away, in place; spare planes are of the map's size. */
 void rf_denoise(const struct rf_kernels *kernels, struct rf_disparity_q16 map,

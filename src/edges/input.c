@@ -143,12 +143,11 @@ void rf_load_edge_map(struct rf_edge_job *job)
     for (int x = 0; x < e->width; x++)
         job->column[x] = place_of(x, e->width, job->columns);
     rf_pool_run(e->pool, load_samples, job, job->rows);
-    if (d.step)
-        rf_dequantise(&d, e->pool);
-    else
-        job->noise = rf_noise_of(job->sample, job->columns, job->rows);
+    job->noise = rf_noise_of(job->sample, job->columns, job->rows, d.step);
     if (job->noise)
         rf_denoise(e->kernels, job->sample, spare, job->columns, job->rows, job->noise, e->pool);
+    else if (d.step)
+        rf_dequantise(&d, e->pool);
     rf_pool_run(e->pool, enlarge_row, job, e->height);
 }
 
