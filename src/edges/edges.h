@@ -66,12 +66,12 @@ struct rf_edge_blocks {
  * are of the size that work is done at, without padding. */
 struct rf_last_edges {
     int width, height; /* 0: there is none */
-    uint16_t *result;
-    uint8_t *map;    /* as it came in, upper eight bits */
-    uint8_t *still;  /* 1 where this frame's map is the same, away from what moves */
-    double softness; /* pixels of this size */
-    bool parted;     /* the last map was soft */
-    bool aligned;    /* the last map was moved */
+    uint16_t *result;  /* at least 1; 0: it is decided anew */
+    uint8_t *map;      /* as it came in when the result was decided, upper eight bits */
+    uint8_t *photo;    /* as it was then, green */
+    double softness;   /* pixels of this size */
+    bool parted;       /* the last map was soft */
+    bool aligned;      /* the last map was moved */
 };
 
 /* Everything that the passes work on: planes of width x height, all of the same stride. The map has
@@ -223,10 +223,10 @@ void rf_vote(struct rf_edges *e, double softness);
 /* Takes overshoot beside ramps out of label; writes is_wide. */
 void rf_settle(struct rf_edges *e, double softness);
 
-/* Notes where the map is that of the last frame, which it replaces, and nothing moves near by. */
-void rf_find_still(struct rf_edges *e, struct rf_last_edges *last);
+/* Forgets the last result where the map is another one, or something moves near by. */
+void rf_forget_moved(struct rf_edges *e, struct rf_last_edges *last);
 
-/* Where it is, the result stays that of the last frame, or follows it slowly; it replaces that. */
+/* Elsewhere the result stays that of the last frame, or follows it slowly; it replaces that. */
 void rf_hold_still(struct rf_edges *e, struct rf_last_edges *last);
 
 /* Restores the disparity of thin surfaces in label, of which the map holds a softened copy. */

@@ -272,7 +272,7 @@ bool rf_place_edges(const struct rf_place_edges *place, struct refocus_depth_edg
     rf_load_edge_photo(&job);
     rf_load_edge_map(&job);
     if (place->last)
-        rf_find_still(e, place->last);
+        rf_forget_moved(e, place->last);
     changed = run_passes(&job, report);
     if (rf_run_cancelled(place->pool->run))
         return false;

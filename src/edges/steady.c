@@ -5,9 +5,9 @@
  * sixteenth of its contrast. So where the map is that of the last frame, the result is too. Small
  * differences are followed by a quarter a frame.
  *
- * A sharp edge changes the map only where it moves, but the result as far away as its place in the
- * photo is from that in the map. So nothing stays near it: with a map 3 pixels beside the photo it
- * would leave crumbs behind wherever it has been.
+ * But the photo decides where an edge is, up to 5 pixels from its place in the map, and may come
+ * more often than the map does. So nothing stays near what moves in the photo: edges would leave
+ * crumbs behind wherever they have been.
  */
 #include "edges/edges.h"
 
@@ -17,16 +17,12 @@
 
 enum {
     SAME = 2,     /* codes of eight bits */
-    FAR = 16,     /* codes: an edge has moved over the pixel */
-    FEWEST = 2,   /* such pixels of a block; single ones are noise */
+    MOVED = 32,   /* codes of the photo: something has moved over the pixel */
+    FEWEST = 4,   /* such pixels of a block; fewer are noise */
     SMALL = 1024, /* 1/64 of the range; larger ones are another decision */
+    NONE = 0,     /* as a result: it is decided anew */
 };
 _Static_assert((int)RF_EDGE_BLOCK > (int)RF_EDGE_SHIFT, "a block around is as far as edges go");
-
-static int difference(const struct rf_edges *e, const struct rf_last_edges *last, int x, int y)
-{
-    return abs((e->map[y * e->stride + x] >> 8) - last->map[(ptrdiff_t)y * e->width + x]);
-}
 
 static bool has_moved(const struct rf_edges *e, const struct rf_last_edges *last, int x0, int y0)
 {
@@ -36,11 +32,12 @@ static bool has_moved(const struct rf_edges *e, const struct rf_last_edges *last
 
     for (int y = y0; y < y1; y++)
         for (int x = x0; x < x1; x++)
-            found += difference(e, last, x, y) > FAR;
+            found += abs(e->colour[1][y * e->stride + x] -
+                         last->photo[(ptrdiff_t)y * e->width + x]) > MOVED;
     return found >= FEWEST;
 }
 
-/* Marks blocks over which an edge has moved. */
+/* Marks blocks in which something has moved since their pixels were decided. */
 static void find_moved(struct rf_edges *e, const struct rf_last_edges *last)
 {
     uint8_t *moved = e->moved[0];
@@ -65,21 +62,24 @@ static bool is_near_moved(const struct rf_edges *e, int x, int y)
 }
 
 /* The pixels of a row that lie in one block. */
-static void find_still_run(const struct rf_edges *e, struct rf_last_edges *last, int x, int y,
-                           bool moved)
+static void forget_run(const struct rf_edges *e, struct rf_last_edges *last, int x, int y,
+                       bool moved)
 {
     const int end = rf_smaller(x + RF_EDGE_BLOCK, e->width);
 
     for (; x < end; x++) {
-        const ptrdiff_t at = (ptrdiff_t)y * e->width + x;
+        const ptrdiff_t at = (ptrdiff_t)y * e->width + x, in = y * e->stride + x;
+        const uint8_t map = (uint8_t)(e->map[in] >> 8);
 
-        last->still[at] = !moved && difference(e, last, x, y) <= SAME;
-        if (!last->still[at])
-            last->map[at] = (uint8_t)(e->map[y * e->stride + x] >> 8);
+        if (!moved && abs(map - last->map[at]) <= SAME)
+            continue;
+        last->result[at] = NONE;
+        last->map[at] = map;
+        last->photo[at] = e->colour[1][in];
     }
 }
 
-void rf_find_still(struct rf_edges *e, struct rf_last_edges *last)
+void rf_forget_moved(struct rf_edges *e, struct rf_last_edges *last)
 {
     const bool none = last->width != e->width || last->height != e->height;
 
@@ -87,7 +87,7 @@ void rf_find_still(struct rf_edges *e, struct rf_last_edges *last)
         find_moved(e, last);
     for (int y = 0; y < e->height; y++)
         for (int x = 0; x < e->width; x += RF_EDGE_BLOCK)
-            find_still_run(e, last, x, y, none || is_near_moved(e, x, y));
+            forget_run(e, last, x, y, none || is_near_moved(e, x, y));
 }
 
 void rf_hold_still(struct rf_edges *e, struct rf_last_edges *last)
@@ -95,14 +95,13 @@ void rf_hold_still(struct rf_edges *e, struct rf_last_edges *last)
     for (int y = 0; y < e->height; y++) {
         uint16_t *now = e->map + y * e->stride;
         uint16_t *was = last->result + (ptrdiff_t)y * e->width;
-        const uint8_t *still = last->still + (ptrdiff_t)y * e->width;
 
         for (int x = 0; x < e->width; x++) {
             const int by = now[x] - was[x];
 
-            if (still[x])
+            if (was[x] != NONE)
                 now[x] = (uint16_t)(was[x] + (abs(by) < SMALL ? by / 4 : 0));
-            was[x] = now[x];
+            was[x] = (uint16_t)rf_larger(now[x], NONE + 1);
         }
     }
     last->width = e->width;

