@@ -20,7 +20,8 @@ enum refocus_depth_edges {
                                            refocus_renderer_params.depth_edges */
     REFOCUS_DEPTH_EDGES_STEADY = 2,   /**< AUTO for frames of a video: where the scene before
                                            was prepared so too and was of this size, decisions that
-                                           are close stay as they were in it */
+                                           are close stay as they were in it, unless the map changes
+                                           there, or the photo within some 8 pixels */
 };
 
 /**

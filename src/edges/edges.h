@@ -15,6 +15,7 @@
  *                  farther in
  *     thin         of a soft map, gives thin surfaces back the disparity that the softness took
  *     steady       of a video, leaves the result as it was where the map is that of the last frame
+ *                  and nothing moves in the photo
  *
  * Most of a map is smooth: blocks without an edge are passed by as early as can be. Of a sharp map
  * that lies on the photo no more is made than samples of its ramps, its edges and what the photo
@@ -107,7 +108,8 @@ struct rf_edges {
     struct rf_edge_range *range; /* one for each block that is looked at or left alone together */
     uint8_t *rough;              /* one for each block: whether there may be an edge */
     uint8_t *rough_cell;         /* one for each cell of ramps.c: whether a block of it is */
-    uint8_t *moved[2];           /* 1: ways in this cell still go on; before, of steady.c, blocks */
+    uint8_t *moved[2];           /* 1: ways in this cell still go on; in steady.c, which is the
+                                    first: in this block something has moved */
     struct rf_map_edge *edge;
     int edges, most_edges;
     struct rf_edge_blocks blocks;
