@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/eventfd.h>
+#include <time.h>
 #include <unistd.h>
 #include "pipewire.h"
 
@@ -207,6 +208,29 @@ void rf_pipewire_end_stream(struct rf_pipewire *pipewire, struct pw_stream **str
     *stream = NULL;
 }
 
+static int note_thread(struct spa_loop *loop, bool async, uint32_t seq, const void *data,
+                       size_t size, void *user)
+{
+    (void)loop, (void)async, (void)seq, (void)data, (void)size;
+    *(pthread_t *)user = pthread_self();
+    return 0;
+}
+
+/* The thread of a context that is ended before it has begun runs for ever (PipeWire 0.3.65), and
+ * whoever ends it waits for it. Until then calls to it are made by the caller itself. */
+static void wait_for_data_thread(struct pw_context *context)
+{
+    const struct timespec pause = {0, 1000000};
+    pthread_t thread = pthread_self();
+
+    for (int tries = 0; tries < 200 && pthread_equal(thread, pthread_self()); tries++) {
+        pw_data_loop_invoke(pw_context_get_data_loop(context), note_thread, 0, NULL, 0, true,
+                            &thread);
+        if (pthread_equal(thread, pthread_self()))
+            nanosleep(&pause, NULL);
+    }
+}
+
 void rf_pipewire_close(struct rf_pipewire *pipewire)
 {
     if (pipewire->loop)
@@ -215,8 +239,10 @@ void rf_pipewire_close(struct rf_pipewire *pipewire)
         pw_proxy_destroy((struct pw_proxy *)pipewire->registry);
     if (pipewire->core)
         pw_core_disconnect(pipewire->core);
-    if (pipewire->context)
+    if (pipewire->context) {
+        wait_for_data_thread(pipewire->context);
         pw_context_destroy(pipewire->context);
+    }
     if (pipewire->loop)
         pw_thread_loop_destroy(pipewire->loop);
     if (pipewire->ready >= 0)

@@ -7,8 +7,9 @@
  * its standard deviation (0.26 to 0.43 in maps of four scenes with 0.5 to 5 % of it).
  *
  * A map without noise has none: the quarter lies at 0 in exact maps and most of those of 8 bits.
- * Codes on a slope that is askew lie off their line all over, but by one step at most, and noise
- * does not: by more, at a quarter of the pixels and more.
+ * On a slope that is askew the codes of 8 bits lie off their line nearly everywhere, but by one
+ * step at most. So there is noise in a map of few codes only if a quarter of its pixels are off by
+ * more.
  */
 #ifndef RF_NOISE_H
 #define RF_NOISE_H
