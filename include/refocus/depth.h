@@ -113,8 +113,9 @@ static inline struct refocus_depth_report refocus_depth_report_default(void)
  * @param stride     bytes from a row of @p disparity to the next; even
  * @param report     filled on success, as far as its struct_size goes; may be NULL
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_NO_DEPTH (no sample holds a
- *         value), REFOCUS_ERR_MEMORY (one byte a sample is needed when there are
- *         unknown samples). On an error @p disparity holds nothing of use.
+ *         value), REFOCUS_ERR_MEMORY (a byte a sample is needed when there are unknown
+ *         samples, and 458,752 for whole numbers from 65,536 samples on). On an error
+ *         @p disparity holds nothing of use.
  *
  * Thread-safe.
  */
@@ -158,7 +159,7 @@ REFOCUS_API uint64_t refocus_repair_memory(int32_t width, int32_t height, int32_
 
 /**
  * refocus_depth_to_disparity() that also removes specks and says what was filled. Time
- * and memory are linear in the number of samples: 5 bytes each at most.
+ * and memory are linear in the number of samples: refocus_repair_memory() at most.
  *
  * @return as refocus_depth_to_disparity(); REFOCUS_ERR_ARGUMENT also when params->memory is less
  *         than refocus_repair_memory() or not aligned. Thread-safe.
@@ -201,7 +202,7 @@ static inline struct refocus_upsample_params refocus_upsample_params_default(voi
  * depend on threads or processor. A map of the photo's size is copied, one with more
  * columns or rows is sampled.
  *
- * @param photo   any packed format
+ * @param photo   any packed format of 8 bits a channel
  * @param map     covers the same view as the photo; see struct refocus_disparity
  * @param params  see struct refocus_upsample_params
  * @param out     receives 16-bit disparities of the photo's size, 65535 nearest; may

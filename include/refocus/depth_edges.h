@@ -80,7 +80,7 @@ static inline struct refocus_depth_edges_report refocus_depth_edges_report_defau
  * photos with small maps the work is done at up to four times the map's size, and the rest by
  * refocus_upsample(). The result does not depend on threads or processor.
  *
- * @param photo   any format, upright as the map is
+ * @param photo   any format of 8 bits a channel, upright as the map is
  * @param map     covers the same view as the photo; see struct refocus_disparity
  * @param params  see struct refocus_depth_edges_params
  * @param out     receives 16-bit disparities of the photo's size, 65535 nearest; may not overlap

@@ -35,9 +35,12 @@ REFOCUS_API int refocus_focus_at_point(const struct refocus_disparity *map, int 
                                        int radius, float *focus);
 
 /**
- * Finds the disparity of a rectangle.
+ * Finds the disparity of what a rectangle shows, a face or an autofocus area: the median of
+ * the nearest surface that has a quarter of it, or of the largest if none has.
  *
  * @param x, y, width, height  a part of the map, at least a pixel
+ * @param focus                receives df, 0 to 1
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (also for what is not within the map)
  */
 REFOCUS_API int refocus_focus_in_rectangle(const struct refocus_disparity *map, int x, int y,
                                            int width, int height, float *focus);

@@ -69,6 +69,7 @@ REFOCUS_API double refocus_blur_radius(double max_blur_radius_px, double dispari
  *
  *     C = |V_u - V_p| f / (N V_p),  V_x = f x / (x - f)
  *
+ * with u = focus_m, p = depth_m, f the focal length and N the f-number;
  * Potmesil & Chakravarty 1981, eq. 8; depths are distances from the lens.
  */
 REFOCUS_API double refocus_circle_of_confusion_m(const struct refocus_lens *lens, double focus_m,

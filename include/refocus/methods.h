@@ -49,7 +49,7 @@ enum refocus_method_trait {
     REFOCUS_METHOD_WHOLE_PHOTO = 1 << 3, /**< it needs memory of its own, see `methods` of struct
                                               refocus_renderer_params, and renders no `in_place` */
     REFOCUS_METHOD_ANY_RADIUS = 1 << 4,  /**< max_blur_radius up to REFOCUS_MAX_BLUR_RADIUS; the
-                                            others  render up to REFOCUS_PLAIN_BLUR_RADIUS */
+                                            others render up to REFOCUS_PLAIN_BLUR_RADIUS */
     REFOCUS_METHOD_TAKES_YUV = 1 << 5,   /**< it renders photos of Y, U and V as they are */
     REFOCUS_METHOD_HIGHLIGHTS = 1 << 6,  /**< struct refocus_highlight_params counts */
     REFOCUS_METHOD_TAKES_DEEP = 1 << 7,  /**< it renders photos and pictures of deep formats */

@@ -53,23 +53,23 @@ enum { REFOCUS_RAYS_FULL = -1 };
  *  refocus_highlight_params_default(). */
 struct refocus_highlight_params {
     uint32_t struct_size; /**< sizeof(struct refocus_highlight_params) */
-    float gain;           /**< light given back to clipped highlights, 1 (none, the default) to 16
-                               times white, 2^stops, where they are blurred by s, day or night;
-                               a part of it to what may be no highlight, and hardly any where
-                               one channel of R, G, B alone is clipped. By the search, and
-                               with sigma from 1e6 on, drawn over the area of the aperture
-                               times s^2; else rays meet it. Strip mode needs
+    float gain;           /**< light that clipped highlights get where they are blurred, 1 (none,
+                               the default) to 16 times white; 2^n is n stops. What may be no
+                               highlight gets a part of it, by how likely it is one, and hardly any
+                               where one channel of R, G, B alone is clipped. By the search, and
+                               with sigma from 1e6 on, each highlight is drawn as a disc of the
+                               aperture; else rays meet it. Strip mode needs
                                refocus_renderer_params.highlights */
     float estimate; /**< 0, the default: by gain. Above 0, up to 4: how much light each clipped
                                pixel has lost, up to 15 times white, is estimated from what the
                                lens spread around it, from its colour and from how bright the photo
                                is, and this many times that is given back. gain is not looked at */
-    float steady;   /**< 0, the default, for stills. Above 0, up to 0.95, for frames of a video that
-                               are prepared and rendered one after the other: what small changes of
-                               the highlights' light from frame to frame, up to a third or so, are
-                               reduced by. They are most of what discs flicker by under noise and
-                               slow motion. The frame before is forgotten where size, blend or
-                               estimate change. Of the light that estimate or gain give back */
+    float steady;   /**< for the frames of a video, prepared and rendered one after the other: 0,
+                               the default, for stills, to 0.95. The light that estimate or gain
+                               give back follows that of the last frame, and changes by a third and
+                               less are reduced by this share: most of what discs flicker by under
+                               noise and slow motion. The last frame is forgotten where size, blend
+                               or estimate change */
 };
 
 static inline struct refocus_highlight_params refocus_highlight_params_default(void)
@@ -86,19 +86,16 @@ static inline struct refocus_highlight_params refocus_highlight_params_default(v
  *  and V. Start from refocus_thin_params_default(). */
 struct refocus_thin_params {
     uint32_t struct_size; /**< sizeof(struct refocus_thin_params) */
-    uint32_t enabled;     /**< 1 = structures up to 7 pixels wide are drawn as the matte that they
-                               become, and so is their coverage of the pixels at their edges, where
-                               they are blurred so much before the focus that rays lie 1.8 pixels
-                               apart (8.1 pixels at 64 rays; the same of a full mask), 8 pixels at
-                               the least, first some of them and all from 5/4 of that on, with
-                               nothing thick as near around them. Rays, which meet them here and
-                               miss them there, would show streaks. Not with apertures of fine
-                               structure (masks, figures, rings), cat's eyes, fringes. And where
-                               they are in focus, before what is blurred by some two pixels,
-                               their coverage of the pixels at their edges stays sharp, else those
-                               would be blurred with what is behind and the edges be in steps.
-                               They are looked for in the first render of a photo, which takes
-                               some frames' time. 0 = no, the default */
+    uint32_t enabled;     /**< 1 = structures up to 7 pixels wide that are far before the focus are
+                               blurred as mattes: rays, which meet them here and miss them there,
+                               would show streaks. It begins where their blur is so large that rays
+                               lie 1.8 pixels apart (8.1 pixels at 64 rays), but 8 pixels at the
+                               least, and is phased in up to 5/4 of that. Not where something thick
+                               is as near, nor with masks, figures, rings, cat's eyes and fringes.
+                               In focus, before what is blurred by two pixels and more, the pixels
+                               that they cover in part stay sharp, so that their edges are not in
+                               steps. They are looked for in the first render of a photo, which
+                               takes some frames' time. 0 = no, the default */
 };
 
 static inline struct refocus_thin_params refocus_thin_params_default(void)

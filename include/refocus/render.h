@@ -12,7 +12,7 @@
  * than 16 KiB of the stack of the thread that makes it, nor of a thread of `parallel`, but for
  * refocus/papers.h. The result does not depend
  * on the number of threads, on the processor or, but for REFOCUS_DEPTH_EDGES_STEADY of
- * scene.h, on earlier calls.
+ * scene.h and `steady` of struct refocus_highlight_params, on earlier calls.
  */
 #ifndef REFOCUS_RENDER_H
 #define REFOCUS_RENDER_H
@@ -47,8 +47,9 @@ struct refocus_allocator {
 
 /**
  * Receives one line of text without a line end, from the thread that called in, for each error
- * that refocus_renderer_create(), refocus_prepare(), refocus_render() and refocus_get_view()
- * return: which argument is wrong, its value, and what it may be.
+ * that refocus_renderer_create(), refocus_prepare(), refocus_prepare_scene(), refocus_render() and
+ * refocus_get_view() return, but for REFOCUS_ERR_CANCELLED: which argument is wrong, its value,
+ * and what it may be.
  *
  *     refocus_render: focus_disparity is 1.5, may be 0 to 1
  */
@@ -290,9 +291,9 @@ REFOCUS_API int refocus_render(struct refocus_renderer *renderer,
                                const struct refocus_image *out);
 
 /**
- * End the refocus_prepare() or refocus_render() that is running, if any, early: it
- * returns REFOCUS_ERR_CANCELLED as soon as each thread has done the few pixels that it is at, a few
- * milliseconds at most whatever the picture. Has no effect on later calls. With NULL it
+ * End the refocus_prepare(), refocus_prepare_scene() or refocus_render() that is running, if any,
+ * early: it returns REFOCUS_ERR_CANCELLED as soon as each thread has done the few pixels that it is
+ * at, a few milliseconds at most whatever the picture. Has no effect on later calls. With NULL it
  * does nothing. Thread-safe.
  */
 REFOCUS_API void refocus_cancel(struct refocus_renderer *renderer);
@@ -300,7 +301,8 @@ REFOCUS_API void refocus_cancel(struct refocus_renderer *renderer);
 /** Layers that can be looked at. */
 enum refocus_view {
     REFOCUS_VIEW_DISPARITY = 0, /**< the prepared disparity, 65535 nearest */
-    REFOCUS_VIEW_BLUR = 1,      /**< |s| of the last render in 1/256 pixel */
+    REFOCUS_VIEW_BLUR = 1,      /**< |s| of the last render in 1/256 pixel, 65535 for 256 pixels and
+                                     more */
 };
 
 /**

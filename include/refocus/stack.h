@@ -157,18 +157,19 @@ REFOCUS_API void refocus_stack_destroy(struct refocus_stack **stack);
 /**
  * Add the next frame. Its pixels are copied.
  *
- * @param frame     of R, G and B, 8 bits a channel, of the stack's size. All frames need one
- *                  exposure and white balance.
+ * @param frame     of R, G and B, 8 bits a channel, of the stack's size. Exposure and white
+ *                  balance may differ: see refocus_stack_finish().
  * @param position  of the focus in dioptres, 1 / metres, or any number that is proportional to them
  *                  up to an offset: larger = nearer. NAN if it is not known: frames without
  *                  positions are taken for equally far apart, in the order of enum
  *                  refocus_stack_order. Either all frames have one or none has. Of apertures, their
  *                  diameters: 1 / f-number, or what is proportional to it, above 0; NAN for both of
  *                  two frames, of which the sharper one then has the smaller aperture.
- * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (not an image of that size, a format of Y, U and V or
- *         of more than 8 bits, an infinite position, one that another frame has, one where others
- *         had none, an aperture of 0 and less, more than two without), REFOCUS_ERR_STATE (there are
- *         as many as were announced), REFOCUS_ERR_THREAD; on an error the stack is as it was
+ * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT (not an image of that size, a format of Y, U and V,
+ *         an infinite position, one that another frame has, one where others had none, an aperture
+ *         of 0 and less, more than two without), REFOCUS_ERR_UNSUPPORTED (a format of more than 8
+ *         bits), REFOCUS_ERR_STATE (there are as many as were announced), REFOCUS_ERR_THREAD; on
+ *         an error the stack is as it was
  */
 REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refocus_image *frame,
                                   double position);

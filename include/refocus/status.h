@@ -11,7 +11,8 @@ extern "C" {
 /**
  * Functions that can fail return REFOCUS_OK or one of the negative values. A NULL, a
  * size, a stride or a number that a function's description does not allow is
- * REFOCUS_ERR_ARGUMENT, never a crash. Functions without a status do nothing then, or
+ * REFOCUS_ERR_ARGUMENT, never a crash. A struct of a newer caller in which a field is set that this
+ * library does not know is REFOCUS_ERR_UNSUPPORTED. Functions without a status do nothing then, or
  * return 0, NULL or NAN. What cannot be told is not looked for: memory that is not as
  * large as it is said to be, a handle that has been destroyed.
  */

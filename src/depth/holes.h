@@ -1,6 +1,6 @@
 /* holes.h: gives samples of a depth map without a value that of the surface around them. */
-#ifndef RF_DEPTH_FILL_H
-#define RF_DEPTH_FILL_H
+#ifndef RF_DEPTH_HOLES_H
+#define RF_DEPTH_HOLES_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -11,7 +11,7 @@
  *
  * where F and N are colours well within the surfaces. The nearer surface takes those beyond its
  * edge of which it has more than LEAST, up to the first one of which it has not, and no more than
- * half of the mixtures, as the edge is in their middle.
+ * half of the mixtures, rounded up, as the edge is in their middle.
  *
  * Where the far surface has a pattern its pixels are like mixtures, too. So shares have to fall
  * from the edge on to those of F, and what is nearer has to look like N.
@@ -30,6 +30,7 @@
 
 #include "depth/median.h"
 #include "image/format.h"
+#include "support/compare.h"
 
 enum {
     BAND = 16,       /* rows of a work item */
@@ -271,11 +272,12 @@ static bool is_beside(const uint8_t *taken, ptrdiff_t stride)
     return any != 0;
 }
 
-static bool has_any(const uint8_t *taken, ptrdiff_t stride)
+/* Whether any of n pixels is such a one. */
+static bool has_any(const uint8_t *taken, ptrdiff_t stride, int n)
 {
     int any = 0;
 
-    for (int i = -1; i <= BLOCK; i++)
+    for (int i = -1; i <= n; i++)
         any |= taken[i - stride] | taken[i] | taken[i + stride];
     return any != 0;
 }
@@ -299,11 +301,13 @@ static void smooth_silhouettes(void *context, int band, int worker)
         memcpy(map, nearer, (size_t)width * sizeof *map);
         if (y < 1 || y >= height - 1)
             continue;
-        for (int x = 1; x + BLOCK < width; x += BLOCK)
-            if (has_any(taken + x, mixed->run.stride))
-                for (int i = x; i < x + BLOCK; i++)
+        for (int x = 1, n; x < width - 1; x += n) {
+            n = rf_smaller(BLOCK, width - 1 - x);
+            if (has_any(taken + x, mixed->run.stride, n))
+                for (int i = x; i < x + n; i++)
                     if (is_beside(taken + i, mixed->run.stride))
                         map[i] = rf_median_of_nine(nearer + i, mixed->nearer.stride);
+        }
     }
 }
 

@@ -35,7 +35,7 @@ static bool good(const struct refocus_temporal_params *p)
 {
     return p->width >= 1 && p->width <= REFOCUS_MAX_SIDE && p->height >= 1 &&
            p->height <= REFOCUS_MAX_SIDE && p->strength >= 0 && p->strength <= 0.95f &&
-           p->noise >= 0 && p->noise <= 0.25f;
+           p->noise >= 0 && p->noise <= 0.25f && !p->reserved;
 }
 
 static void lay_out(struct refocus_temporal *f, struct rf_arena *arena)
@@ -144,10 +144,9 @@ int refocus_temporal_rescale(struct refocus_temporal *f, double scale, double of
     if (!f || !(scale > 0) || !isfinite(scale) || !isfinite(offset))
         return REFOCUS_ERR_ARGUMENT;
     samples = (size_t)f->width * (size_t)f->height;
-    for (size_t i = 0; i < samples; i++)
+    for (size_t i = 0; i < samples && f->frames > 0; i++)
         f->last[i] = rescale(f->last[i], scale, offset);
-    for (int k = 0; k < RF_LOOKS;
-         k++) /* Planes that no frame has filled yet are never looked at. */
+    for (int k = 0; k < RF_LOOKS; k++) /* planes that no frame has filled yet are left out */
         for (size_t i = 0; i < samples && k < f->frames; i++) {
             f->frame[k].disparity[i] = rescale(f->frame[k].disparity[i], scale, offset);
             if (!f->guided) /* then depth is its own guide */

@@ -25,8 +25,8 @@ static const double MIXED = 0.5;
 
 /* ----- sizes and memory ----- */
 
-/* The photo is reduced by a power of two until the map need not be enlarged by more than
- * MOST_ENLARGED. */
+/* The photo is reduced by a power of two until one side of the map need not be enlarged by more
+ * than MOST_ENLARGED. */
 static void choose_size(struct rf_edge_job *job, int width, int height, int columns, int rows)
 {
     struct rf_edges *e = &job->edges;

@@ -230,7 +230,7 @@ static void compute_means(const struct rf_sums *sums, uint16_t mean[3][LANES])
         }
 }
 
-/* Draws highlights into `channels` means, working in `share`, whose sums end. */
+/* Draws highlights into the means of red, green and blue. Works in `share`, whose sums are lost. */
 static void splat(const struct rf_frame *f, int tx, int ty, struct share *share,
                   uint16_t mean[3][LANES])
 {

@@ -196,6 +196,8 @@ static void sweep_rays(const struct tile *tile, struct share *share)
         const uint64_t weight = set->ray[n].weight;
         int shared;
 
+        if (rf_cancelled(tile->f->exec))
+            return;
         set_rays(lookups, set, n);
         end = n + lookups->rays;
         shared = rf_shared_rays(set, n, end);
@@ -251,6 +253,8 @@ static void sweep_means(struct tile *tile, struct share *share, struct rf_decode
                                 ? rf_chroma_rows(f, &tile->plan, tile->background_blur)
                                 : tile->luma.computed;
     sweep_rays(tile, share);
+    if (rf_cancelled(f->exec))
+        return;
     compute_means(tile, false, &share->sums, means->luma);
     compute_means(tile, true, &share->sums, means->chroma);
 }
@@ -270,6 +274,8 @@ static void sweep_sums(struct tile *tile, struct share *share, struct rf_decode_
     memset(sums->sum, 0, sizeof sums->sum);
     memset(sums->weight, 0, sizeof sums->weight);
     sweep_rays(tile, share);
+    if (rf_cancelled(tile->f->exec)) /* a cancelled run has no weights to divide by */
+        return;
     for (int p = 0; p < 2; p++)
         for (int i = 0; i < lanes[p]; i++) {
             const uint64_t w = sums->weight[p][i], v = (unit[p] * sums->sum[p][i] + w / 2) / w;
@@ -324,6 +330,8 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
         sweep_means(&tile, share, &means);
     else
         sweep_sums(&tile, share, &means);
+    if (rf_cancelled(f->exec))
+        return;
     if (f->splats)
         rf_splat_highlights(&f->splat, &tile.plan, tx, ty, share, (uint16_t *const[3]){means.luma});
     rf_encode_yuv_means(f, tx, ty, rect, &means);

@@ -3,9 +3,9 @@
  * Where everything in reach is blurred, a picture has no detail as fine as its rows, and some
  * of them are as good as all: a disc of radius s passes less than 0.15 of what changes faster
  * than every 1.6 s pixels, which rows 0.8 s apart show. So 64 rays have rows a pixel apart for
- * 1.25 pixels of blur; fewer rays lie farther apart, and so may rows, up to a pixel for one. The
- * rows between are interpolated by cubics. The first and the last row are always computed, so that
- * tiles meet without a seam and depend on no other.
+ * 1.25 pixels of blur; fewer rays, which lie farther apart, have them for less, but for one pixel
+ * of blur at the least. The rows between are interpolated by cubics. The first and the last row are
+ * always computed, so that tiles meet without a seam and depend on no other.
  */
 #ifndef RF_TILE_ROWS_H
 #define RF_TILE_ROWS_H

@@ -158,8 +158,8 @@ struct rf_silhouette_window {
     struct rf_disparity_q16 disparity;
 };
 
-/* Adds to the list those of the bright pixels in a part of the window. Reads pixels up to nine away
- * from the part. */
+/* Adds to the list those of the bright pixels in a part of the window. Reads pixels up to seven
+ * away from the part. */
 void rf_find_silhouettes(const struct rf_executor *exec, const struct rf_silhouette_window *window,
                          struct rf_rect part, struct rf_silhouettes *silhouettes);
 

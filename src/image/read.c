@@ -109,6 +109,6 @@ int rf_read_map(const struct rf_log *log, const char *name, struct refocus_dispa
         return wrong(log, name, "stride", own->stride, "a row or more either way");
     if (own->bits == 16 && (((uintptr_t)own->samples | (uintptr_t)own->stride) & 1))
         return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
-                         "%s->samples or its stride is odd, may be even where bits is 16", name);
+                         "%s->samples or its stride is odd, must be even where bits is 16", name);
     return REFOCUS_OK;
 }

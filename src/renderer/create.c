@@ -1,7 +1,6 @@
 /* create.c: creates, describes and ends renderers. */
 #include <refocus/render.h>
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -101,9 +101,8 @@ int rf_check_deep(const struct rf_log *log, const struct rf_frame *f, struct rf_
         (p->star_spikes > 0 && p->star_strength > 0))
         return rf_refuse(
             log, REFOCUS_ERR_UNSUPPORTED,
-            "a deep photo or out may be rendered with deep = 1 of the renderer's "
-            "parameters, by sweep, search, blur and interpolated, R, G, B or P010, P016, in "
-            "linear light, without "
+            "a deep photo or out needs deep = 1 of the renderer's parameters, and is rendered by "
+            "sweep, search, blur and interpolated, R, G, B or P010, P016, in linear light, without "
             "sigma, grain, stars and in_place");
     if (refocus_format_is_yuv(f->out->format) &&
         !keeps_pairs(region, r->photo.width, r->photo.height, 1))
@@ -125,7 +124,7 @@ int rf_check_yuv(const struct rf_log *log, const struct rf_frame *f, struct rf_r
         !rf_method_of(r->papers, f->params->method)->yuv_tile || has_look(f))
         return rf_refuse(
             log, REFOCUS_ERR_UNSUPPORTED,
-            "a photo of Y, U and V may be rendered by sweep or search, without cat's eye, fringe, "
+            "a photo of Y, U and V is rendered by sweep or search, without cat's eye, fringe, "
             "grain, stars and two-sided apertures, into its own sampling");
     return keeps_pairs(region, r->photo.width, r->photo.height, odd_rows)
                ? REFOCUS_OK

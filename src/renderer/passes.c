@@ -77,12 +77,15 @@ void rf_pass_highlights(struct rf_frame *f)
     struct refocus_renderer *r = rf_renderer_of(f);
     struct rf_photo *photo = &r->photo;
     const float estimate = f->params->highlight_estimate;
+    const float steady = f->params->highlight_steady;
 
     if (!r->highlights_memory || (f->params->highlight_gain <= 1 && !f->look.has_stars) ||
-        (photo->highlights_blend == r->blend && photo->highlights_estimate == estimate))
+        (photo->highlights_blend == r->blend && photo->highlights_estimate == estimate &&
+         photo->highlights_steady == steady))
         return;
     photo->highlights_blend = RF_NO_BLEND;
     photo->highlights_estimate = estimate;
+    photo->highlights_steady = steady;
     if (f->splat.window.known)
         rf_list_known(&r->exec, &r->deep, &photo->highlights);
     else

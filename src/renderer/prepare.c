@@ -219,8 +219,8 @@ static int read_behind(const struct refocus_renderer *r, const struct rf_log *lo
         return status;
     if (!r->has_behind || rf_is_yuv8(photo->format) || rf_is_yuv8(behind->format))
         return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
-                         "behind may be there with behind = 1 of the renderer's parameters, not "
-                         "in_place, and photo and behind of R, G, B");
+                         "behind needs behind = 1 of the renderer's parameters, without in_place, "
+                         "and photo and behind of R, G, B");
     if (behind->width != photo->width || behind->height != photo->height ||
         map->width != photo->width || map->height != photo->height)
         return rf_refuse(log, REFOCUS_ERR_ARGUMENT,
@@ -239,7 +239,7 @@ static int read_matte(const struct refocus_renderer *r, const struct rf_log *log
         return REFOCUS_OK;
     if (!r->has_thin || rf_is_yuv8(scene->photo.format))
         return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
-                         "a matte may be given of a photo of R, G, B to a renderer with thin");
+                         "a matte needs a photo of R, G, B and a renderer with thin");
     return rf_read_map(log, "matte", &scene->matte, given->matte);
 }
 
@@ -267,7 +267,7 @@ static int read_scene(const struct refocus_renderer *r, const struct rf_log *log
         (scene->disparity.width != scene->photo.width ||
          scene->disparity.height != scene->photo.height || rf_is_yuv8(scene->photo.format)))
         return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
-                         "with in_place the photo may be R, G, B, and disparity of its size");
+                         "in_place needs a photo of R, G, B and a disparity of its size");
     if (rf_is_deep(scene->photo.format) && !r->deep.curve)
         return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
                          "photo->format is %u, which needs deep = 1 of the renderer's parameters, "

@@ -34,7 +34,7 @@ static void copy_disparities(const struct refocus_renderer *r, uint16_t *out, pt
 
 enum { RUN = 256 };
 
-/* Replaces disparities by the signed blurs of the last render, then drops their signs. */
+/* Replaces disparities by the signed blurs of the last render, then by their sizes in pixels. */
 static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t pitch)
 {
     const struct rf_photo *photo = &r->photo;
@@ -56,8 +56,11 @@ static void to_blur(const struct refocus_renderer *r, uint16_t *out, ptrdiff_t p
         rf_focus_row(&r->last_plan, blur + at->y * pitch + at->x, &at->disparity, at->x, at->y, 1);
     }
     for (int y = 0; y < photo->height; y++)
-        for (int x = 0; x < photo->width; x++)
-            out[y * pitch + x] = (uint16_t)abs(blur[y * pitch + x]);
+        for (int x = 0; x < photo->width; x++) {
+            const int size = rf_in_pixels(abs(blur[y * pitch + x]), r->last_plan.focus.unit);
+
+            out[y * pitch + x] = (uint16_t)rf_smaller(size, UINT16_MAX);
+        }
 }
 
 static int get_view(const struct refocus_renderer *r, const struct rf_log *log, uint32_t view,
@@ -66,13 +69,13 @@ static int get_view(const struct refocus_renderer *r, const struct rf_log *log, 
     const struct rf_photo *photo;
 
     if (!out || ((uintptr_t)out & 1))
-        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "out is %s, may be at an even address",
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "out is %s, must be at an even address",
                          out ? "odd" : "NULL");
     if (view > REFOCUS_VIEW_BLUR)
         return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "view is %u, may be 0 to %d", (unsigned)view,
                          REFOCUS_VIEW_BLUR);
     if (stride % 2)
-        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "stride is %lld, may be even",
+        return rf_refuse(log, REFOCUS_ERR_ARGUMENT, "stride is %lld, must be even",
                          (long long)stride);
     if (!r->prepared || (view == REFOCUS_VIEW_BLUR && !r->blurred))
         return rf_refuse(log, REFOCUS_ERR_STATE, "nothing is %s yet",

@@ -351,12 +351,12 @@ static void follows_the_range(void **state)
 
 static void bad_arguments(void **state)
 {
-    struct refocus_temporal_params params = refocus_temporal_params_default(W, H), bad[8];
+    struct refocus_temporal_params params = refocus_temporal_params_default(W, H), bad[9];
     struct refocus_temporal *filter;
     struct refocus_disparity map = refocus_disparity16(v.map, W, H, 2 * W);
 
     (void)state;
-    for (int i = 0; i < 8; i++)
+    for (int i = 0; i < 9; i++)
         bad[i] = params;
     bad[0].struct_size = 1;
     bad[1].width = 0;
@@ -366,7 +366,8 @@ static void bad_arguments(void **state)
     bad[5].noise = 0.3f;
     bad[6].noise = (float)(0.0 / 0.0);
     bad[7].width = -4;
-    for (int i = 0; i < 8; i++) {
+    bad[8].reserved = 1;
+    for (int i = 0; i < 9; i++) {
         assert_int_equal(refocus_temporal_create(&filter, &bad[i]), REFOCUS_ERR_ARGUMENT);
         assert_null(filter);
     }

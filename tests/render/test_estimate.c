@@ -244,6 +244,42 @@ static void video(void **state)
     free(other);
 }
 
+/* A photo that was held is rendered as by a new renderer once nothing is to be held. */
+static void held_no_more(void **state)
+{
+    struct refocus_settings params = refocus_settings_default(0.5f, K);
+    struct refocus_renderer *renderer = NULL;
+    uint8_t *wanted = malloc(3 * W * H), *is = malloc(3 * W * H);
+    struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, wanted, W, H, 3 * W);
+
+    (void)state;
+    assert_non_null(wanted);
+    assert_non_null(is);
+    params.highlights = estimated(1);
+    for (int i = 0; i < 3; i++) { /* a new renderer, and frames before and at the same place */
+        struct picture p = frame_of(i == 0 ? 3 : i + 1);
+        const struct refocus_image photo = picture_image(&p);
+        const struct refocus_disparity disparity = picture_disparity(&p);
+
+        if (!renderer)
+            renderer = prepared(&p, K, 2);
+        assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
+        params.highlights.steady = i == 0 ? 0 : 0.9f;
+        assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+        if (i == 0)
+            refocus_renderer_destroy(&renderer);
+        image.plane[0] = is;
+        picture_free(&p);
+    }
+    assert_memory_not_equal(is, wanted, 3 * W * H);
+    params.highlights.steady = 0;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+    assert_same_pixels(is, wanted, W, H, "held no more");
+    refocus_renderer_destroy(&renderer);
+    free(wanted);
+    free(is);
+}
+
 /* Where nothing is clipped, every byte stays. */
 static void unclipped(void **state)
 {
@@ -311,9 +347,10 @@ static void same_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lamps),     cmocka_unit_test(day),        cmocka_unit_test(petals),
-        cmocka_unit_test(colours),   cmocka_unit_test(scales),     cmocka_unit_test(steady),
-        cmocka_unit_test(unclipped), cmocka_unit_test(same_bytes), cmocka_unit_test(video),
+        cmocka_unit_test(lamps),        cmocka_unit_test(day),       cmocka_unit_test(petals),
+        cmocka_unit_test(colours),      cmocka_unit_test(scales),    cmocka_unit_test(steady),
+        cmocka_unit_test(held_no_more), cmocka_unit_test(unclipped), cmocka_unit_test(same_bytes),
+        cmocka_unit_test(video),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -332,12 +332,44 @@ static void refused(void **state)
     picture_free(&p);
 }
 
+/* Blurs beyond 127 pixels are told in pixels, too, up to what 16 bits hold. */
+static void large_blurs_in_a_view(void **state)
+{
+    struct picture p = picture_make(W, H, 7);
+    static uint8_t out[3 * W * H];
+    static uint16_t blur[W * H];
+    const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        const float most = i ? 600 : 250, apart = most / 65535;
+        struct refocus_renderer *renderer = prepared(&p, most, 1);
+        struct refocus_render_params params = refocus_render_params_default(0, most);
+
+        params.rays = 4;
+        assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
+        assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_BLUR, blur, 2 * W), REFOCUS_OK);
+        for (int k = 0; k < W * H; k++) {
+            const float wanted = fminf(apart * (float)p.disparity[k], 65535 / 256.0f);
+
+            if (fabsf((float)blur[k] / 256 - wanted) > most / 4096)
+                fail_msg("K = %g: the blur at %d is %d, not %g pixels", (double)most, k, blur[k],
+                         (double)wanted);
+        }
+        refocus_renderer_destroy(&renderer);
+    }
+    picture_free(&p);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(formulas),      cmocka_unit_test(plain_lens),
-        cmocka_unit_test(masked),        cmocka_unit_test(near_band_is_clean),
-        cmocka_unit_test(highest_photo), cmocka_unit_test(refused)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(formulas),
+                                       cmocka_unit_test(plain_lens),
+                                       cmocka_unit_test(masked),
+                                       cmocka_unit_test(near_band_is_clean),
+                                       cmocka_unit_test(highest_photo),
+                                       cmocka_unit_test(refused),
+                                       cmocka_unit_test(large_blurs_in_a_view)};
     uint32_t state = 3;
 
     for (size_t i = 0; i < sizeof grey; i++)

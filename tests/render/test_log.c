@@ -185,12 +185,13 @@ static void views(void **state)
     assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
     VIEW(REFOCUS_VIEW_BLUR, out, 2 * W, REFOCUS_ERR_STATE, "nothing is rendered yet");
     VIEW(REFOCUS_VIEW_DISPARITY, NULL, 2 * W, REFOCUS_ERR_ARGUMENT,
-         "out is NULL, may be at an even address");
+         "out is NULL, must be at an even address");
     VIEW(REFOCUS_VIEW_DISPARITY, odd, 2 * W, REFOCUS_ERR_ARGUMENT,
-         "out is odd, may be at an even address");
+         "out is odd, must be at an even address");
     VIEW(2, out, 2 * W, REFOCUS_ERR_ARGUMENT, "view is 2, may be 0 to 1");
     VIEW(UINT32_MAX, out, 2 * W, REFOCUS_ERR_ARGUMENT, "view is 4294967295, may be 0 to 1");
-    VIEW(REFOCUS_VIEW_DISPARITY, out, 2 * W + 1, REFOCUS_ERR_ARGUMENT, "stride is 41, may be even");
+    VIEW(REFOCUS_VIEW_DISPARITY, out, 2 * W + 1, REFOCUS_ERR_ARGUMENT,
+         "stride is 41, must be even");
     VIEW(REFOCUS_VIEW_DISPARITY, out, 2 * W - 2, REFOCUS_ERR_ARGUMENT,
          "stride is 38, may be 40 or more either way");
     VIEW(REFOCUS_VIEW_DISPARITY, out, -(2 * W - 2), REFOCUS_ERR_ARGUMENT,
@@ -240,7 +241,7 @@ static void pictures_in(void **state)
     PREPARE(map, stride, 38, REFOCUS_ERR_ARGUMENT,
             "disparity->stride is 38, may be a row or more either way");
     PREPARE(map, stride, 41, REFOCUS_ERR_ARGUMENT,
-            "disparity->samples or its stride is odd, may be even where bits is 16");
+            "disparity->samples or its stride is odd, must be even where bits is 16");
     refocus_renderer_destroy(&renderer);
 
     limits = limits_of(W - 1, H);
@@ -252,7 +253,7 @@ static void pictures_in(void **state)
     limits.in_place = 1;
     renderer = renderer_of(&limits);
     PREPARE(map, width, W - 1, REFOCUS_ERR_UNSUPPORTED,
-            "with in_place the photo may be R, G, B, and disparity of its size");
+            "in_place needs a photo of R, G, B and a disparity of its size");
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
 }

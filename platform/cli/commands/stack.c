@@ -183,7 +183,12 @@ static int make_folder(const struct settings *settings, char **folder)
     } else {
         const int n = snprintf(name, sizeof name, "%.*s.refocus-stack-XXXXXX", length, beside);
 
-        made = n < (int)sizeof name - 16 && mkdtemp(name) ? 0 : -1;
+        if (n >= (int)sizeof name - 16) {
+            errno = ENAMETOOLONG;
+            made = -1;
+        } else {
+            made = mkdtemp(name) ? 0 : -1;
+        }
     }
     *folder = made == 0 ? strdup(name) : NULL;
     if (*folder)

@@ -77,20 +77,22 @@ const char *options_range(const struct option *option, char text[OPTION_RANGE_LE
     const char *what = option->kind == OPTION_INTEGER   ? "a whole number"
                        : option->kind == OPTION_NUMBERS ? option->argument
                                                         : "a number";
+    const int digits = option->kind == OPTION_INTEGER ? 17 : 9; /* all of a whole number's */
     int n = snprintf(text, OPTION_RANGE_LENGTH, "%s", what);
 
     if (option->kind == OPTION_NUMBERS && option->least == -INFINITY)
         return text;
     if (option->above)
-        n += snprintf(text + n, (size_t)(OPTION_RANGE_LENGTH - n), " above %.9g", option->least);
+        n += snprintf(text + n, (size_t)(OPTION_RANGE_LENGTH - n), " above %.*g", digits,
+                      option->least);
     if (option->above && isfinite(option->greatest))
-        n += snprintf(text + n, (size_t)(OPTION_RANGE_LENGTH - n), ", at most %.9g",
+        n += snprintf(text + n, (size_t)(OPTION_RANGE_LENGTH - n), ", at most %.*g", digits,
                       option->greatest);
     if (!option->above && isfinite(option->greatest))
-        n += snprintf(text + n, (size_t)(OPTION_RANGE_LENGTH - n), " from %.9g to %.9g",
-                      option->least, option->greatest);
+        n += snprintf(text + n, (size_t)(OPTION_RANGE_LENGTH - n), " from %.*g to %.*g", digits,
+                      option->least, digits, option->greatest);
     else if (!option->above)
-        n += snprintf(text + n, (size_t)(OPTION_RANGE_LENGTH - n), " of at least %.9g",
+        n += snprintf(text + n, (size_t)(OPTION_RANGE_LENGTH - n), " of at least %.*g", digits,
                       option->least);
     if (option->word)
         n += snprintf(text + n, (size_t)(OPTION_RANGE_LENGTH - n), ", or '%s'", option->word);

@@ -74,8 +74,7 @@ static void remove_file(void *path)
     unlink(path);
 }
 
-/* Write the file to standard output once it is whole: what is not, is nowhere. */
-static int copy(const char *path, struct refocus_blob *bytes)
+static int read_whole(const char *path, struct refocus_blob *bytes)
 {
     struct refocus_reason reason = {""};
 
@@ -84,6 +83,7 @@ static int copy(const char *path, struct refocus_blob *bytes)
     return EXIT_DONE;
 }
 
+/* Writes to a temporary file first, so that an error leaves nothing on standard output. */
 static int write_standard(const char *output, const struct refocus_image *picture,
                           const struct refocus_write_options *options)
 {
@@ -100,7 +100,7 @@ static int write_standard(const char *output, const struct refocus_image *pictur
     interrupt_clean_up(remove_file, path);
     status = output_write_image(path, picture, options);
     if (status == EXIT_DONE)
-        status = copy(path, &bytes);
+        status = read_whole(path, &bytes);
     unlink(path);
     interrupt_clean_up(NULL, NULL);
     if (status == EXIT_DONE) {
