@@ -2,10 +2,18 @@
  *
  * Each side of the matte is a push-pull (background/inpaint.h) from the pixels that are sure to be
  * on it. So every pixel has a near and a far disparity, n and f. Where n is nearer than f, it is a
- * mixture C = alpha N + (1 - alpha) F, where F is the push-pull of the light of the far side.
+ * mixture C = alpha N + (1 - alpha) F, unless its own disparity is nearer than n: then it is
+ * something before the subject.
  *
- * N is what is left of C then. So all of the pattern is taken for the subject's, of which hair has
- * more than what is behind it.
+ * With N_0 and F_0 the push-pulls of the light of both sides, and s_N and s_F the standard
+ * deviations of luminance in the tiles of either side, N and F are the likeliest by normal
+ * distributions around N_0 and F_0 (Chuang et al. 2001, "A Bayesian approach to digital matting"):
+ *
+ *     F = F_0 + (1 - share) (C - alpha N_0 - (1 - alpha) F_0) / (1 - alpha)
+ *     share = alpha^2 s_N^2 / (alpha^2 s_N^2 + (1 - alpha)^2 s_F^2)
+ *
+ * and N is what is left of C. Before a wall all of the pattern is the subject's hair, before print
+ * most of what little alpha covers is the print.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +21,11 @@
 #include "background/inpaint.h"
 #include "support/compare.h"
 #include "thin/mixture.h"
+
+enum {
+    ALL = 256,            /* the whole pattern of a pixel */
+    LEAST_DEVIATION = 64, /* Q12: that subjects have at least */
+};
 
 struct side {
     const struct rf_matte_pass *pass;
@@ -118,62 +131,62 @@ static int least_alpha(int light, int mean)
 }
 
 /* Mattes of cameras take dark hair for half of what is behind it: alpha goes towards what all
- * channels ask for, all of the way where it is a half or more. What little is subject stays little,
- * as what is behind it may be other than the mean. */
-static uint8_t corrected(int alpha, const uint16_t light[3], const uint16_t mean[3])
+ * channels ask for, all of the way where it is a half or more, as far as the pattern is the
+ * subject's. What little is subject stays little, as what is behind it may be other than the mean.
+ */
+static uint8_t corrected(int alpha, int share, const uint16_t light[3], const uint16_t mean[3])
 {
+    const int part = rf_smaller(2 * alpha, 255) * share / ALL;
     int least = alpha;
 
     for (int c = 0; c < 3; c++)
         least = rf_larger(least, least_alpha(rf_within(light[c], RF_LIGHT_MAX), mean[c]));
-    return (uint8_t)(alpha + (rf_smaller(least, 254) - alpha) * rf_smaller(2 * alpha, 255) / 255);
+    return (uint8_t)(alpha + (rf_smaller(least, 254) - alpha) * part / 255);
 }
 
-/* F of a channel, which is the mean of the background or as near to it as N in the range of light
- * allows, and what the photo is with that mean in place of F. */
-static void solve(struct rf_thin *thin, const struct rf_transfer *transfer, int c, int light,
-                  int mean)
+/* The part of the pattern that is the subject's, of ALL. */
+static int share_of_subject(const struct rf_matte_pass *pass, int alpha, int x, int y)
+{
+    int near, far;
+    int64_t subject, behind;
+
+    rf_deviations_at(pass, x, y, &near, &far);
+    subject = (int64_t)alpha * (near + LEAST_DEVIATION);
+    behind = (int64_t)(255 - alpha) * far;
+    return (int)(ALL * subject * subject / (subject * subject + behind * behind));
+}
+
+/* F of a channel, or as near to it as N in the range of light allows, and what the photo is with
+ * the mean background in place of F. */
+static void solve(struct rf_thin *thin, const struct rf_transfer *transfer, int c, int share,
+                  int light, int near, int mean)
 {
     const int a = thin->alpha, b = 255 - a;
+    const int rest = 255 * light - a * near - b * mean;
+    const int far = rf_within(mean + (ALL - share) * (rest / b) / ALL, RF_LIGHT_MAX);
     const int most = (255 * light + b - 1) / b; /* with these N is black and white */
     const int least = (255 * light - a * RF_LIGHT_MAX) / b;
 
-    thin->light[c] = light_of_code(transfer, mean < least ? least : mean > most ? most : mean);
+    thin->light[c] = light_of_code(transfer, far < least ? least : far > most ? most : far);
     thin->whole[c] = light_of_code(transfer, light + b * (mean - thin->light[c]) / 255);
 }
 
-/* Puts a pixel on its side, and makes it a mixture. False: there is one surface. */
-static bool take_apart(const struct rf_matte_pass *pass, int x, int y, struct rf_thin *thin)
+/* Whether a pixel is a mixture of both surfaces. */
+static bool is_mixture(const struct rf_matte_pass *pass, int x, int y)
 {
-    const struct rf_light_q12 behind = pass->pyramid->level[0].light;
-    const ptrdiff_t at = y * pass->light.stride + x, at_behind = y * behind.stride + x;
+    const int alpha = pass->alpha.at[y * pass->alpha.stride + x];
     const int near = pass->near.at[y * pass->near.stride + x];
-    const int far = pass->far.at[y * pass->far.stride + x];
-    uint16_t light[3], mean[3];
 
-    if (near - far <= RF_SURFACE_JUMP)
-        return false;
-    for (int c = 0; c < 3; c++) {
-        light[c] = pass->light.channel[c][at];
-        mean[c] = (uint16_t)rf_within(behind.channel[c][at_behind], RF_LIGHT_MAX);
-    }
-    *thin = (struct rf_thin){
-        .at = (uint8_t)(y % RF_TILE * RF_TILE + x % RF_TILE),
-        .alpha = corrected(pass->alpha.at[y * pass->alpha.stride + x], light, mean),
-        .near_disparity = (uint16_t)near,
-        .far_disparity = (uint16_t)far,
-    };
-    pass->disparity.at[y * pass->disparity.stride + x] =
-        thin->alpha >= 128 ? thin->near_disparity : thin->far_disparity;
-    for (int c = 0; c < 3; c++)
-        solve(thin, pass->transfer, c, light[c], mean[c]);
-    return true;
+    return !rf_is_sure(alpha, true) && !rf_is_sure(alpha, false) &&
+           near - pass->far.at[y * pass->far.stride + x] > RF_SURFACE_JUMP &&
+           pass->disparity.at[y * pass->disparity.stride + x] - near <= RF_SURFACE_JUMP;
 }
 
-/* Lists the mixtures of a band, tile by tile. */
+/* Lists the mixtures of a band, tile by tile, with the mean light of the near side as `whole`. */
 static void list_band(void *context, int band, int worker)
 {
     const struct rf_matte_pass *pass = context;
+    const struct rf_light_q12 mean = pass->pyramid->level[0].light;
     const uint64_t capacity = rf_thin_capacity(pass->view->width);
     struct rf_thin *const list = pass->list->pixel + (uint64_t)band * capacity;
     uint32_t count = 0;
@@ -181,21 +194,62 @@ static void list_band(void *context, int band, int worker)
     (void)worker;
     for (int tx = 0; tx < pass->view->tiles_x; tx++) {
         struct rf_thin_run *run = &pass->list->run[(size_t)band * pass->view->tiles_x + tx];
-        const int right = (tx + 1) * RF_TILE;
+        const int right = rf_smaller((tx + 1) * RF_TILE, pass->view->width);
         const uint32_t first = count;
 
         for (int y = rf_band_start(band); y < rf_band_end(pass->view, band); y++)
-            for (int x = tx * RF_TILE; x < right && x < pass->view->width; x++) {
-                const int alpha = pass->alpha.at[y * pass->alpha.stride + x];
-                struct rf_thin thin;
+            for (int x = tx * RF_TILE; x < right && count < capacity; x++) {
+                struct rf_thin *const thin = &list[count];
 
-                if (!rf_is_sure(alpha, true) && !rf_is_sure(alpha, false) &&
-                    take_apart(pass, x, y, &thin) && count < capacity)
-                    list[count++] = thin;
+                if (!is_mixture(pass, x, y))
+                    continue;
+                *thin = (struct rf_thin){
+                    .at = (uint8_t)(y % RF_TILE * RF_TILE + x % RF_TILE),
+                    .alpha = (uint8_t)pass->alpha.at[y * pass->alpha.stride + x],
+                    .near_disparity = pass->near.at[y * pass->near.stride + x],
+                    .far_disparity = pass->far.at[y * pass->far.stride + x],
+                };
+                for (int c = 0; c < 3; c++)
+                    thin->whole[c] = mean.channel[c][y * mean.stride + x];
+                count++;
             }
         *run = (struct rf_thin_run){first, (uint16_t)(count - first), count > first};
     }
     pass->list->given[band].count = count;
+}
+
+/* Parts a mixture into its two colours, and puts the pixel on its side. */
+static void take_apart(const struct rf_matte_pass *pass, int x, int y, struct rf_thin *thin)
+{
+    const struct rf_light_q12 behind = pass->pyramid->level[0].light;
+    const int share = share_of_subject(pass, thin->alpha, x, y);
+    uint16_t light[3], mean[3];
+
+    for (int c = 0; c < 3; c++) {
+        light[c] = pass->light.channel[c][y * pass->light.stride + x];
+        mean[c] = (uint16_t)rf_within(behind.channel[c][y * behind.stride + x], RF_LIGHT_MAX);
+    }
+    thin->alpha = corrected(thin->alpha, share, light, mean);
+    for (int c = 0; c < 3; c++)
+        solve(thin, pass->transfer, c, share, light[c], thin->whole[c], mean[c]);
+    pass->disparity.at[y * pass->disparity.stride + x] =
+        thin->alpha >= 128 ? thin->near_disparity : thin->far_disparity;
+}
+
+static void take_band_apart(void *context, int band, int worker)
+{
+    const struct rf_matte_pass *pass = context;
+    struct rf_thin *const list =
+        pass->list->pixel + (uint64_t)band * rf_thin_capacity(pass->view->width);
+
+    (void)worker;
+    for (int tx = 0; tx < pass->view->tiles_x; tx++) {
+        const struct rf_thin_run *run = &pass->list->run[(size_t)band * pass->view->tiles_x + tx];
+
+        for (uint32_t i = run->first; i < run->first + run->count; i++)
+            take_apart(pass, tx * RF_TILE + list[i].at % RF_TILE,
+                       band * RF_TILE + list[i].at / RF_TILE, &list[i]);
+    }
 }
 
 void rf_matte_forget(struct rf_thin_list *list, const struct rf_viewport *view)
@@ -212,9 +266,15 @@ void rf_matte_take_in(const struct rf_matte_pass *pass)
     struct side near = {pass, true, pass->near, false}, far = {pass, false, pass->far, false};
 
     rf_settle_sides(pass);
-    if (!spread_disparity(&near) || !spread_disparity(&far) || !push_pull(&far, true))
+    if (!spread_disparity(&near) || !spread_disparity(&far))
+        return;
+    rf_measure_deviations(pass);
+    if (!push_pull(&near, true))
         return;
     rf_pool_run(pass->exec->pool, list_band, (void *)pass, rf_bands(pass->view));
+    if (!push_pull(&far, true))
+        return;
+    rf_pool_run(pass->exec->pool, take_band_apart, (void *)pass, rf_bands(pass->view));
     pass->list->has_matte = true;
 }
 

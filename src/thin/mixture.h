@@ -55,6 +55,13 @@ static inline bool rf_is_sure(int alpha, bool near)
 /* Brings the disparities at the silhouettes of the caller's matte to it, after alpha was read. */
 void rf_settle_sides(const struct rf_matte_pass *pass);
 
+/* Measures how much the light of either side varies, from the pixels that are sure to be on it, and
+ * keeps that in `lost`. */
+void rf_measure_deviations(const struct rf_matte_pass *pass);
+
+/* Gives the standard deviations of luminance around a pixel that were measured, Q12. */
+void rf_deviations_at(const struct rf_matte_pass *pass, int x, int y, int *near, int *far);
+
 /* Chooses the mixtures of a tile of the caller's matte that are drawn as pixels of N: where N is
  * blurred, and not as F is, and they have enough of it. */
 void rf_choose_near(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice);

@@ -27,8 +27,9 @@
  * nothing, or is of another colour than such a mixture, it is 1 if the map has the pixel near, else
  * the pixel is no mixture.
  *
- * Where the caller gives a matte, alpha is that, at any silhouette (settle.c, given.c), and F the
- * mean of the far side. Of what is darker or brighter than any such mixture alpha is greater. What
+ * Where the caller gives a matte, alpha is that, at any silhouette (settle.c, given.c), but for
+ * what is nearer than the subject, and F the likeliest by how the light of both sides varies
+ * (deviation.c). Of what is darker or brighter than any such mixture alpha is greater. What
  * is not matted is drawn as one of its sides: the planes get C with the mean background in place of
  * F, at the depth of N, where alpha is 1/8 or more, and else have C at that of F.
  *
