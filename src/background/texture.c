@@ -92,7 +92,7 @@ static int pulled(const struct step *step, int c, int x, int y)
 
 static int code_of(const struct step *step, int light)
 {
-    return step->texture->transfer->to_code[4 * light];
+    return step->texture->transfer->to_code[4 * rf_within(light, RF_LIGHT_MAX)];
 }
 
 /* Light by a residual in codes. */

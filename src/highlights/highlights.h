@@ -60,9 +60,9 @@ struct rf_highlight {
     uint16_t subtracted[3]; /* Q12 light that was subtracted from what rays hit, mean of `pixels` */
 };
 
-/* The photo's rows are listed in parts, each with room for one run in 76 pixels, or in 12 where
- * light above white is known; of more than fit, the first stay, row by row, and the others stay as
- * they are in the photo. */
+/* The photo's rows are listed in parts. There is room for one run in 76 pixels, which the parts
+ * share by what they need, or in 12 where light above white is known, as much for each part; what
+ * does not fit stays as it is in the photo. */
 enum {
     RF_HIGHLIGHT_RUN = 16,
     RF_HIGHLIGHT_STACK = 4, /* most rows that are splatted as one */
@@ -77,6 +77,7 @@ struct rf_highlight_list {
 
 struct rf_highlights {
     struct rf_highlight_list *part; /* RF_HIGHLIGHT_PARTS of them */
+    struct rf_highlight *run;       /* the runs of all parts */
     uint8_t *by_rays; /* known light of a tile of the photo is left to the rays; else not valid */
 };
 
@@ -99,8 +100,13 @@ void rf_lay_out_highlights(struct rf_highlights *highlights, struct rf_arena *ar
 void rf_lay_out_silhouettes(struct rf_silhouettes *silhouettes, struct rf_arena *arena,
                             int max_width, int max_height);
 
-/* Forgets all highlights. */
-void rf_clear_highlights(struct rf_highlights *highlights);
+/* Forgets all highlights. Gives each part of a photo of that size the same room: the lists are
+ * those of the photo, whatever the largest one is. */
+void rf_clear_highlights(struct rf_highlights *highlights, int width, int height, bool known);
+
+/* Gives each part of a photo of that size the capacity that is set, of the room for estimated
+ * light. False: there is less, and the last parts get less. */
+bool rf_share_room(struct rf_highlights *highlights, int width, int height);
 
 /* Adds one. Of more than there is room for, the first by rows stay, in whichever order they come.
  * Rows of different parts may run at once. */

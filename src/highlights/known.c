@@ -234,7 +234,7 @@ void rf_list_known(const struct rf_executor *exec, const struct rf_deep *photo,
     struct listing listing = {exec, photo, highlights,
                               (photo->image.width + RF_TILE - 1) / RF_TILE};
 
-    rf_clear_highlights(highlights);
+    rf_clear_highlights(highlights, photo->image.width, photo->image.height, true);
     rf_pool_run(exec->pool, list_part, &listing,
                 (photo->image.height + RF_HIGHLIGHT_ROWS - 1) / RF_HIGHLIGHT_ROWS);
     if (!rf_cancelled(exec))

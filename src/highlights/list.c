@@ -6,32 +6,53 @@
 #include "highlights/in_window.h"
 #include "support/places.h"
 
-static uint32_t capacity_of(int max_width, bool known)
+static int parts_of(int height)
 {
-    return (uint32_t)max_width * RF_HIGHLIGHT_ROWS / (known ? 12 : 76) + 6;
+    return (height + RF_HIGHLIGHT_ROWS - 1) / RF_HIGHLIGHT_ROWS;
+}
+
+/* The room of a part of the photo, if all have the same. */
+static uint32_t room_of(int width, bool known)
+{
+    return (uint32_t)width * RF_HIGHLIGHT_ROWS / (known ? 12 : 76) + 6;
 }
 
 void rf_lay_out_highlights(struct rf_highlights *highlights, struct rf_arena *arena, int max_width,
                            int max_height, bool known)
 {
-    const int parts = (max_height + RF_HIGHLIGHT_ROWS - 1) / RF_HIGHLIGHT_ROWS;
+    const uint64_t room = (uint64_t)parts_of(max_height) * room_of(max_width, known);
 
     highlights->part = rf_arena_take(arena, RF_HIGHLIGHT_PARTS, sizeof *highlights->part);
     if (highlights->part)
         memset(highlights->part, 0, RF_HIGHLIGHT_PARTS * sizeof *highlights->part);
-    for (int part = 0; part < parts; part++) {
-        const uint32_t capacity = capacity_of(max_width, known);
-        struct rf_highlight *const run = rf_arena_take(arena, capacity, sizeof *run);
-
-        if (highlights->part)
-            highlights->part[part] = (struct rf_highlight_list){.run = run, .capacity = capacity};
-    }
+    highlights->run = rf_arena_take(arena, room, sizeof *highlights->run);
 }
 
-void rf_clear_highlights(struct rf_highlights *highlights)
+void rf_clear_highlights(struct rf_highlights *highlights, int width, int height, bool known)
 {
-    for (int part = 0; part < RF_HIGHLIGHT_PARTS; part++)
-        highlights->part[part].count = 0;
+    const uint32_t room = room_of(width, known);
+
+    memset(highlights->part, 0, RF_HIGHLIGHT_PARTS * sizeof *highlights->part);
+    for (int part = 0; part < parts_of(height); part++)
+        highlights->part[part] =
+            (struct rf_highlight_list){highlights->run + (ptrdiff_t)part * room, 0, room};
+}
+
+bool rf_share_room(struct rf_highlights *highlights, int width, int height)
+{
+    const uint32_t room = (uint32_t)parts_of(height) * room_of(width, false);
+    uint32_t taken = 0;
+    bool fits = true;
+
+    for (int part = 0; part < parts_of(height); part++) {
+        struct rf_highlight_list *const list = &highlights->part[part];
+
+        fits = fits && list->capacity <= room - taken;
+        list->run = highlights->run + taken;
+        list->capacity = list->capacity < room - taken ? list->capacity : room - taken;
+        taken += list->capacity;
+    }
+    return fits;
 }
 
 void rf_list_highlight(struct rf_highlights *highlights, const struct rf_highlight *run)

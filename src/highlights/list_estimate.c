@@ -11,6 +11,8 @@ enum { RUN = 64 /* pixels that are looked at together */, LEAST = RF_LIGHT_MAX /
 struct listing {
     const struct rf_estimate *estimate;
     struct rf_highlights *highlights;
+    float least; /* Q12: a pixel that has lost less is none */
+    bool counts; /* runs are counted, as the capacity of their part, and not listed */
 };
 
 /* A run in the making. */
@@ -37,44 +39,50 @@ static float whiteness(const int colour[3])
     return nearness_to_white(colour[0] + colour[1] + colour[2] - most - least);
 }
 
-/* The light that a pixel has lost, Q12. Half of it has its own hue, half that of what is around
- * the clipped pixels; a channel far below white has lost none, whatever a fixed gain adds to it.
- * Returns false if it is hardly any. */
-static bool lost_at(const struct rf_estimate *estimate, const struct rf_grid_row *row, int x, int y,
-                    float light[3])
+/* How much light a pixel has lost, as times its own; 0: hardly any. */
+static float gain_at(const struct listing *listing, const int colour[3], int x, int y)
+{
+    const struct rf_estimate *estimate = listing->estimate;
+    const struct rf_grid_tables *tables = estimate->grid->tables;
+    const int most = rf_larger(colour[0], rf_larger(colour[1], colour[2]));
+    float gain;
+
+    if (most <= tables->clipped)
+        return 0;
+    gain = rf_estimate_at(estimate, x, y) * whiteness(colour) *
+           ((float)tables->soft[most] * (1 / 256.0f));
+    return gain * (float)most < listing->least ? 0 : gain;
+}
+
+/* Adds the light that a pixel has lost, Q12. Half of it has its own hue, half that of what is
+ * around the clipped pixels; a channel far below white has lost none, whatever a fixed gain adds to
+ * it. */
+static void add_light(const struct rf_estimate *estimate, const int colour[3], float gain, int x,
+                      int y, float light[3])
 {
     const struct rf_light_grid *grid = estimate->grid;
     const int cx = rf_grid_cell(x, grid->photo->width, grid->width);
     const int cy = rf_grid_cell(y, grid->photo->height, grid->height);
-    int colour[3], most;
-    float gain, hue[3], luminance;
-
-    rf_grid_colour(row, x, colour);
-    most = rf_larger(colour[0], rf_larger(colour[1], colour[2]));
-    if (most <= grid->tables->clipped)
-        return false;
-    gain = rf_estimate_at(estimate, x, y) * whiteness(colour) *
-           ((float)grid->tables->soft[most] * (1 / 256.0f));
-    if (gain * (float)most < (float)LEAST)
-        return false;
-    luminance =
+    const float luminance =
         (218 * (float)colour[0] + 732 * (float)colour[1] + 74 * (float)colour[2]) * (1 / 1024.0f);
-    if (grid->channels == 1 || !rf_skirt_hue(grid, cx, cy, hue))
-        for (int c = 0; c < 3; c++)
-            light[c] = gain * (float)colour[c];
-    else
-        for (int c = 0; c < 3; c++)
-            light[c] = gain * 0.5f * ((float)colour[c] + luminance * hue[c]);
-    for (int c = 0; c < 3 && estimate->scale > 0; c++)
-        light[c] *= nearness_to_white(colour[c]);
-    return true;
+    float hue[3];
+    const bool mixes = grid->channels > 1 && rf_skirt_hue(grid, cx, cy, hue);
+
+    for (int c = 0; c < 3; c++) {
+        const float own = (float)colour[c];
+        const float lost = mixes ? gain * 0.5f * (own + luminance * hue[c]) : gain * own;
+
+        light[c] += estimate->scale > 0 ? lost * nearness_to_white(colour[c]) : lost;
+    }
 }
 
 static void close_run(const struct listing *listing, struct open *open)
 {
     struct rf_highlight_list *list = &listing->highlights->part[open->run.y / RF_HIGHLIGHT_ROWS];
 
-    if (open->run.count && list->count < list->capacity) {
+    if (open->run.count && listing->counts) {
+        list->capacity++;
+    } else if (open->run.count && list->count < list->capacity) {
         for (int c = 0; c < 3; c++) {
             /* A gain of RF_MOST_GAIN adds a third of this RF_MOST_GAIN - 1 times. */
             const float each = open->light[c] * (3.0f / (RF_MOST_GAIN - 1)) / open->run.count;
@@ -92,12 +100,15 @@ static void list_pixel(const struct listing *listing, const struct rf_grid_row *
 {
     const struct rf_light_grid *grid = listing->estimate->grid;
     const int width = grid->photo->width;
-    float light[3];
+    int colour[3];
+    float gain;
 
     if (open->run.count &&
         (open->run.x + open->run.count != x || open->run.count == RF_HIGHLIGHT_RUN))
         close_run(listing, open);
-    if (!lost_at(listing->estimate, row, x, y, light))
+    rf_grid_colour(row, x, colour);
+    gain = gain_at(listing, colour, x, y);
+    if (gain == 0)
         return;
     if (!open->run.count) {
         open->run.x = (uint16_t)x;
@@ -107,8 +118,8 @@ static void list_pixel(const struct listing *listing, const struct rf_grid_row *
                                      rf_grid_cell(y, grid->photo->height, grid->height));
     }
     open->run.count++;
-    for (int c = 0; c < 3; c++)
-        open->light[c] += light[c];
+    if (!listing->counts)
+        add_light(listing->estimate, colour, gain, x, y, open->light);
 }
 
 /* A part of the list. */
@@ -120,6 +131,8 @@ static void list_part(void *context, int item, int worker)
     const int end = rf_smaller((item + 1) * RF_HIGHLIGHT_ROWS, grid->photo->height);
 
     (void)worker;
+    if (!listing->counts && !listing->highlights->part[item].capacity)
+        return;
     for (int y = item * RF_HIGHLIGHT_ROWS; y < end && !rf_cancelled(grid->exec); y++) {
         const struct rf_grid_row row = rf_grid_row(grid, y);
         struct open open = {.run = {.count = 0}};
@@ -136,19 +149,39 @@ static void list_part(void *context, int item, int worker)
     }
 }
 
+/* Counts the runs of each part. The darkest are left out, until there is room for the others. */
+static void share_room(struct listing *listing)
+{
+    const struct rf_light_grid *grid = listing->estimate->grid;
+    const int parts = (grid->photo->height + RF_HIGHLIGHT_ROWS - 1) / RF_HIGHLIGHT_ROWS;
+    bool fits;
+
+    listing->counts = true;
+    do {
+        for (int part = 0; part < parts; part++)
+            listing->highlights->part[part].capacity = 0;
+        rf_pool_run(grid->exec->pool, list_part, listing, parts);
+        fits = rf_share_room(listing->highlights, grid->photo->width, grid->photo->height);
+        listing->least *= 2;
+    } while (!fits && listing->least < RF_MOST_GAIN * RF_LIGHT_MAX && !rf_cancelled(grid->exec));
+    listing->least /= 2;
+    listing->counts = false;
+}
+
 void rf_estimate_highlights(struct rf_light_grid *grid, struct rf_arena *arena,
                             const struct rf_transfer *linear, float scale,
                             struct rf_highlights *highlights)
 {
     struct rf_estimate estimate = {.grid = grid, .scale = scale};
-    struct listing listing = {&estimate, highlights};
+    struct listing listing = {&estimate, highlights, LEAST, false};
     const int parts = (grid->photo->height + RF_HIGHLIGHT_ROWS - 1) / RF_HIGHLIGHT_ROWS;
 
-    rf_clear_highlights(highlights);
+    rf_clear_highlights(highlights, grid->photo->width, grid->photo->height, false);
     rf_light_grid_lay_out(grid, arena);
     rf_estimate_lay_out(&estimate, arena);
     if (!rf_light_grid_measure(grid, linear))
         return;
     rf_estimate_make(&estimate);
+    share_room(&listing);
     rf_pool_run(grid->exec->pool, list_part, &listing, parts);
 }

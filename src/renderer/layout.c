@@ -151,6 +151,11 @@ static uint64_t lay_out_whole(struct refocus_renderer *r,
     lay_out_lists(arena, photo, w, h, params->deep);
     lay_out_last_edges(arena, &r->last_edges, params);
     r->last_light.light = rf_arena_take(arena, rf_steady_cells(w, h), sizeof(float));
+    if (params->deep) {
+        r->deep.curve = rf_arena_take(arena, 1, sizeof *r->deep.curve);
+        r->deep_out.curve = rf_arena_take(arena, 1, sizeof *r->deep_out.curve);
+        rf_lay_out_known(&photo->highlights, arena, w, h);
+    }
     prepare = *arena;
     r->prepare_memory = rf_arena_take(&prepare, prepare_bytes(params), 1);
     estimate = *arena;
@@ -159,11 +164,6 @@ static uint64_t lay_out_whole(struct refocus_renderer *r,
         prepare.used = estimate.used;
     r->smooth_group = rf_arena_take(arena, size, 2);
     r->background_group = rf_arena_take(arena, size, 2);
-    if (params->deep) {
-        r->deep.curve = rf_arena_take(arena, 1, sizeof *r->deep.curve);
-        r->deep_out.curve = rf_arena_take(arena, 1, sizeof *r->deep_out.curve);
-        rf_lay_out_known(&photo->highlights, arena, w, h);
-    }
     return prepare.used;
 }
 

@@ -369,6 +369,8 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
     if (layers && !rf_cancelled(&r->exec) && !r->cache.boosted && rf_boosts(f)) {
         rf_pass_boost(f);
         r->cache.boosted = true;
+        if (rf_cancelled(&r->exec)) /* light that is boosted in part cannot be boosted again */
+            r->cache = (struct rf_pass_cache){0};
     }
     if (layers && f->weighted && rf_is_sweep(f))
         make_weights(f);

@@ -305,6 +305,7 @@ static int prepare(struct refocus_renderer *r, const struct rf_log *log,
     own->height = scene.photo.height;
     own->highlights_blend = own->thin.blend = RF_NO_BLEND;
     own->silhouettes.count = 0;
+    own->silhouettes.capacity = (uint32_t)((uint64_t)own->width * (uint64_t)own->height / 64 + 64);
     r->edges = refocus_depth_edges_report_default();
     own->thin.has_matte = false;
     own->behind.width = own->behind.height = 0;

@@ -56,6 +56,8 @@ void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float larg
     reach->scale = scale;
     reach->square = square;
     reach->tiles = rf_smaller((pad - 2 + RF_TILE - 1) / RF_TILE, farthest);
+    if (!scale.unit)
+        reach->tiles = rf_smaller(reach->tiles, RF_REACH_TILES);
     for (int i = 0; scale.unit && i < RF_FAR_TILES; i++)
         reach->table.far[i] = kept_at(scale, i * RF_TILE, 0, square);
     for (int j = 0; !scale.unit && j <= reach->tiles; j++)

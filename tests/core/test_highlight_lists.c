@@ -53,7 +53,7 @@ static void rows_of_wide_photos_are_stacked(void **state)
     struct rf_highlight *const run = malloc(runs * sizeof *run);
     struct rf_bins *const bins = calloc(WIDTH / RF_TILE, sizeof *bins);
     static struct rf_highlight_list part[RF_HIGHLIGHT_PARTS];
-    struct rf_highlights highlights = {part, NULL};
+    struct rf_highlights highlights = {part, NULL, NULL};
     const struct rf_viewport view = {.photo_width = WIDTH,
                                      .photo_height = RF_TILE,
                                      .width = WIDTH,

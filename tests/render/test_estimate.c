@@ -171,6 +171,45 @@ static void steady(void **state)
         fail_msg("a moving lamp gets %.2f to %.2f of its light", least, most);
 }
 
+/* The light of a lamp's disc. */
+static double light_of_disc(const struct picture *p)
+{
+    const struct refocus_highlight_params highlights = estimated(1);
+    uint8_t *out = malloc(3 * W * H);
+    double light = 0;
+
+    assert_non_null(out);
+    render(p, &highlights, 0, 2, K, out);
+    for (int y = CY - 12; y < CY + 12; y++)
+        for (int x = CX - 12; x < CX + 12; x++)
+            light += picture_light(out[3 * (y * W + x) + 1]);
+    free(out);
+    return light;
+}
+
+/* A lamp below a crowd of small ones keeps its light, though all of them are in one part of the
+ * lists, and are more than its share. */
+static void crowded(void **state)
+{
+    const struct thing lamp = {ELLIPSE, 7, 7, {6, 6, 6}};
+    struct picture p = with_skirt(black, &lamp, 0, 0.05);
+    double alone, among;
+
+    (void)state;
+    alone = light_of_disc(&p);
+    for (int y = 64; y < 108; y++)
+        for (int x = 0; x < W; x++) {
+            const int across = abs(x % 9 - 4), down = abs(y % 9 - 4);
+
+            if (abs(x - CX) > 40 && across < 3 && down < 4)
+                memset(p.rgb + 3 * (ptrdiff_t)(y * W + x), across < 2 && down < 3 ? 255 : 140, 3);
+        }
+    among = light_of_disc(&p);
+    if (among < 0.8 * alone || among > 1.25 * alone)
+        fail_msg("a lamp among others has a light of %.2f, alone %.2f", among, alone);
+    picture_free(&p);
+}
+
 /* A lamp of a video, or none, whose skirt flickers. */
 static struct picture frame_of(int i)
 {
@@ -347,10 +386,10 @@ static void same_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lamps),        cmocka_unit_test(day),       cmocka_unit_test(petals),
-        cmocka_unit_test(colours),      cmocka_unit_test(scales),    cmocka_unit_test(steady),
-        cmocka_unit_test(held_no_more), cmocka_unit_test(unclipped), cmocka_unit_test(same_bytes),
-        cmocka_unit_test(video),
+        cmocka_unit_test(lamps),      cmocka_unit_test(day),          cmocka_unit_test(petals),
+        cmocka_unit_test(colours),    cmocka_unit_test(scales),       cmocka_unit_test(steady),
+        cmocka_unit_test(crowded),    cmocka_unit_test(held_no_more), cmocka_unit_test(unclipped),
+        cmocka_unit_test(same_bytes), cmocka_unit_test(video),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
