@@ -123,7 +123,8 @@ REFOCUS_API void refocus_aperture_destroy(struct refocus_aperture **aperture);
 
 /** A ray: where it passes the aperture, in units of K, and its share. */
 struct refocus_ray {
-    int16_t u, v;    /**< Q15: (u, v) of eq. 4, length at most 1 (for masks, sqrt 2) */
+    int16_t u, v;    /**< Q15: (u, v) of eq. 4, length at most 1 (of masks, and of
+                          refocus_aperture_full_rays(), sqrt 2) */
     uint16_t weight; /**< share of the ray, 1 to 255; sets of N rays are all 255 */
 };
 

@@ -46,7 +46,8 @@ enum refocus_inpaint {
 };
 enum { REFOCUS_INPAINT_COUNT = 2 };
 
-/** For rays: every pixel of the aperture mask. */
+/** For rays: every pixel of the aperture mask. Not with an aperture whose edge_before and
+ * edge_behind differ. */
 enum { REFOCUS_RAYS_FULL = -1 };
 
 /** Highlights: the light that clipping took. Of `sweep` and `search`. Start from

@@ -13,7 +13,9 @@ extern "C" {
 
 /** The edges of a map of disparities. */
 enum refocus_depth_edges {
-    REFOCUS_DEPTH_EDGES_AS_GIVEN = 0, /**< every disparity as the map has it */
+    REFOCUS_DEPTH_EDGES_AS_GIVEN = 0, /**< every edge where the map has it. 8-bit maps of the
+                                           photo's size are smoothed over steps of one code, by
+                                           less than a code */
     REFOCUS_DEPTH_EDGES_AUTO = 1,     /**< refocus_depth_edges() of depth_edges.h: where the map is
                                            soft, coarse or beside the photo, its edges go to the
                                            photo's. A renderer has to be made for it:
