@@ -26,6 +26,23 @@ static int read_text(char **text, const char *path, struct refocus_reason *reaso
     return REFOCUS_OK;
 }
 
+int rf_replay_read_script(struct rf_script *script, const char *rest, struct refocus_reason *reason)
+{
+    char *text = NULL;
+    int status;
+
+    if (*rest == ':') {
+        text = strdup(rest + 1);
+        status = text ? REFOCUS_OK : rf_capture_fail_memory(reason);
+    } else {
+        status = read_text(&text, rest, reason);
+    }
+    if (status == REFOCUS_OK)
+        status = rf_script_parse(script, text, reason);
+    free(text);
+    return status;
+}
+
 static void close_replay(struct refocus_source *source)
 {
     struct rf_replay *replay = source->state;
@@ -41,21 +58,12 @@ static int open_replay(struct refocus_source *source, const char *rest,
                        struct refocus_reason *reason)
 {
     struct rf_replay *replay = calloc(1, sizeof *replay);
-    char *text = NULL;
     int status;
 
     if (!replay)
         return rf_capture_fail_memory(reason);
     source->state = replay;
-    if (*rest == ':') {
-        text = strdup(rest + 1);
-        status = text ? REFOCUS_OK : rf_capture_fail_memory(reason);
-    } else {
-        status = read_text(&text, rest, reason);
-    }
-    if (status == REFOCUS_OK)
-        status = rf_script_parse(&replay->script, text, reason);
-    free(text);
+    status = rf_replay_read_script(&replay->script, rest, reason);
     replay->format = replay->script.format;
     replay->width = replay->script.width;
     replay->height = replay->script.height;

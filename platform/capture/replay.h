@@ -35,6 +35,10 @@ struct rf_frame_faults {
 
 /* Each returns REFOCUS_OK or an error, with its reason. */
 
+/* Read and parse the script of a name behind "replay:"; rf_script_free() in any case. */
+int rf_replay_read_script(struct rf_script *script, const char *rest,
+                          struct refocus_reason *reason);
+
 /* Draw the scene anew in the format, size and stride of now. */
 int rf_replay_draw(struct rf_replay *replay, struct refocus_reason *reason);
 

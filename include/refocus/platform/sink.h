@@ -40,6 +40,18 @@ extern "C" {
 struct refocus_sink;
 
 /**
+ * Whether a sink would write over a file that is read. Sinks of files begin them anew when they are
+ * opened, so ask before that.
+ *
+ * @param sink   as for refocus_sink_open()
+ * @param input  a source as for refocus_source_open(), or the name of a file
+ * @return 1: both names lead to one file that is there, or two patterns of pictures have one in
+ *         common; 0: they do not, or one of them is NULL; REFOCUS_ERR_MEMORY. Links are followed,
+ *         pipes and devices do not count. Thread-safe.
+ */
+REFOCUS_API int refocus_sink_overwrites(const char *sink, const char *input);
+
+/**
  * Open a sink. Nothing is written yet.
  *
  * @param sink    receives the sink, or NULL on an error; ended by refocus_sink_close()

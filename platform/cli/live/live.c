@@ -7,6 +7,7 @@
 #include "live/live_commands.h"
 #include "live/live_depth_camera.h"
 #include "live/live_estimate.h"
+#include "live/live_inputs.h"
 #include "live/live_lens.h"
 #include "live/live_look.h"
 #include "live/live_options.h"
@@ -174,6 +175,8 @@ static int run(int argc, char **argv)
     if (settings.list)
         return list(&settings);
     status = live_check_settings(&settings);
+    if (status == EXIT_DONE)
+        status = live_check_inputs(&settings);
     if (status != EXIT_DONE)
         return status;
     live = calloc(1, sizeof *live);

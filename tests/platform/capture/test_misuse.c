@@ -123,6 +123,8 @@ static void sinks_of_nothing(void **state)
     assert_status(refocus_sink_close(NULL, NULL), REFOCUS_OK);
     assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
     assert_int_equal(refocus_sink_takes(NULL, REFOCUS_FORMAT_RGB8), 0);
+    assert_int_equal(refocus_sink_overwrites(NULL, "x"), 0);
+    assert_int_equal(refocus_sink_overwrites("y4m:x", NULL), 0);
     for (int f = 0; f < 5; f++) {
         assert_status(refocus_sink_open(&sink, "raw:misuse.raw,own", NULL), REFOCUS_OK);
         assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_ERR_STATE);

@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+"""usage: test_live_files.py REFOCUS  -- refocus live from files to files: what is damaged, ends or is in the way."""
+import os
+import unittest
+
+from living import Live, content
+
+PHOTO = bytes((x * 37 + y * 91 + x * y * 13) % 199 for y in range(48) for x in range(64))
+
+
+def frame(n):
+    """A frame of 64x48 in 4:2:0, each another one."""
+    return b'FRAME\n' + bytes((v + 3 * n) % 220 + 16 for v in PHOTO) + bytes([128]) * (32 * 24 * 2)
+
+
+def write(name, data):
+    with open(name, 'wb') as file:
+        file.write(data)
+
+
+class Files(Live):
+    def setUp(self):
+        super().setUp()
+        write('in.y4m', b'YUV4MPEG2 W64 H48 F30:1 C420jpeg\n' + b''.join(map(frame, range(10))))
+        write('depth.pgm', b'P5\n64 48\n255\n' + bytes(range(0, 256, 4)) * 48)
+        write('depth.y4m', b'YUV4MPEG2 W4 H1 F30:1 Cmono\n' + b'FRAME\nabcd' * 10)
+
+    def test_inputs_are_not_written_over(self):
+        for n in range(3):
+            write('f-%03d.ppm' % n, b'P6\n64 48\n255\n' + bytes(64 * 48 * 3))
+        write('map-1.ppm', b'P6\n64 48\n255\n' + bytes(64 * 48 * 3))
+        os.symlink('in.y4m', 'link')
+        video = ['--camera', 'y4m:in.y4m', '--depth', 'depth.pgm']
+        pictures = ['--camera', 'file:f-%03d.ppm', '--depth', 'depth.pgm']
+        before = {name: content(name) for name in os.listdir()}
+        for args in (video + ['--out', 'y4m:in.y4m'], video + ['--out', 'raw:./in.y4m,NV12'],
+                     video + ['--out', 'y4m:link'], video + ['--out', 'y4m:depth.pgm'],
+                     video[:2] + ['--depth', 'y4m:depth.y4m', '--out', 'raw:depth.y4m'],
+                     pictures + ['--out', 'f-%03d.ppm'],
+                     video[:2] + ['--depth', 'map-1.ppm', '--out', 'map-%d.ppm'],
+                     video + ['--focus-map', 'map-1.ppm', '--out', 'map-%d.ppm'],
+                     video + ['--sharp-mask', 'map-1.ppm', '--out', 'map-%d.ppm'],
+                     video + ['--aperture', 'map-1.ppm', '--out', 'map-%d.ppm'],
+                     ['--camera', 'replay::from y4m:in.y4m', *video[2:], '--out', 'y4m:in.y4m']):
+            self.fails(2, 'it is an input too and would be lost; give another name', *args)
+        args = ['--camera', 'replay::size 64x48', '--depth', 'replay::format Z16;size 32x24']
+        self.fails(2, 'it is an input too', *args, '--calibration', 'map-1.ppm', '--out', 'map-%d.ppm')
+        self.assertEqual({name: content(name) for name in os.listdir()}, before)
+        self.report(*pictures, '--out', 'f-%02d.ppm')
+        self.assertTrue(os.path.exists('f-02.ppm'))
+
+
+if __name__ == '__main__':
+    unittest.main()
