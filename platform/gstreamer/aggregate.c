@@ -173,7 +173,7 @@ static GstBuffer *new_frame(GstRefocus *element, GstBuffer *frame)
 }
 
 /* The library's part: pictures in the memory of both buffers. */
-static int render(GstRefocus *element, GstVideoFrame *in, GstVideoFrame *out,
+static int render(GstRefocus *element, GstClockTime time, GstVideoFrame *in, GstVideoFrame *out,
                   struct refocus_reason *reason)
 {
     struct rf_gst_settings settings;
@@ -190,8 +190,8 @@ static int render(GstRefocus *element, GstVideoFrame *in, GstVideoFrame *out,
     if (status == REFOCUS_OK)
         status = rf_gst_depths_use(&element->depths, &settings, &photo, reason);
     if (status == REFOCUS_OK)
-        status =
-            rf_gst_shot_take(&element->shot, &settings, &element->depths, &photo, &picture, reason);
+        status = rf_gst_shot_take(&element->shot, &settings, &element->depths, time, &photo,
+                                  &picture, reason);
     rf_gst_settings_end(&settings);
     return status;
 }
@@ -216,7 +216,7 @@ static GstFlowReturn refocus(GstRefocus *element, GstBuffer *buffer, GstClockTim
         gst_buffer_unref(result);
         return fail(element, "the memory for frames cannot be written");
     }
-    status = render(element, &in, &out, &reason);
+    status = render(element, time, &in, &out, &reason);
     gst_video_frame_unmap(&out);
     gst_video_frame_unmap(&in);
     if (status != REFOCUS_OK) {

@@ -168,6 +168,7 @@ static bool take_segment(GstRefocus *element, GstEvent *event)
         return false;
     }
     gst_aggregator_update_segment(&element->parent, segment);
+    rf_gst_shot_forget(&element->shot);
     forget_lateness(element);
     return true;
 }

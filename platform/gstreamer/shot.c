@@ -6,6 +6,10 @@
 #include "frame.h"
 #include "shot.h"
 
+/* Small changes of the light of highlights from frame to frame are reduced by this part, as by
+ * `refocus live`. */
+#define STEADY_LIGHT 0.8f
+
 static int fail(struct refocus_reason *reason, int status, const char *text)
 {
     snprintf(reason->text, sizeof reason->text, "%s", text);
@@ -136,12 +140,29 @@ static struct refocus_settings params_of(const struct rf_gst_shot *shot,
         params.highlights.gain = (float)settings->highlights;
     else if (traits & REFOCUS_METHOD_HIGHLIGHTS)
         params.highlights.estimate = 1;
+    /* A render without it forgets the frame before. */
+    params.highlights.steady = shot->cut ? 0 : STEADY_LIGHT;
     return params;
 }
 
+void rf_gst_shot_forget(struct rf_gst_shot *shot)
+{
+    shot->cut = shot->begun;
+}
+
+/* A frame from before the last, or more than a second after it, shows another moment. */
+static void follow_time(struct rf_gst_shot *shot, GstClockTime time)
+{
+    if (GST_CLOCK_TIME_IS_VALID(time) && GST_CLOCK_TIME_IS_VALID(shot->time) &&
+        (time < shot->time || time - shot->time > GST_SECOND))
+        rf_gst_shot_forget(shot);
+    shot->time = time;
+}
+
 int rf_gst_shot_take(struct rf_gst_shot *shot, const struct rf_gst_settings *settings,
-                     const struct rf_gst_depths *depths, const struct refocus_image *photo,
-                     const struct refocus_image *out, struct refocus_reason *reason)
+                     const struct rf_gst_depths *depths, GstClockTime time,
+                     const struct refocus_image *photo, const struct refocus_image *out,
+                     struct refocus_reason *reason)
 {
     struct refocus_scene scene = refocus_scene_default(photo, &depths->disparity);
     struct refocus_settings params;
@@ -158,10 +179,15 @@ int rf_gst_shot_take(struct rf_gst_shot *shot, const struct rf_gst_settings *set
         return status;
     if (settings->place_edges)
         scene.depth_edges = REFOCUS_DEPTH_EDGES_STEADY;
+    follow_time(shot, time);
     params = params_of(shot, settings, focus, blur);
     status = refocus_prepare_scene(shot->renderer, &scene);
     if (status == REFOCUS_OK)
         status = refocus_render_settings(shot->renderer, &params, out);
+    if (status == REFOCUS_OK) {
+        shot->begun = true;
+        shot->cut = false;
+    }
     return status;
 }
 

@@ -10,12 +10,18 @@ struct rf_gst_shot {
     struct refocus_renderer_params made; /* parameters of the renderer */
     struct refocus_aperture *aperture;
     unsigned shape_number; /* shape of the aperture; 0: there is none */
+    GstClockTime time;     /* running time of the last frame */
+    bool begun, cut;       /* there was a frame; the next one does not follow on it */
 };
 
-/* Refocus a frame. On an error `reason` says why in words. */
+/* The next frame does not follow on the last: their highlights are not compared. */
+void rf_gst_shot_forget(struct rf_gst_shot *shot);
+
+/* Refocus a frame of this running time, or none. On an error `reason` says why in words. */
 int rf_gst_shot_take(struct rf_gst_shot *shot, const struct rf_gst_settings *settings,
-                     const struct rf_gst_depths *depths, const struct refocus_image *photo,
-                     const struct refocus_image *out, struct refocus_reason *reason);
+                     const struct rf_gst_depths *depths, GstClockTime time,
+                     const struct refocus_image *photo, const struct refocus_image *out,
+                     struct refocus_reason *reason);
 void rf_gst_shot_end(struct rf_gst_shot *shot);
 
 #endif

@@ -2,6 +2,7 @@
  */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
@@ -93,6 +94,71 @@ static void depth_of_other_kinds(void **state)
     check_frame(NV12, "video/x-raw,format=GRAY8,width=21,height=90,framerate=0/1", 8, 21, 90);
 }
 
+/* A dark frame with lamps that are clipped, each by so many pixels to a side. */
+static GstBuffer *lamps(int side, int ms)
+{
+    GstBuffer *const frame = frame_flat(NV12, 40, (GstClockTime)ms * GST_MSECOND);
+    GstMapInfo map;
+
+    gst_buffer_map(frame, &map, GST_MAP_WRITE);
+    memset(map.data + (size_t)64 * 48, 128, (size_t)64 * 24);
+    for (int y = 0; y < 48; y++)
+        for (int x = 0; x < 64; x++)
+            if (x % 16 >= 6 && x % 16 < 6 + side && y % 16 >= 6 && y % 16 < 8)
+                map.data[64 * y + x] = 235;
+    gst_buffer_unmap(frame, &map);
+    return frame;
+}
+
+/* Whether lamps come out as the library renders them by themselves. */
+static bool lamps_come_alone(struct bench *bench, int side, int ms)
+{
+    struct refocus_settings settings = frame_settings(1, 8);
+    const uint8_t far = 0;
+    const struct refocus_disparity disparity = refocus_disparity8(&far, 1, 1, 1);
+    GstBuffer *const frame = lamps(side, ms);
+    GstBuffer *expected, *out;
+    bool same;
+
+    settings.highlights.estimate = 0;
+    settings.highlights.gain = 6;
+    expected = frame_expect(NV12, frame, &disparity, &settings);
+    assert_int_equal(gst_harness_push(bench->video, frame), GST_FLOW_OK);
+    out = gst_harness_pull(bench->video);
+    assert_non_null(out);
+    same = frame_same(NV12, out, expected);
+    gst_buffer_unref(out);
+    gst_buffer_unref(expected);
+    return same;
+}
+
+/* Light of highlights follows that of the last frame, unless that shows another moment. */
+static void steady_light(void **state)
+{
+    struct bench bench;
+    GstSegment segment;
+
+    (void)state;
+    bench_open(&bench, NV12, "video/x-raw,format=GRAY8,width=1,height=1,framerate=25/1");
+    g_object_set(bench.element, "focus", 1.0, "blur", 8.0, "highlights", 6.0, NULL);
+    assert_int_equal(
+        gst_harness_push(
+            bench.depth,
+            frame_flat("video/x-raw,format=GRAY8,width=1,height=1,framerate=25/1", 0, 0)),
+        GST_FLOW_OK);
+    gst_harness_push_event(bench.depth, gst_event_new_eos());
+    assert_true(lamps_come_alone(&bench, 7, 0));
+    assert_false(lamps_come_alone(&bench, 8, 40));
+    assert_false(lamps_come_alone(&bench, 7, 80));
+    assert_true(lamps_come_alone(&bench, 8, 1500));
+    assert_true(lamps_come_alone(&bench, 7, 1540)); /* the first one is not kept */
+    assert_false(lamps_come_alone(&bench, 8, 1580));
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    gst_harness_push_event(bench.video, gst_event_new_segment(&segment));
+    assert_true(lamps_come_alone(&bench, 7, 1620));
+    bench_close(&bench);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -101,6 +167,7 @@ int main(void)
         cmocka_unit_test(ten_bits),
 #endif
         cmocka_unit_test(depth_of_other_kinds),
+        cmocka_unit_test(steady_light),
     };
 
     gst_init(NULL, NULL);
