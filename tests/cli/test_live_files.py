@@ -3,7 +3,7 @@
 import os
 import unittest
 
-from living import Live, content
+from living import Live, content, live
 
 PHOTO = bytes((x * 37 + y * 91 + x * y * 13) % 199 for y in range(48) for x in range(64))
 
@@ -48,6 +48,38 @@ class Files(Live):
         self.assertEqual({name: content(name) for name in os.listdir()}, before)
         self.report(*pictures, '--out', 'f-%02d.ppm')
         self.assertTrue(os.path.exists('f-02.ppm'))
+
+    def test_frames_before_a_fault_come_out(self):
+        """Whichever of both is cut or damaged, and however far ahead it was read."""
+        video, depth = content('in.y4m'), content('depth.y4m')
+        size = len(frame(0))
+
+        def run(words, whole, *args, code=1):
+            for _ in range(3):
+                self.fails(code, words, *args, '--out', 'y4m:out.y4m')
+                out = content('out.y4m')
+                self.assertEqual(out.count(b'FRAME\n'), whole)
+                self.assertEqual(len(out) - out.index(b'FRAME'), whole * size)
+        write('cut.y4m', video + frame(10)[:3000])
+        run('it ends within frame 10', 10, '--camera', 'y4m:cut.y4m', '--depth', 'depth.pgm')
+        write('cut.y4m', video + b'FROM\n' + video)
+        run('frame 10 does not begin with FRAME', 10, '--camera', 'y4m:cut.y4m', '--depth', 'depth.pgm')
+        write('cut.y4m', depth[:-52])
+        run('it ends within frame 4', 4, '--camera', 'y4m:in.y4m', '--depth', 'y4m:cut.y4m')
+        write('cut.y4m', depth.replace(b'F30:1', b'F10:1')[:-72])  # the last whole one is at 0.1 s
+        run('it ends within frame 2', 4, '--camera', 'y4m:in.y4m', '--depth', 'y4m:cut.y4m')
+        write('cut.y4m', b'YUV4MPEG2 W4 H1 F30:1 Cmono\nFRAME\nab')
+        self.fails(1, 'it ends within frame 0', '--camera', 'y4m:in.y4m', '--depth', 'y4m:cut.y4m',
+                   '--out', 'y4m:out.y4m')
+        for n in range(5):
+            write('f-%d.ppm' % n, b'P6\n64 48\n255\n' + bytes(64 * 48 * 3 * (n < 4)))
+        run('', 4, '--camera', 'file:f-%d.ppm', '--depth', 'depth.pgm')
+        # As a camera would: what was taken is written, the newest alone if it has to be.
+        write('cut.y4m', video + frame(10)[:3000])
+        done = live('--camera', 'y4m:cut.y4m', '--depth', 'depth.pgm', '--frames-policy', 'newest',
+                    '--out', 'y4m:out.y4m')
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(b'FRAME', content('out.y4m'))
 
 
 if __name__ == '__main__':

@@ -123,7 +123,7 @@ static void run_threads(struct live *live)
     if (running[OUTPUT])
         pthread_join(thread[OUTPUT], NULL);
     live_end(live);
-    live_depths_end(&live->depths);
+    live_depths_end(&live->depths, false);
     live_queue_close(&live->captured);
     live_queue_close(&live->rendered);
     live_queue_close(&live->to_estimate);

@@ -26,12 +26,23 @@ void live_depths_free(struct live_depths *depths)
     depths->made = false;
 }
 
-void live_depths_end(struct live_depths *depths)
+void live_depths_end(struct live_depths *depths, bool failed)
 {
     pthread_mutex_lock(&depths->lock);
     depths->ended = true;
+    depths->failed |= failed;
     pthread_cond_broadcast(&depths->changed);
     pthread_mutex_unlock(&depths->lock);
+}
+
+bool live_depths_have_failed(struct live_depths *depths)
+{
+    bool failed;
+
+    pthread_mutex_lock(&depths->lock);
+    failed = depths->failed;
+    pthread_mutex_unlock(&depths->lock);
+    return failed;
 }
 
 bool live_depth_reserve(struct live_depth_map *map, int width, int height)
@@ -164,6 +175,8 @@ const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_
     }
     if (!*paired && !depths->every)
         map = newest;
+    else if (!*paired && depths->failed && newest && newest->timestamp_ns < timestamp_ns)
+        map = NULL;
     depths->pinned = map ? (int)(map - depths->map) : -1;
     pthread_mutex_unlock(&depths->lock);
     return map;

@@ -27,13 +27,17 @@ struct live_depths {
     int64_t needed_ns; /* maps from before this moment are needed no more */
     bool made;         /* the lock and the condition are there */
     bool every, ended;
-    bool still; /* the newest map is for all times */
+    bool failed; /* the maps that would have come are missing */
+    bool still;  /* the newest map is for all times */
 };
 
 /* False: there is no lock to be had; live_depths_free() is right even so. */
 bool live_depths_init(struct live_depths *depths, bool every);
 void live_depths_free(struct live_depths *depths);
-void live_depths_end(struct live_depths *depths);
+/* No more maps will come. After a failure, when every frame counts, those that would have waited
+ * for the next map have none. */
+void live_depths_end(struct live_depths *depths, bool failed);
+bool live_depths_have_failed(struct live_depths *depths);
 /* A map to fill that no one uses; NULL when it is over or there is no memory. */
 struct live_depth_map *live_depths_fill(struct live_depths *depths, int width, int height);
 void live_depths_put(struct live_depths *depths, struct live_depth_map *map, int64_t timestamp_ns,

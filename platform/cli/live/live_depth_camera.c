@@ -192,7 +192,9 @@ void *live_depth_thread(void *argument)
     free(samples.registered);
     free(samples.work);
     live_range_end(&live->ranger);
-    live_depths_end(&live->depths);
+    live_depths_end(&live->depths, lane.failed);
+    if (lane.failed && live->settings->policy == POLICY_NEWEST)
+        live_queue_close(&live->captured);
     return NULL;
 }
 

@@ -208,7 +208,7 @@ void *live_estimate_thread(void *argument)
             live_fail(live, EXIT_FAILED, live->settings->estimate.model,
                       reason.text[0] ? reason.text : refocus_strerror(status));
     }
-    live_depths_end(&live->depths);
+    live_depths_end(&live->depths, false);
     return NULL;
 }
 

@@ -132,7 +132,7 @@ void live_feed_close(struct live_feed **feed)
     if (!closed)
         return;
     live_end(&closed->live);
-    live_depths_end(&closed->live.depths);
+    live_depths_end(&closed->live.depths, false);
     live_queue_close(&closed->live.captured);
     live_queue_close(&closed->live.to_estimate);
     for (int i = 0; i < FEED_THREADS; i++)

@@ -18,6 +18,12 @@ static bool can_restart(int status)
            status == REFOCUS_ERR_PERMISSION;
 }
 
+static void fail(struct live_lane *lane, const char *why)
+{
+    lane->failed = true;
+    live_note_failure(lane->live, EXIT_FAILED, lane->name, why);
+}
+
 /* Restart until frames can come again; false when it is over or patience ends. */
 static bool recover(struct live_lane *lane, struct refocus_reason *reason)
 {
@@ -123,8 +129,7 @@ static int handle(struct live_lane *lane, const struct refocus_frame *given)
     }
     if (status == REFOCUS_OK)
         return EXIT_DONE;
-    live_fail(lane->live, EXIT_FAILED, lane->name,
-              reason.text[0] ? reason.text : refocus_strerror(status));
+    fail(lane, reason.text[0] ? reason.text : refocus_strerror(status));
     return EXIT_FAILED;
 }
 
@@ -185,18 +190,18 @@ void live_lane_run(struct live_lane *lane)
             if (ms_since(lane->quiet_since_ns) < 2000)
                 continue;
         } else if (!can_restart(status)) {
-            live_fail(live, EXIT_FAILED, lane->name, reason.text);
+            fail(lane, reason.text);
             return;
         }
         fault_ns = fault_ns ? fault_ns : live_now_ns();
         if (!recover(lane, &reason)) {
             if (!live_is_over(live))
-                live_fail(live, EXIT_FAILED, lane->name, reason.text);
+                fail(lane, reason.text);
             return;
         }
         if (status == REFOCUS_ERR_TIMEOUT &&
             (double)ms_since(fault_ns) > live->settings->patience * 1e3) {
-            live_fail(live, EXIT_FAILED, lane->name, "no frame comes; check the camera");
+            fail(lane, "no frame comes; check the camera");
             return;
         }
         lane->quiet_since_ns = live_now_ns();

@@ -32,6 +32,7 @@ struct live_lane {
     bool newest_wins;
     int64_t late_ns; /* older frames alone are skipped for a newer one; 0: any */
     bool done;       /* nothing else will come */
+    bool failed;     /* the failure is noted, and the lane has ended by it */
 };
 
 /* A lane that is ready for live_lane_run(), but for deliver() and user. */

@@ -187,7 +187,7 @@ static bool process(struct live *live, struct live_picture *picture, int size[2]
     int status;
 
     if (!map)
-        return true;
+        return !live_depths_have_failed(&live->depths);
     if (live->settings->steady > 0) {
         status = live_steady_run(&live->steady, live->settings->steady, &map, &picture->image);
         if (status != REFOCUS_OK) {

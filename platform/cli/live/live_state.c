@@ -24,7 +24,7 @@ void live_end(struct live *live)
     pthread_mutex_unlock(&live->lock);
 }
 
-void live_fail(struct live *live, int exit_code, const char *what, const char *why)
+void live_note_failure(struct live *live, int exit_code, const char *what, const char *why)
 {
     pthread_mutex_lock(&live->lock);
     if (live->exit_code == EXIT_DONE) {
@@ -33,5 +33,10 @@ void live_fail(struct live *live, int exit_code, const char *what, const char *w
         snprintf(live->why, sizeof live->why, "%s", why);
     }
     pthread_mutex_unlock(&live->lock);
+}
+
+void live_fail(struct live *live, int exit_code, const char *what, const char *why)
+{
+    live_note_failure(live, exit_code, what, why);
     live_end(live);
 }

@@ -79,7 +79,10 @@ struct live {
     uint64_t frames_rendered;
 };
 
-/* Remember the first failure, and let all come to an end; what "": it has been printed. */
+/* Remember the first failure; what "": it has been printed. A source that fails does no more than
+ * that and ends: what came before is still rendered and written. */
+void live_note_failure(struct live *live, int exit_code, const char *what, const char *why);
+/* Remember the first failure, and let all come to an end at once. */
 void live_fail(struct live *live, int exit_code, const char *what, const char *why);
 void live_end(struct live *live);
 bool live_is_over(struct live *live);
