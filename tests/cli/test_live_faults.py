@@ -70,6 +70,12 @@ class Faults(Live):
         self.assertEqual(r['depth']['recoveries'], 1)
         self.assertGreater(r['unpaired'], 0)
         self.check_sum(r)
+        # No frame waits for a map that will not be there in time, or not at all.
+        late = DEPTH + ''.join(';at %d timestamp -100' % n for n in range(70))
+        for depth in late, DEPTH.replace('30', '5'):
+            r = self.report('--camera', 'replay::size 64x48;fps 30;frames 60', '--depth', depth)
+            self.assertLess(r['stages_ms']['pair']['median'], 15)
+            self.check_sum(r)
 
     @unittest.skipUnless('RF_OPENCV' in os.environ, 'this build has no OpenCV')
     def test_a_network_makes_depth_of_every_nth_frame(self):

@@ -1,11 +1,13 @@
 /* live_depth.c: depth maps wait for the frame that they go with. */
 #include <errno.h>
+#include <math.h>
 #include <refocus/status.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include "live/live_depth.h"
 #include "live/live_lock.h"
+#include "live/live_times.h"
 
 bool live_depths_init(struct live_depths *depths, bool every)
 {
@@ -107,6 +109,22 @@ struct live_depth_map *live_depths_fill(struct live_depths *depths, int width, i
     return map && live_depth_reserve(map, width, height) ? map : NULL;
 }
 
+/* The first map tells the lag, the second the period, until there are three of each. */
+static void note_habits(struct live_depths *depths, int64_t timestamp_ns, int64_t now_ns)
+{
+    const int64_t period_ns = depths->count > 0 ? timestamp_ns - depths->newest_ns : 0;
+
+    for (uint64_t i = 0; i < LIVE_HABITS; i++) {
+        const bool mine = i == depths->count % LIVE_HABITS;
+
+        if (mine || depths->count <= 1)
+            depths->period_ns[i] = period_ns;
+        if (mine || depths->count == 0)
+            depths->lag_ns[i] = now_ns - timestamp_ns;
+    }
+    depths->newest_ns = timestamp_ns;
+}
+
 void live_depths_put(struct live_depths *depths, struct live_depth_map *map, int64_t timestamp_ns,
                      bool still)
 {
@@ -114,6 +132,7 @@ void live_depths_put(struct live_depths *depths, struct live_depth_map *map, int
     depths->still |= still;
     for (int i = 0; still && i < LIVE_DEPTHS; i++)
         depths->map[i].number = 0; /* none before it counts any more */
+    note_habits(depths, timestamp_ns, live_now_ns());
     map->timestamp_ns = timestamp_ns;
     map->number = ++depths->count;
     pthread_cond_broadcast(&depths->changed);
@@ -147,18 +166,40 @@ static const struct live_depth_map *nearest(const struct live_depths *depths, in
     return found;
 }
 
-const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_t timestamp_ns,
-                                              int64_t half_ns, bool *paired)
+/* The one in the middle of three. */
+static double middle(const int64_t value[LIVE_HABITS])
 {
+    const double a = (double)value[0], b = (double)value[1], c = (double)value[2];
+
+    return fmax(fmin(a, b), fmin(fmax(a, b), c));
+}
+
+int64_t live_depths_due(const struct live_depths *depths, int64_t timestamp_ns, int64_t half_ns,
+                        int64_t now_ns)
+{
+    const double newest = (double)depths->newest_ns, time = (double)timestamp_ns;
+    const double period = middle(depths->period_ns), lag = middle(depths->lag_ns);
+    double next = time;
+
+    if (depths->count == 0)
+        return INT64_MIN;
+    if (period > 0)
+        next = newest + fmax(round((time - newest) / period), 1) * period;
+    /* Cameras are not punctual. One that has missed three maps may not go on at all. */
+    if (fabs(next - time) > 1.5 * (double)half_ns ||
+        (period > 0 && (double)now_ns > newest + lag + 3 * period))
+        return INT64_MAX;
+    return next + lag < 9e18 ? (int64_t)(next + lag) : INT64_MAX;
+}
+
+const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_t timestamp_ns,
+                                              int64_t half_ns, int64_t deadline_ns, bool *paired)
+{
+    const struct timespec until = {.tv_sec = (time_t)(deadline_ns / 1000000000),
+                                   .tv_nsec = (long)(deadline_ns % 1000000000)};
     const struct live_depth_map *map, *newest;
-    struct timespec until;
-    int64_t wait_ns = 3 * half_ns; /* time that a depth camera may be late */
     int error = 0;
 
-    clock_gettime(CLOCK_MONOTONIC, &until);
-    wait_ns += until.tv_nsec;
-    until.tv_sec += (time_t)(wait_ns / 1000000000);
-    until.tv_nsec = (long)(wait_ns % 1000000000);
     pthread_mutex_lock(&depths->lock);
     depths->pinned = -1;
     depths->needed_ns = timestamp_ns - half_ns; /* time may go back, when a clock was set */
@@ -169,6 +210,9 @@ const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_
         /* A newer map that does not fit says that none will. */
         if (*paired || depths->ended || error == ETIMEDOUT ||
             (newest && newest->timestamp_ns > timestamp_ns + half_ns))
+            break;
+        if (!depths->every &&
+            live_depths_due(depths, timestamp_ns, half_ns, live_now_ns()) > deadline_ns)
             break;
         error = depths->every ? pthread_cond_wait(&depths->changed, &depths->lock)
                               : pthread_cond_timedwait(&depths->changed, &depths->lock, &until);

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include "live/live_range.h"
 
-enum { LIVE_DEPTHS = 16 };
+enum { LIVE_DEPTHS = 16, LIVE_HABITS = 3 };
 
 struct live_depth_map {
     uint16_t *disparity; /* packed */
@@ -22,7 +22,10 @@ struct live_depths {
     pthread_mutex_t lock;
     pthread_cond_t changed;
     struct live_depth_map map[LIVE_DEPTHS];
-    uint64_t count;    /* maps so far */
+    uint64_t count; /* maps so far */
+    /* These are of the last maps: when the newest was taken, how long after the one before, and how
+     * long after that it was here, by the clock on the wall; by count % LIVE_HABITS. */
+    int64_t newest_ns, period_ns[LIVE_HABITS], lag_ns[LIVE_HABITS];
     int pinned;        /* the one that is being used, or -1 */
     int64_t needed_ns; /* maps from before this moment are needed no more */
     bool made;         /* the lock and the condition are there */
@@ -43,12 +46,21 @@ struct live_depth_map *live_depths_fill(struct live_depths *depths, int width, i
 void live_depths_put(struct live_depths *depths, struct live_depth_map *map, int64_t timestamp_ns,
                      bool still);
 /*
+ * When the map of a moment will be here, as the last maps came, by the clock on the wall, which
+ * shows now_ns: INT64_MAX when none will be within half a frame of it, INT64_MIN before the first
+ * of them. The caller has the lock.
+ */
+int64_t live_depths_due(const struct live_depths *depths, int64_t timestamp_ns, int64_t half_ns,
+                        int64_t now_ns);
+/*
  * The map within half a frame of a moment. When there is none, *paired is false, and it is the
  * newest map, or, when every frame counts, the one nearest in time, which does not depend on how
- * far depth is ahead; NULL when there is no map at all. It may be used until the next call.
+ * far depth is ahead; NULL when there is no map at all. It may be used until the next call. A map
+ * that is due by the deadline, of the clock on the wall, is waited for until then, or when every
+ * frame counts as long as it takes.
  */
 const struct live_depth_map *live_depths_pair(struct live_depths *depths, int64_t timestamp_ns,
-                                              int64_t half_ns, bool *paired);
+                                              int64_t half_ns, int64_t deadline_ns, bool *paired);
 /* Memory for a map of that size, which the map then owns; false: there is none. */
 bool live_depth_reserve(struct live_depth_map *map, int width, int height);
 /* Put a map of a wider range in place of a map, in memory that `wide` owns. */

@@ -162,10 +162,10 @@ const struct live_depth_map *live_pair(struct live *live, const struct live_pict
     bool paired;
 
     if (live->estimator) /* by number, and the newest that there is serves at once */
-        map = live_depths_pair(&live->depths, picture->key, 0, &paired);
-    else
+        map = live_depths_pair(&live->depths, picture->key, 0, 0, &paired);
+    else /* depth may be late by one and a half frames */
         map = live_depths_pair(&live->depths, picture->timestamp_ns, (int64_t)(0.5e9 / fps) + 1,
-                               &paired);
+                               picture->taken_ns + (int64_t)(1.5e9 / fps), &paired);
     live_times_add(&live->pair.times, (double)(live_now_ns() - begin) / 1e6);
     if (!map)
         live->without_depth++;
