@@ -8,6 +8,7 @@
 #include "bytes.h"
 #include "ring.h"
 #include "samples.h"
+#include "y4m.h"
 
 enum { LONGEST_HEADER = 1024 };
 
@@ -27,61 +28,25 @@ struct stream {
     struct rf_ring ring;
 };
 
-static uint32_t colour_space(const char *name)
-{
-    static const char *const yuv420[] = {"420", "420jpeg", "420mpeg2", "420paldv"};
-
-    for (int i = 0; i < 4; i++)
-        if (strcmp(name, yuv420[i]) == 0)
-            return REFOCUS_FRAME_YUV420;
-    if (strcmp(name, "422") == 0)
-        return REFOCUS_FRAME_YUYV;
-    if (strcmp(name, "mono") == 0)
-        return REFOCUS_FRAME_GREY;
-    return strcmp(name, "mono16") == 0 ? REFOCUS_FRAME_Y16 : REFOCUS_FRAME_ANY;
-}
-
-/* A side of the picture; 0, which is out of the range, where the text is no such number. */
-static int parse_side(const char *text)
-{
-    char *end;
-    const long side = strtol(text, &end, 10);
-
-    return *end == '\0' && side > 0 && side <= REFOCUS_MAX_SIDE ? (int)side : 0;
-}
-
 static int parse_y4m(const struct refocus_source *source, struct refocus_reason *reason)
 {
     struct stream *stream = source->state;
-    char header[LONGEST_HEADER], *word, *rest = NULL;
-    long numerator = 30, denominator = 1;
-    const int status = rf_read_line(source, stream->fd, header, sizeof header, reason);
+    char header[LONGEST_HEADER];
+    struct rf_y4m y4m;
+    int status = rf_read_line(source, stream->fd, header, sizeof header, reason);
 
-    if (status != REFOCUS_OK && status != REFOCUS_ERR_END && status != REFOCUS_ERR_FORMAT)
+    if (status == REFOCUS_ERR_END || status == REFOCUS_ERR_FORMAT)
+        header[0] = '\0'; /* It is too short, or too long. */
+    else if (status != REFOCUS_OK)
         return status;
-    if (status != REFOCUS_OK || strncmp(header, "YUV4MPEG2", 9) != 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_FORMAT, "%.160s: it is not a YUV4MPEG2 stream",
-                               stream->path);
-    stream->format = REFOCUS_FRAME_YUV420;
-    for (word = strtok_r(header + 9, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
-        if (*word == 'W')
-            stream->width = parse_side(word + 1);
-        else if (*word == 'H')
-            stream->height = parse_side(word + 1);
-        else if (*word == 'F')
-            sscanf(word + 1, "%9ld:%9ld", &numerator, &denominator);
-        else if (*word == 'C') {
-            stream->tall = strcmp(word + 1, "422") == 0;
-            stream->format = colour_space(word + 1);
-        } else if (strcmp(word, "XCOLORRANGE=FULL") == 0)
-            stream->flags |= REFOCUS_FRAME_FULL_RANGE;
-    }
-    if (stream->format == REFOCUS_FRAME_ANY)
-        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                               "%.160s: give 4:2:0 or 4:2:2 of 8 bits, mono or mono16",
-                               stream->path);
-    stream->fps = numerator > 0 && denominator > 0 ? (double)numerator / (double)denominator : 30;
-    return REFOCUS_OK;
+    status = rf_y4m_parse(&y4m, header, stream->path, reason);
+    stream->format = y4m.format;
+    stream->flags = y4m.full_range ? REFOCUS_FRAME_FULL_RANGE : 0;
+    stream->tall = y4m.tall;
+    stream->width = y4m.width;
+    stream->height = y4m.height;
+    stream->fps = y4m.fps;
+    return status;
 }
 
 /* "FILE,NV12,640x480,30": from the end, as names may hold commas. */

@@ -10,8 +10,8 @@
  *     file:frames-%04d.png        pictures; one conversion that takes an int, from 0 or
  *         1 on
  *     file:photo.jpg              one picture, as often as it is asked for
- *     y4m:FILE                    a YUV4MPEG2 stream; "-" is standard input. Of a pipe the
- *         header is read when it is started, or asked for its mode
+ *     y4m:FILE                    a YUV4MPEG2 stream of whole frames, not of fields; "-" is
+ *         standard input. Of a pipe the header is read when it is started, or asked for its mode
  *     raw:FILE,NV12,640x480,30    frames without a header: format, size, rate
  *     replay:SCRIPT               frames and faults by a script; see platform/README.md
  *     replay::LINE;LINE;...       the same with the script in the name

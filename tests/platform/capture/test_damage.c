@@ -175,6 +175,12 @@ static void headers(void **state)
                                         "YUV4MPEG2 W8 H8 C411\n",
                                         "YUV4MPEG2 W8 H8 C420p10\n",
                                         "YUV4MPEG2 W8 H8",
+                                        "YUV4MPEG2X W8 H8\n",
+                                        "YUV4MPEG22 W8 H8\n",
+                                        " YUV4MPEG2 W8 H8\n",
+                                        "YUV4MPEG2 W8 H8 It\n",
+                                        "YUV4MPEG2 Ib W8 H8\n",
+                                        "YUV4MPEG2 W8 H8 Im C420jpeg\n",
                                         "YUV4MPEG2 W99999999999 H8\n"};
     static const char *const right[] = {"YUV4MPEG2 W8 H8\n",
                                         "YUV4MPEG2 W8 H8 F0:0\n",
@@ -182,6 +188,7 @@ static void headers(void **state)
                                         "YUV4MPEG2 W8 H8 F-1:1\n",
                                         "YUV4MPEG2 W8 H8 F25:1 Ip A1:1 C420jpeg XCOLORRANGE=FULL\n",
                                         "YUV4MPEG2 H8 W8 Cmono\n",
+                                        "YUV4MPEG2 H8 W8 I?\n",
                                         "YUV4MPEG2 W1 H1 C420\n"};
     static const char *const bodies[] = {"FRAM",       "FRAME",     "FRAME\n",
                                          "FRAME\nabc", "NOFRAME\n", "FRAME Ixyz\nabc"};

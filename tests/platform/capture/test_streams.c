@@ -109,6 +109,9 @@ static void damage_is_named(void **state)
     assert_status(refocus_source_open(&source, "y4m:bad.y4m", &reason), REFOCUS_ERR_SIZE);
     write_text("bad.y4m", "YUV4MPEG2 W4 H4 C444\n");
     assert_status(refocus_source_open(&source, "y4m:bad.y4m", &reason), REFOCUS_ERR_UNSUPPORTED);
+    write_text("bad.y4m", "YUV4MPEG2 W4 H4 It\n");
+    assert_status(refocus_source_open(&source, "y4m:bad.y4m", &reason), REFOCUS_ERR_UNSUPPORTED);
+    assert_non_null(strstr(reason.text, "it is interlaced (It); deinterlace it first"));
     write_text("bad.y4m", "YUV4MPEG2 W4 H4\nFRAME\nabcdefghijklmnopqrstuvwxFRAME\nabc");
     source = started("y4m:bad.y4m", REFOCUS_SOURCE_FAST);
     assert_status(refocus_source_wait(source, 0, &frame, NULL), REFOCUS_OK);
