@@ -44,6 +44,7 @@ int main(int argc, char **argv)
     check(refocus_source_start(source, &config, &mode, &reason));
     snprintf(name, sizeof name, "y4m:%s", argv[3]);
     check(refocus_sink_open(&sink, name, &reason));
+    check(refocus_sink_set_mode(sink, &mode));
     check(refocus_sink_start(sink, mode.width, mode.height, mode.fps, &reason));
 
     check(refocus_depth_read(&depth, argv[2], NULL, 0, 0, NULL, &reason));

@@ -156,6 +156,23 @@ int refocus_sink_takes(struct refocus_sink *sink, uint32_t format)
            (rf_frame_format_of(format) && sink->ops->takes && sink->ops->takes(sink, format));
 }
 
+int refocus_sink_set_mode(struct refocus_sink *sink, const struct refocus_source_mode *mode)
+{
+    struct refocus_source_mode own;
+    const int status = refocus_struct_read(&own, sizeof own,
+                                           REFOCUS_SIZE_TO(struct refocus_source_mode, fps), mode);
+
+    if (status != REFOCUS_OK)
+        return status;
+    if (!sink || own.chroma_place >= REFOCUS_CHROMA_PLACE_COUNT || own.pixel_aspect[0] < 0 ||
+        own.pixel_aspect[1] < 0 || !own.pixel_aspect[0] != !own.pixel_aspect[1])
+        return REFOCUS_ERR_ARGUMENT;
+    sink->aspect[0] = own.pixel_aspect[0];
+    sink->aspect[1] = own.pixel_aspect[1];
+    sink->chroma_place = own.chroma_place;
+    return REFOCUS_OK;
+}
+
 int refocus_sink_start_image(struct refocus_sink *sink, const struct refocus_image *like,
                              double fps, struct refocus_reason *reason)
 {

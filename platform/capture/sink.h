@@ -14,6 +14,8 @@ struct refocus_sink {
     int width, height;
     double fps;
     uint32_t format, matrix, range; /* format of the pictures to come */
+    int32_t aspect[2];              /* width to height of a pixel; 0 and 0: not known */
+    uint32_t chroma_place;          /* enum refocus_chroma_place */
 };
 
 struct rf_sink_ops {

@@ -16,6 +16,7 @@
 #include "rgb_to_yuv.h"
 #include "samples.h"
 #include "sink.h"
+#include "y4m.h"
 
 struct stream {
     char *path;
@@ -206,11 +207,26 @@ static bool lay_out(struct stream *stream, uint32_t layout, int width, int heigh
     return true;
 }
 
+static size_t write_header(const struct refocus_sink *sink, char header[RF_Y4M_HEADER], double fps)
+{
+    const struct stream *const stream = sink->state;
+    const bool own = sink->format != REFOCUS_FORMAT_RGB8;
+    const struct rf_y4m y4m = {.tall = stream->tall,
+                               .full_range = stream->range == REFOCUS_RANGE_FULL,
+                               .width = stream->frame.width,
+                               .height = stream->frame.height,
+                               .fps = fps,
+                               .aspect = {sink->aspect[0], sink->aspect[1]},
+                               .chroma_place = own ? sink->chroma_place : 0};
+
+    return rf_y4m_write(header, &y4m);
+}
+
 static int start_stream(struct refocus_sink *sink, int width, int height, double fps,
                         struct refocus_reason *reason)
 {
     struct stream *stream = sink->state;
-    char header[128];
+    char header[RF_Y4M_HEADER];
 
     const uint32_t layout = layout_of(sink);
     const bool tall = stream->y4m && is_422(sink->format);
@@ -234,10 +250,7 @@ static int start_stream(struct refocus_sink *sink, int width, int height, double
     stream->begun = true;
     if (!stream->y4m)
         return REFOCUS_OK;
-    snprintf(header, sizeof header, "YUV4MPEG2 W%d H%d F%d:1000 Ip A1:1 C%s XCOLORRANGE=%s\n",
-             width, height, (int)(fps * 1000 + 0.5), stream->tall ? "422" : "420jpeg",
-             stream->range == REFOCUS_RANGE_FULL ? "FULL" : "LIMITED");
-    return write_all(stream, header, strlen(header), reason);
+    return write_all(stream, header, write_header(sink, header, fps), reason);
 }
 
 static int write_stream(struct refocus_sink *sink, const struct refocus_image *image,

@@ -23,6 +23,8 @@ struct stream {
     uint32_t format, flags;
     int width, height;
     double fps;
+    int32_t aspect[2];
+    uint32_t chroma_place;
     int64_t frame;
     struct rf_pace pace;
     struct rf_ring ring;
@@ -46,6 +48,9 @@ static int parse_y4m(const struct refocus_source *source, struct refocus_reason 
     stream->width = y4m.width;
     stream->height = y4m.height;
     stream->fps = y4m.fps;
+    stream->aspect[0] = y4m.aspect[0];
+    stream->aspect[1] = y4m.aspect[1];
+    stream->chroma_place = y4m.chroma_place;
     return status;
 }
 
@@ -176,6 +181,9 @@ static int get_mode(struct refocus_source *source, int index, struct refocus_sou
     mode->width = stream->width;
     mode->height = stream->height;
     mode->fps = stream->fps;
+    mode->pixel_aspect[0] = stream->aspect[0];
+    mode->pixel_aspect[1] = stream->aspect[1];
+    mode->chroma_place = stream->chroma_place;
     return REFOCUS_OK;
 }
 

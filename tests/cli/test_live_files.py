@@ -49,6 +49,16 @@ class Files(Live):
         self.report(*pictures, '--out', 'f-%02d.ppm')
         self.assertTrue(os.path.exists('f-02.ppm'))
 
+    def test_what_a_header_says_is_carried_on(self):
+        video = content('in.y4m')
+        write('in.y4m', video.replace(b'F30:1 C420jpeg', b'F30000:1001 Ip A128:117 C420mpeg2'))
+        args = ['--camera', 'y4m:in.y4m', '--depth', 'depth.pgm', '--out', 'y4m:out.y4m']
+        self.report(*args)
+        self.assertEqual(content('out.y4m').split(b'\n')[0],
+                         b'YUV4MPEG2 W64 H48 F30000:1001 Ip A128:117 C420mpeg2 XCOLORRANGE=LIMITED')
+        self.report(*args, '--fps', '12.5')
+        self.assertIn(b' F25:2 Ip A128:117', content('out.y4m')[:80])
+
     def test_frames_before_a_fault_come_out(self):
         """Whichever of both is cut or damaged, and however far ahead it was read."""
         video, depth = content('in.y4m'), content('depth.y4m')

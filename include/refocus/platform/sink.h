@@ -9,7 +9,8 @@
  *                            name, else as "Refocused camera"
  *     y4m:FILE               a YUV4MPEG2 stream: RGB8 becomes 4:2:0, BT.601 limited
  *                            range; pictures of Y, U and V keep their codes, 4:2:0 or
- *                                4:2:2
+ *                                4:2:2. The rate is the simplest fraction that is it to
+ *                                13 digits, such as 30000:1001
  *     raw:FILE[,FORMAT]      frames without a header, one behind the other, rows without
  *                            gaps, as the source raw: reads them. FORMAT is RGB24
  *                            (default), BGR24, RGBX, BGRX, NV12, NV21, YUV420, YUYV or
@@ -30,6 +31,7 @@
 #include <stdint.h>
 #include <refocus/image.h>
 #include <refocus/platform/file.h>
+#include <refocus/platform/source.h>
 #include <refocus/status.h>
 
 #ifdef __cplusplus
@@ -62,6 +64,17 @@ REFOCUS_API int refocus_sink_overwrites(const char *sink, const char *input);
  */
 REFOCUS_API int refocus_sink_open(struct refocus_sink **sink, const char *name,
                                   struct refocus_reason *reason);
+
+/**
+ * Say where the pictures come from, before refocus_sink_start(): `y4m` writes pixel_aspect into its
+ * header, and chroma_place for pictures of 4:2:0. Nothing else of the mode counts. Without it
+ * pixels are square, and U and V lie in the centre.
+ *
+ * @param mode  as refocus_source_start() gave it
+ * @return REFOCUS_OK; REFOCUS_ERR_ARGUMENT: NULL, or one of these numbers is out of its range
+ */
+REFOCUS_API int refocus_sink_set_mode(struct refocus_sink *sink,
+                                      const struct refocus_source_mode *mode);
 
 /**
  * Say what will come: before the first frame, and whenever the size changes.

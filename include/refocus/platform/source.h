@@ -62,14 +62,11 @@ enum { REFOCUS_FRAME_FORMAT_COUNT = 14 };
 REFOCUS_API const char *refocus_frame_format_name(uint32_t format);
 
 enum refocus_frame_flags {
-    REFOCUS_FRAME_CORRUPT = 1,    /**< the driver says that pixels are missing or
-                                       wrong */
+    REFOCUS_FRAME_CORRUPT = 1,    /**< the driver says that pixels are missing or wrong */
     REFOCUS_FRAME_FULL_RANGE = 2, /**< Y, U and V use 0 to 255, not 16 to 235 (240) */
-    REFOCUS_FRAME_CHANGED = 4,    /**< format, size or stride differ from the frame
-                                       before */
+    REFOCUS_FRAME_CHANGED = 4,    /**< format, size or stride differ from the frame before */
     REFOCUS_FRAME_MONOTONIC = 8,  /**< timestamp_ns is of CLOCK_MONOTONIC */
-    REFOCUS_FRAME_STILL = 16,     /**< one picture at every time: it goes with any
-                                       other */
+    REFOCUS_FRAME_STILL = 16,     /**< one picture at every time: it goes with any other */
 };
 
 /** A frame in the memory of the source, until it is released. Programs that make frames of their
@@ -79,8 +76,7 @@ struct refocus_frame {
     uint32_t struct_size;    /**< sizeof(struct refocus_frame) where it was made */
     uint32_t format;         /**< enum refocus_frame_format */
     int32_t width, height;   /**< pixels */
-    const uint8_t *plane[3]; /**< may be uncached camera memory: read it once, in
-                                  order */
+    const uint8_t *plane[3]; /**< may be uncached camera memory: read it once, in order */
     ptrdiff_t stride[3];     /**< bytes from a row to the next one below */
     uint64_t bytes;          /**< bytes of an MJPEG picture */
     uint32_t matrix;         /**< enum refocus_matrix */
@@ -89,8 +85,7 @@ struct refocus_frame {
     uint32_t sequence;       /**< number by the camera; gaps are frames it dropped; wraps */
     uint32_t buffer;         /**< number of the buffer it lies in */
     float lens_dioptres;     /**< 1 / focus distance in metres; NAN when not known */
-    int dmabuf[3];           /**< descriptor of each plane's memory, of the source; or
-                                  -1 */
+    int dmabuf[3];           /**< descriptor of each plane's memory, of the source; or -1 */
 };
 
 /** A frame of no size and format, whose lens and descriptors are not known. Thread-safe. */
@@ -129,12 +124,24 @@ static inline struct refocus_frame refocus_frame_copy(const struct refocus_frame
     return copy;
 }
 
+/** Where samples of U and V of 4:2:0 lie. The library does not look at it; streams carry it on. */
+enum refocus_chroma_place {
+    REFOCUS_CHROMA_PLACE_NONE = 0,   /**< not known */
+    REFOCUS_CHROMA_PLACE_CENTRE = 1, /**< amid four pixels, as in JPEG and MPEG-1 */
+    REFOCUS_CHROMA_PLACE_LEFT = 2,   /**< between two pixels of a column, as in MPEG-2 */
+    REFOCUS_CHROMA_PLACE_DV = 3,     /**< on a pixel, U and V in turns, as in PAL DV */
+    REFOCUS_CHROMA_PLACE_COUNT
+};
+
 /** A kind of frames that a source can deliver. Start from refocus_source_mode_default(). */
 struct refocus_source_mode {
-    uint32_t struct_size;  /**< sizeof(struct refocus_source_mode), set by the caller */
-    uint32_t format;       /**< enum refocus_frame_format */
-    int32_t width, height; /**< pixels */
-    double fps;            /**< frames a second at most; 0 = not known */
+    uint32_t struct_size;    /**< sizeof(struct refocus_source_mode), set by the caller */
+    uint32_t format;         /**< enum refocus_frame_format */
+    int32_t width, height;   /**< pixels */
+    double fps;              /**< frames a second at most; 0 = not known */
+    int32_t pixel_aspect[2]; /**< width to height of a pixel, of y4m; 0 and 0 = not known */
+    uint32_t chroma_place;   /**< enum refocus_chroma_place, of y4m */
+    uint32_t reserved;       /**< 0 */
 };
 
 static inline struct refocus_source_mode refocus_source_mode_default(void)
@@ -147,11 +154,9 @@ static inline struct refocus_source_mode refocus_source_mode_default(void)
 }
 
 enum refocus_source_flags {
-    REFOCUS_SOURCE_FAST = 1,   /**< files and scripts: as fast as can be, none is
-                                    dropped */
+    REFOCUS_SOURCE_FAST = 1,   /**< files and scripts: as fast as can be, none is dropped */
     REFOCUS_SOURCE_LOOP = 2,   /**< files: from the beginning again at the end */
-    REFOCUS_SOURCE_DEPTH = 4,  /**< files: the samples of depth files, not their
-                                    pictures */
+    REFOCUS_SOURCE_DEPTH = 4,  /**< files: the samples of depth files, not their pictures */
     REFOCUS_SOURCE_DMABUF = 8, /**< V4L2: export the buffers as DMA-BUF */
 };
 
@@ -185,8 +190,7 @@ struct refocus_source_counters {
     uint64_t corrupt;     /**< handed out with REFOCUS_FRAME_CORRUPT */
     uint64_t dequeued;    /**< buffers taken from the driver */
     uint64_t queued;      /**< buffers given back to the driver after that */
-    uint64_t lost;        /**< buffers that the driver did not take back, or dropped with a
-                               stop */
+    uint64_t lost;        /**< buffers that the driver did not take back, or dropped with a stop */
     uint64_t restarts;    /**< refocus_source_restart() that succeeded */
 };
 

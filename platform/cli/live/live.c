@@ -70,6 +70,7 @@ static int open_all(struct live *live)
     status = refocus_sink_open(&live->sink, settings->out, &reason);
     if (status != REFOCUS_OK)
         return report_failure(input_exit_code(status), settings->out, "%s", reason.text);
+    refocus_sink_set_mode(live->sink, &live->mode);
     return EXIT_DONE;
 }
 

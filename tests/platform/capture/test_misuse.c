@@ -113,6 +113,7 @@ static void sinks_of_nothing(void **state)
                                        REFOCUS_FORMAT_YUYV};
     struct refocus_sink *sink = NULL;
     struct refocus_image image = refocus_image_planar(REFOCUS_FORMAT_RGB8, memory, W, H);
+    struct refocus_source_mode mode = refocus_source_mode_default();
 
     (void)state;
     assert_status(refocus_sink_open(NULL, "null", NULL), REFOCUS_ERR_ARGUMENT);
@@ -123,6 +124,19 @@ static void sinks_of_nothing(void **state)
     assert_status(refocus_sink_close(NULL, NULL), REFOCUS_OK);
     assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
     assert_int_equal(refocus_sink_takes(NULL, REFOCUS_FORMAT_RGB8), 0);
+    for (int i = 0; i < 5; i++) {
+        const int32_t wrong[5][3] = {{-1, 1, 0}, {1, -1, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 4}};
+
+        mode.pixel_aspect[0] = wrong[i][0];
+        mode.pixel_aspect[1] = wrong[i][1];
+        mode.chroma_place = (uint32_t)wrong[i][2];
+        assert_status(refocus_sink_open(&sink, "null", NULL), REFOCUS_OK);
+        assert_status(refocus_sink_set_mode(sink, &mode), REFOCUS_ERR_ARGUMENT);
+        assert_status(refocus_sink_set_mode(sink, NULL), REFOCUS_ERR_ARGUMENT);
+        assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+    }
+    mode = refocus_source_mode_default();
+    assert_status(refocus_sink_set_mode(NULL, &mode), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_sink_overwrites(NULL, "x"), 0);
     assert_int_equal(refocus_sink_overwrites("y4m:x", NULL), 0);
     for (int f = 0; f < 5; f++) {

@@ -193,7 +193,7 @@ static void check_y4m_of(uint32_t format, int planes, uint32_t range)
             memory[i][k] = (uint8_t)(37 * k + 91 * (size_t)i);
     }
     length = (size_t)sprintf((char *)expected,
-                             "YUV4MPEG2 W7 H5 F25000:1000 Ip A1:1 C%s XCOLORRANGE=%s\nFRAME\n",
+                             "YUV4MPEG2 W7 H5 F25:1 Ip A1:1 C%s XCOLORRANGE=%s\nFRAME\n",
                              tall ? "422" : "420jpeg", range ? "FULL" : "LIMITED");
     for (int i = 0; i < 3; i++)
         for (int y = 0; y < (i && !tall ? (H + 1) / 2 : H); y++)
