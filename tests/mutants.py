@@ -43,7 +43,7 @@ AREAS = [
     (r'src/papers/.*\.c', r'papers-.*'),
     (r'src/kernels/.*\.c', r'check-kernels|digest|render-(yuv|deep|thin|texture)|depth_edges.*'),
     (r'src/(depth|edges|focus|focus_stack|optics)/.*\.c',
-     r'aperture|depth.*|dequantise|focus.*|lens|mixed_pixels|noise|place_edges|temporal|upsample|'
+     r'aperture|depth.*|dequantise|focus.*|lens|mixed_pixels|noise|place_edges|strays|temporal|upsample|'
      r'sized|misuse|digest|render-(focus|optics)|fuzz-core.*'),
     (r'src/(?!tables).*\.c',
      r'aperture|depth|slabs|pool|thread-faults|sized|misuse|digest|render-(?!parallel|deep_yuv).*|'

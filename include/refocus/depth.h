@@ -59,7 +59,11 @@ struct refocus_depth_map {
     double metres_per_unit, metres_at_zero;
 
     /** z0 and z1 in metres; 0 = not known. For distance, unknown ones are measured:
-     *  the nearest and the farthest sample that holds a value. */
+     *  the nearest and the farthest sample that holds a value. Strays do not count for the nearest
+     *  one, as disparity is 1/z and so the nearest sample decides the range: fewer than a
+     *  thousandth of the samples each of which would leave less than half of the range to the
+     *  rest, and no nine of which lie in a square. A sample of 3 mm would leave 1/200 of it to
+     *  what is 0.4 to 1.2 m away. */
     double near_m, far_m;
 };
 
@@ -87,6 +91,7 @@ struct refocus_depth_report {
     uint64_t unknown;     /**< samples that held no value and were filled */
     uint64_t clamped;     /**< samples beyond z0 or z1 (or the values of d = 1 and 0) */
     uint64_t specks;      /**< samples in patches too small to be true; filled too */
+    uint64_t strays; /**< samples far nearer than all others, see near_m of the map; filled too */
 };
 
 static inline struct refocus_depth_report refocus_depth_report_default(void)
@@ -104,7 +109,7 @@ static inline struct refocus_depth_report refocus_depth_report_default(void)
  *     d = (1/z - 1/z1) / (1/z0 - 1/z1)           for distances
  *     d = (v - value_far) / (value_near - value_far)   for disparities
  *
- * Samples without a value are filled from the nearest samples that have one, from
+ * Samples without a value, and strays, are filled from the nearest samples that have one, from
  * the farther side where two surfaces meet. A map of one single depth becomes
  * all 0.
  *
@@ -114,7 +119,7 @@ static inline struct refocus_depth_report refocus_depth_report_default(void)
  * @param report     filled on success, as far as its struct_size goes; may be NULL
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_NO_DEPTH (no sample holds a
  *         value), REFOCUS_ERR_MEMORY (a byte a sample is needed when there are unknown
- *         samples, and 458,752 for whole numbers from 65,536 samples on). On an error
+ *         samples or strays, and 458,752 for whole numbers from 65,536 samples on). On an error
  *         @p disparity holds nothing of use.
  *
  * Thread-safe.

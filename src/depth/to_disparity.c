@@ -7,7 +7,9 @@
 #include <refocus/depth.h>
 #include <refocus/image.h>
 #include "depth/holes.h"
+#include "depth/samples.h"
 #include "depth/speckle.h"
+#include "depth/strays.h"
 #include "image/format.h"
 
 enum {
@@ -24,14 +26,13 @@ struct values {
     uint8_t state[VALUES];
 };
 
-/* A sample is first brought to a number that is linear in d, its rank: the sample itself for
- * disparities, 1/z for distances. */
 struct conversion {
     const struct refocus_depth_map *map;
     struct values *values;      /* NULL: of samples one by one */
     double rank_near, rank_far; /* ranks where d = 1 and d = 0 */
+    double stray;               /* samples beyond this rank are strays; INFINITY: none are */
     double scale;               /* from ranks to 65535 d; 0 for a map of one depth */
-    uint64_t unknown, clamped, specks;
+    uint64_t unknown, clamped, specks, strays;
 };
 
 static int sample_bytes(uint32_t sample)
@@ -81,44 +82,6 @@ static int check(const struct refocus_depth_map *map, const uint16_t *disparity,
     return REFOCUS_ERR_ARGUMENT;
 }
 
-/* The codes that sensors have for "no value". */
-static bool is_code(const struct refocus_depth_map *map, double v)
-{
-    const double most = map->sample == REFOCUS_SAMPLE_U8    ? 255
-                        : map->sample == REFOCUS_SAMPLE_U16 ? 65535
-                                                            : NAN;
-
-    return (v == 0 && (map->flags & REFOCUS_DEPTH_ZERO_IS_UNKNOWN)) ||
-           (v == most && (map->flags & REFOCUS_DEPTH_MAX_IS_UNKNOWN)) ||
-           (v == 2047 && (map->flags & REFOCUS_DEPTH_2047_IS_UNKNOWN));
-}
-
-static const char *row_of(const struct refocus_depth_map *map, int y)
-{
-    return (const char *)map->samples + y * map->stride;
-}
-
-/* Sample x of a row, which lies at any address. */
-static uint16_t whole_of(const struct refocus_depth_map *map, const char *row, int x)
-{
-    uint16_t u16;
-
-    if (map->sample == REFOCUS_SAMPLE_U8)
-        return (unsigned char)row[x];
-    memcpy(&u16, row + (size_t)x * sizeof u16, sizeof u16);
-    return u16;
-}
-
-static double value_of(const struct refocus_depth_map *map, const char *row, int x)
-{
-    float f32;
-
-    if (map->sample != REFOCUS_SAMPLE_F32)
-        return whole_of(map, row, x);
-    memcpy(&f32, row + (size_t)x * sizeof f32, sizeof f32);
-    return f32;
-}
-
 /* Whether some distances, but less than a hundredth, have the greatest code of 16 bits: a sensor
  * found nothing there. More of them are a sky that is beyond the range. */
 static bool greatest_is_rare(const struct refocus_depth_map *map)
@@ -128,30 +91,18 @@ static bool greatest_is_rare(const struct refocus_depth_map *map)
     if (map->meaning != REFOCUS_DEPTH_DISTANCE || map->sample != REFOCUS_SAMPLE_U16)
         return false;
     for (int y = 0; y < map->height; y++) {
-        const char *row = row_of(map, y);
+        const char *row = rf_row_of(map, y);
 
         for (int x = 0; x < map->width; x++)
-            count += whole_of(map, row, x) == UINT16_MAX;
+            count += rf_whole_of(map, row, x) == UINT16_MAX;
     }
     return 100 * count < (uint64_t)map->width * (uint64_t)map->height;
-}
-
-/* Rank of a value; NAN when it is none. */
-static double rank_of(const struct refocus_depth_map *map, double v)
-{
-    if (!isfinite(v) || (map->flags && is_code(map, v)))
-        return NAN;
-    if (map->meaning == REFOCUS_DEPTH_DISPARITY)
-        return v;
-
-    const double z = map->metres_at_zero + v * map->metres_per_unit;
-    return z > 0 && z < INFINITY && 1 / z < INFINITY ? 1 / z : NAN;
 }
 
 /* Counts so many samples of a value, as known ones of a rank or as unknown ones. */
 static void note_value(struct conversion *conversion, double v, uint32_t count)
 {
-    const double rank = rank_of(conversion->map, v);
+    const double rank = rf_rank_of(conversion->map, v);
 
     if (isnan(rank)) {
         conversion->unknown += count;
@@ -167,11 +118,27 @@ static void count_values(struct values *values, const struct refocus_depth_map *
 {
     memset(values->count, 0, sizeof values->count);
     for (int y = 0; y < map->height; y++) {
-        const char *row = row_of(map, y);
+        const char *row = rf_row_of(map, y);
 
         for (int x = 0; x < map->width; x++)
-            values->count[whole_of(map, row, x)]++;
+            values->count[rf_whole_of(map, row, x)]++;
     }
+}
+
+/* Strays are left out of a range that is measured. */
+static void leave_out_strays(struct conversion *conversion)
+{
+    const struct refocus_depth_map *map = conversion->map;
+    const struct rf_ranks ranks = {
+        map, conversion->values ? conversion->values->count : NULL,
+        (uint64_t)map->width * (uint64_t)map->height - conversion->unknown, conversion->rank_far};
+
+    conversion->stray = INFINITY;
+    if (map->meaning != REFOCUS_DEPTH_DISTANCE || map->near_m > 0)
+        return;
+    conversion->strays = rf_find_strays(&ranks, &conversion->rank_near);
+    if (conversion->strays > 0)
+        conversion->stray = conversion->rank_near;
 }
 
 /* Count what is unknown and find the greatest and the least rank. */
@@ -189,9 +156,10 @@ static int measure(struct conversion *conversion)
             note_value(conversion, v, values->count[v]);
     for (int y = 0; !values && y < map->height; y++)
         for (int x = 0; x < map->width; x++)
-            note_value(conversion, value_of(map, row_of(map, y), x), 1);
+            note_value(conversion, rf_value_of(map, rf_row_of(map, y), x), 1);
     if (conversion->unknown == (uint64_t)map->width * (uint64_t)map->height)
         return REFOCUS_ERR_NO_DEPTH;
+    leave_out_strays(conversion);
     return REFOCUS_OK;
 }
 
@@ -230,11 +198,11 @@ static uint16_t convert_value(struct conversion *conversion, double v, uint32_t 
 {
     const double near = conversion->rank_near, far = conversion->rank_far;
     const double least = near < far ? near : far, greatest = near < far ? far : near;
-    const double rank = rank_of(conversion->map, v);
+    const double rank = rf_rank_of(conversion->map, v);
     double d;
 
-    *state = isnan(rank) ? RF_SAMPLE_UNKNOWN : RF_SAMPLE_KNOWN;
-    if (isnan(rank))
+    *state = isnan(rank) || rank > conversion->stray ? RF_SAMPLE_UNKNOWN : RF_SAMPLE_KNOWN;
+    if (*state == RF_SAMPLE_UNKNOWN)
         return 0;
     if (rank < least || rank > greatest)
         conversion->clamped += count;
@@ -247,12 +215,12 @@ static void look_up_row(const struct conversion *conversion, int y, uint16_t *ou
 {
     const struct refocus_depth_map *map = conversion->map;
     const struct values *values = conversion->values;
-    const char *row = row_of(map, y);
+    const char *row = rf_row_of(map, y);
 
     for (int x = 0; x < map->width; x++)
-        out[x] = values->disparity[whole_of(map, row, x)];
+        out[x] = values->disparity[rf_whole_of(map, row, x)];
     for (int x = 0; state && x < map->width; x++)
-        state[x] = values->state[whole_of(map, row, x)];
+        state[x] = values->state[rf_whole_of(map, row, x)];
 }
 
 /* Convert all rows; @p state tells known from unknown samples unless it is NULL. */
@@ -268,15 +236,15 @@ static void convert(struct conversion *conversion, uint16_t *disparity, ptrdiff_
             values->disparity[v] =
                 convert_value(conversion, v, values->count[v], &values->state[v]);
     for (int y = 0; y < map->height; y++) {
-        const char *row = row_of(map, y);
+        const char *row = rf_row_of(map, y);
         uint16_t *out = (uint16_t *)((char *)disparity + y * stride);
         uint8_t *known = state ? state + (size_t)y * (size_t)map->width : NULL;
 
         if (values)
             look_up_row(conversion, y, out, known);
         for (int x = 0; !values && x < map->width; x++)
-            out[x] =
-                convert_value(conversion, value_of(map, row, x), 1, known ? known + x : &unasked);
+            out[x] = convert_value(conversion, rf_value_of(map, row, x), 1,
+                                   known ? known + x : &unasked);
     }
 }
 
@@ -299,6 +267,7 @@ static struct refocus_depth_report report_of(const struct conversion *conversion
     report.unknown = conversion->unknown;
     report.clamped = conversion->clamped;
     report.specks = conversion->specks;
+    report.strays = conversion->strays;
     return report;
 }
 
@@ -420,7 +389,8 @@ int refocus_depth_repair(const struct refocus_depth_map *given_map,
         goto done;
     choose_range(&conversion);
     /* A map of one depth is all 0, holes and all. */
-    if ((conversion.unknown > 0 && (conversion.scale != 0 || params->confidence)) ||
+    if ((conversion.unknown + conversion.strays > 0 &&
+         (conversion.scale != 0 || params->confidence)) ||
         params->speckle > 1) {
         status = take_memory(map, params, &state, &work);
         if (status != REFOCUS_OK)
@@ -431,7 +401,8 @@ int refocus_depth_repair(const struct refocus_depth_map *given_map,
         conversion.specks = rf_remove_specks(disparity, stride, map->width, map->height,
                                              params->speckle, state, work);
     /* All of it specks: then there is nothing to tell them by. */
-    if (conversion.specks + conversion.unknown == (uint64_t)map->width * (uint64_t)map->height) {
+    if (conversion.specks + conversion.unknown + conversion.strays ==
+        (uint64_t)map->width * (uint64_t)map->height) {
         conversion.specks = 0;
         conversion.clamped = 0;
         convert(&conversion, disparity, stride, state);

@@ -49,6 +49,24 @@ class DepthAndInfo(Case):
         self.assertEqual((width, height, bits, channels), (W, H, 8, 3))
         self.assertEqual(sum(row.count(b'\0\0\0') for row in rows), less['unknown'])
 
+    def test_strays(self):
+        """A sample far nearer than all others is filled, which a line says, unless --near is given."""
+        pictures.pgm('stray.pgm', W, H,
+                     lambda x, y: 3 if (x, y) == (9, 3) else 500 if x < 24 else 2000, 65535)
+        told = ('stray.pgm: samples that are far nearer than all others (1, the rest 0.5 m and '
+                'farther) are taken for mistakes and filled; --near keeps them')
+        self.warns(told, 'render', 'photo.ppm', '--depth', 'stray.pgm', '--depth-unit', 'mm',
+                   '--blur', '4', '-o', 'out.ppm')
+        given = 'depth', 'stray.pgm', '--depth-unit', 'mm', '-o', 'a.pgm'
+        self.warns(told, *given)
+        filled = pictures.read_pnm('a.pgm')
+        self.assertEqual(set(filled[2]), {0, 65535})
+        self.assertIn('strays   1 samples', subprocess.run([REFOCUS, *given], capture_output=True,
+                                                           text=True, check=True).stdout)
+        report = self.reports(*given, '--near', '0.003')['depth']
+        self.assertEqual((report['strays'], report['near_m']), (0, 0.003))
+        self.assertEqual(pictures.read_pnm('a.pgm')[2].count(65535), 1)
+
     def test_distances_without_a_unit(self):
         """They are taken for disparities, as ever, and a line says so."""
         told = ('its samples from 500 to 2000 are taken for disparities, bright = near; if they '

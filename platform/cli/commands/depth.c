@@ -165,6 +165,9 @@ static int print_report(const struct settings *settings, const struct input *inp
     if (settings->depth.speckle > 1)
         printf("specks   %llu samples in small patches, filled too, %.1f %%\n",
                (unsigned long long)report->specks, percent(report->specks, map));
+    if (report->strays > 0)
+        printf("strays   %llu samples far nearer than all others, filled too\n",
+               (unsigned long long)report->strays);
     for (int i = 0; i < input->made_info.evidence_count; i++)
         printf("because  %s\n", input->made_info.evidence[i]);
     printf("clamped  %llu samples beyond the range, %.1f %%\n", (unsigned long long)report->clamped,

@@ -88,7 +88,7 @@ static bool has_other_size(const struct input *input)
 
 static bool has_guesses(const struct input *input)
 {
-    return input->report.unknown + input->report.specks > 0 ||
+    return input->report.unknown + input->report.specks + input->report.strays > 0 ||
            (input->depth_from && input->depth_from->confidence);
 }
 
@@ -181,6 +181,17 @@ static bool turn(struct input *input)
     return turned;
 }
 
+static void tell_strays(const struct input *input)
+{
+    const struct refocus_depth_report *report = &input->report;
+
+    if (report->strays > 0)
+        report_warning(input->depth_name,
+                       "samples that are far nearer than all others (%llu, the rest %.3g m and "
+                       "farther) are taken for mistakes and filled; --near keeps them",
+                       (unsigned long long)report->strays, report->near_m);
+}
+
 int input_convert(struct input *input, const struct depth_settings *settings)
 {
     struct refocus_depth_map settled = *input->depth_from->depth, *map = &settled;
@@ -213,6 +224,7 @@ int input_convert(struct input *input, const struct depth_settings *settings)
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, input->depth_name, "the depth map: %s",
                               refocus_strerror(status));
+    tell_strays(input);
     weigh(input);
     if (!turn(input))
         return report_failure(EXIT_FAILED, input->depth_name, "not enough memory to turn the map");

@@ -28,7 +28,7 @@ const char *gain_map_summary(uint32_t index);
      .above = true,                                                                                \
      .greatest = 1e9,                                                                              \
      .help = "metres of disparity 1; default: what the file says, else what is "                   \
-             "measured in distances"},                                                             \
+             "measured in distances, without single samples far nearer than all others"},          \
     {                                                                                              \
         .kind = OPTION_NUMBER, .name = "--far", .argument = "M",                                   \
         .offset = offsetof(type, member.far_m), .least = 0, .above = true, .greatest = INFINITY,   \

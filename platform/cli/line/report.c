@@ -241,12 +241,12 @@ json_t *report_depth_json(const struct refocus_photo *from,
     const struct refocus_depth_map *map = from->depth;
     const bool disparity = map->meaning == REFOCUS_DEPTH_DISPARITY;
     json_t *json =
-        json_pack("{s:s, s:i, s:i, s:s, s:o, s:o, s:I, s:I, s:I}", "source",
+        json_pack("{s:s, s:i, s:i, s:s, s:o, s:o, s:I, s:I, s:I, s:I}", "source",
                   report_depth_source(from->info->depth_source), "width", (int)map->width, "height",
                   (int)map->height, "meaning", disparity ? "disparity" : "distance", "near_m",
                   report_metres_json(report->near_m), "far_m", report_metres_json(report->far_m),
                   "unknown", (json_int_t)report->unknown, "clamped", (json_int_t)report->clamped,
-                  "specks", (json_int_t)report->specks);
+                  "specks", (json_int_t)report->specks, "strays", (json_int_t)report->strays);
 
     if (json && disparity) {
         json_object_set_new(json, "value_near", report_number_json(report->value_near));

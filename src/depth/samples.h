@@ -1,0 +1,63 @@
+/* samples.h: reads the samples of a depth map, and brings them to a number that is linear in d. */
+#ifndef RF_DEPTH_SAMPLES_H
+#define RF_DEPTH_SAMPLES_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <refocus/depth.h>
+
+/* The codes that sensors have for "no value". */
+static inline bool rf_is_code(const struct refocus_depth_map *map, double v)
+{
+    const double most = map->sample == REFOCUS_SAMPLE_U8    ? 255
+                        : map->sample == REFOCUS_SAMPLE_U16 ? 65535
+                                                            : NAN;
+
+    return (v == 0 && (map->flags & REFOCUS_DEPTH_ZERO_IS_UNKNOWN)) ||
+           (v == most && (map->flags & REFOCUS_DEPTH_MAX_IS_UNKNOWN)) ||
+           (v == 2047 && (map->flags & REFOCUS_DEPTH_2047_IS_UNKNOWN));
+}
+
+static inline const char *rf_row_of(const struct refocus_depth_map *map, int y)
+{
+    return (const char *)map->samples + y * map->stride;
+}
+
+/* Sample x of a row, which lies at any address. */
+static inline uint16_t rf_whole_of(const struct refocus_depth_map *map, const char *row, int x)
+{
+    uint16_t u16;
+
+    if (map->sample == REFOCUS_SAMPLE_U8)
+        return (unsigned char)row[x];
+    memcpy(&u16, row + (size_t)x * sizeof u16, sizeof u16);
+    return u16;
+}
+
+static inline double rf_value_of(const struct refocus_depth_map *map, const char *row, int x)
+{
+    float f32;
+
+    if (map->sample != REFOCUS_SAMPLE_F32)
+        return rf_whole_of(map, row, x);
+    memcpy(&f32, row + (size_t)x * sizeof f32, sizeof f32);
+    return f32;
+}
+
+/* The rank of a value, which is linear in d: the value itself for disparities, 1/z for distances;
+ * NAN when it is none. */
+static inline double rf_rank_of(const struct refocus_depth_map *map, double v)
+{
+    if (!isfinite(v) || (map->flags && rf_is_code(map, v)))
+        return NAN;
+    if (map->meaning == REFOCUS_DEPTH_DISPARITY)
+        return v;
+
+    const double z = map->metres_at_zero + v * map->metres_per_unit;
+    return z > 0 && z < INFINITY && 1 / z < INFINITY ? 1 / z : NAN;
+}
+
+#endif
