@@ -110,7 +110,8 @@ static inline struct refocus_depth_report refocus_depth_report_default(void)
  *     d = (v - value_far) / (value_near - value_far)   for disparities
  *
  * Samples without a value, and strays, are filled from the nearest samples that have one, from
- * the farther side where two surfaces meet. A map of one single depth becomes
+ * the farther side where two surfaces meet, and at the border of the map from behind what is
+ * near and no wider than the unmeasured strip there, as a pole. A map of one single depth becomes
  * all 0.
  *
  * @param map        see struct refocus_depth_map

@@ -8,6 +8,7 @@ enum {
     DIAGONAL = 3, /* the distance to one across a corner */
     FARTHEST = RF_SAMPLE_UNKNOWN - 1,
     CONTINUOUS = 65535 / 32, /* largest step within a surface */
+    THIN_STEP = 65535 / 2,   /* from a thin thing at the border to what is behind it, at least */
     SPREADS = 4,             /* scans to spread: enough to turn three corners */
     WIDEST = 16,             /* widest smoothing step, a power of 2 */
 };
@@ -84,6 +85,75 @@ static void spread_from(const struct holes *holes, uint16_t *disparity, uint8_t 
     }
 }
 
+/* Samples from a border of the map on, along a row or a column. */
+struct line {
+    int x, y, dx, dy, length;
+};
+
+static uint8_t *state_at(const struct holes *holes, const struct line *line, int i)
+{
+    return state_row(holes, line->y + i * line->dy) + line->x + i * line->dx;
+}
+
+static uint16_t *disparity_at(const struct holes *holes, const struct line *line, int i)
+{
+    return disparity_row(holes, line->y + i * line->dy) + line->x + i * line->dx;
+}
+
+/* Samples of a hole at the border, which is the start of the line. */
+static int unknown_at_start(const struct holes *holes, const struct line *line)
+{
+    int count = 0;
+
+    while (count < line->length && *state_at(holes, line, count) != RF_SAMPLE_KNOWN)
+        count++;
+    return count < line->length ? count : 0;
+}
+
+/* The first known sample of the farther surface behind a thin thing that begins at `first` and is
+ * no wider than the hole before it; 0 when there is none. */
+static int behind_thin(const struct holes *holes, const struct line *line, int first)
+{
+    int nearer = *disparity_at(holes, line, first);
+
+    for (int i = first + 1; i <= 2 * first && i < line->length; i++) {
+        const int disparity = *disparity_at(holes, line, i);
+
+        if (*state_at(holes, line, i) != RF_SAMPLE_KNOWN)
+            continue;
+        if (disparity + THIN_STEP < nearer)
+            return i;
+        nearer = disparity;
+    }
+    return 0;
+}
+
+/* Lets the last sample of a hole at the border see the surface behind a thin thing. */
+static void look_behind(const struct holes *holes, const struct line *line)
+{
+    const int first = unknown_at_start(holes, line);
+    const int behind = first > 0 ? behind_thin(holes, line, first) : 0;
+
+    if (behind > 0)
+        spread_from(holes, disparity_at(holes, line, first - 1), state_at(holes, line, first - 1),
+                    *disparity_at(holes, line, behind), RF_SAMPLE_KNOWN,
+                    (uint32_t)(behind - first + 1) * STRAIGHT);
+}
+
+static void look_behind_from_borders(const struct holes *holes)
+{
+    const int width = holes->width, height = holes->height;
+
+    for (int y = 0; y < height; y++) {
+        look_behind(holes, &(struct line){0, y, 1, 0, width});
+        look_behind(holes, &(struct line){width - 1, y, -1, 0, width});
+    }
+    for (int x = 0; x < width; x++) {
+        look_behind(holes, &(struct line){x, 0, 0, 1, height});
+        look_behind(holes, &(struct line){x, height - 1, 0, -1, height});
+    }
+}
+
 /* Scans rows from the top or the bottom, and each row in both directions. */
 static void spread(const struct holes *holes, int down)
 {
@@ -156,6 +226,7 @@ void rf_fill_holes(uint16_t *disparity, ptrdiff_t stride, int width, int height,
     const struct holes holes = {
         disparity, stride, state, width, height, (uint32_t)(side > 128 ? side / 8 : 16) * STRAIGHT};
 
+    look_behind_from_borders(&holes);
     for (int i = 0; i < SPREADS; i++)
         spread(&holes, i % 2 == 0);
     for (int step = WIDEST; step >= 1; step /= 2) {

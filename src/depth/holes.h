@@ -17,7 +17,10 @@ enum { RF_SAMPLE_KNOWN = 0, RF_SAMPLE_UNKNOWN = 255 };
  *
  * over paths through unknown samples: the nearest one on a continuous surface, whose d
  * changes by less than 1/w a sample, and the farther of two surfaces that meet, up to w
- * times their difference away. What is inpainted is then smoothed where it is continuous,
+ * times their difference away. At the map's border, where a hole has no other side, a path may
+ * also go straight behind a thing that is no wider than the hole is there, and nearer than what is
+ * behind it by half of the range: a pole beside the unmeasured columns at the left of a Kinect's
+ * map does not grow to the border. What is inpainted is then smoothed where it is continuous,
  * the wider the deeper it lies in a hole.
  *
  * Time is linear in the number of samples. At least one sample is known.

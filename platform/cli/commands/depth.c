@@ -484,7 +484,8 @@ const struct command depth_command = {
              "the left picture of a stereo pair, or any photo with --estimate or "
              "--strokes; with --focal-stack give all frames of a focus stack. Samples without a "
              "value are filled from those around them, "
-             "from the farther side where two surfaces meet, and counted.",
+             "from the farther side where two surfaces meet, or from behind a thin thing at the "
+             "border, and counted.",
     .options = options,
     .files_least = 1,
     .files_most = REFOCUS_STACK_MOST_FRAMES,

@@ -1,0 +1,121 @@
+/* test_depth_holes.c: holes at the border of a depth map, with a thin thing or a wide one beside.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "depth/holes.h"
+
+/* An eighth of the side is 30: a step of the whole range outweighs that many samples. */
+enum { SIDE = 240, HOLE = 14, BEGIN = 60, END = 180, FAR = 2000 };
+
+static uint16_t map[SIDE][SIDE];
+static uint8_t state[SIDE][SIDE];
+
+/* Sample `i` from border 0 to 3 on, `along` it. */
+static void put(int border, int i, int along, uint16_t disparity, uint8_t known)
+{
+    const int from = border & 1 ? SIDE - 1 - i : i;
+    const int x = border < 2 ? from : along, y = border < 2 ? along : from;
+
+    map[y][x] = disparity;
+    state[y][x] = known;
+}
+
+static uint16_t get(int border, int i, int along)
+{
+    const int from = border & 1 ? SIDE - 1 - i : i;
+
+    return border < 2 ? map[along][from] : map[from][along];
+}
+
+/* A far surface, a hole along the border, and beside its middle a thing of this width. */
+static void fill(int border, int width, uint16_t disparity, int gap)
+{
+    memset(state, RF_SAMPLE_KNOWN, sizeof state);
+    for (int along = 0; along < SIDE; along++) {
+        for (int i = 0; i < SIDE; i++) {
+            const int is_thing =
+                along >= BEGIN && along < END && i >= HOLE && i < HOLE + width - gap;
+            const int is_gap =
+                along >= BEGIN && along < END && i >= HOLE + width - gap && i < HOLE + width;
+
+            put(border, i, along, is_thing ? disparity : FAR,
+                i < HOLE || is_gap ? RF_SAMPLE_UNKNOWN : RF_SAMPLE_KNOWN);
+        }
+    }
+    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
+}
+
+/* Samples of the hole at the middle of the thing that are nearer than the far surface. */
+static int near_in_hole(int border)
+{
+    int count = 0;
+
+    for (int i = 0; i < HOLE; i++)
+        count += get(border, i, SIDE / 2) > FAR + FAR;
+    return count;
+}
+
+/* A thing as wide as the hole is deep, or with a gap behind it, ends where it was measured. */
+static void thin_things_end(void **nothing)
+{
+    (void)nothing;
+    for (int border = 0; border < 4; border++) {
+        for (int gap = 0; gap <= 6; gap += 6) {
+            fill(border, HOLE, 60000, gap);
+            assert_int_equal(near_in_hole(border), 0);
+            assert_int_equal(get(border, HOLE, SIDE / 2), 60000);
+        }
+        fill(border, 1, 60000, 0);
+        assert_int_equal(near_in_hole(border), 0);
+    }
+}
+
+/* A wider thing goes on to the border, and so does one that is nearer by less than half. */
+static void wide_things_go_on(void **nothing)
+{
+    (void)nothing;
+    for (int border = 0; border < 4; border++) {
+        fill(border, HOLE + 1, 60000, 0);
+        assert_int_equal(near_in_hole(border), HOLE);
+        fill(border, 4, FAR + 65535 / 2, 0);
+        assert_int_equal(near_in_hole(border), HOLE);
+        fill(border, 4, FAR + 65535 / 2 + 1, 0);
+        assert_int_equal(near_in_hole(border), 0);
+    }
+}
+
+/* Lines without a known sample, and maps of one line, have nothing to look behind. */
+static void lines_without_samples(void **nothing)
+{
+    (void)nothing;
+    memset(map, 0, sizeof map);
+    memset(state, RF_SAMPLE_UNKNOWN, sizeof state);
+    map[9][7] = 60000;
+    state[9][7] = RF_SAMPLE_KNOWN;
+    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        assert_int_equal(map[0][i], 60000);
+    for (int known = 0; known < SIDE; known += 40) {
+        memset(state[0], RF_SAMPLE_UNKNOWN, sizeof state[0]);
+        state[0][known] = RF_SAMPLE_KNOWN;
+        rf_fill_holes(map[0], sizeof map[0], SIDE, 1, state[0]);
+        assert_int_equal(map[0][SIDE - 1], 60000);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(thin_things_end),
+        cmocka_unit_test(wide_things_go_on),
+        cmocka_unit_test(lines_without_samples),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
