@@ -100,7 +100,7 @@ static void lines_without_samples(void **nothing)
     state[9][7] = RF_SAMPLE_KNOWN;
     rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
     for (int i = 0; i < SIDE * SIDE; i++)
-        assert_int_equal(map[0][i], 60000);
+        assert_int_equal(map[i / SIDE][i % SIDE], 60000);
     for (int known = 0; known < SIDE; known += 40) {
         memset(state[0], RF_SAMPLE_UNKNOWN, sizeof state[0]);
         state[0][known] = RF_SAMPLE_KNOWN;
