@@ -12,8 +12,7 @@
 
 enum {
     RADII = RF_STACK_RADII,
-    MEASURED = 128, /* confidence from here on */
-    MANY = 20,      /* one in so many that are sure lies at the largest radii: they are too small */
+    MANY = 20, /* one in so many that are sure lies at the largest radii: they are too small */
     LEAST_SIDE = 32, /* samples of a side, fewer than which are not halved again */
     FARTHEST = 50,   /* one in so many that are sure may lie beyond the end of the range */
 };
@@ -26,7 +25,7 @@ static int count_radii(const struct refocus_stack *s, int count[RADII])
 
     memset(count, 0, RADII * sizeof *count);
     for (size_t i = 0; i < samples; i++)
-        if (s->sure[i] >= MEASURED) {
+        if (s->sure[i] >= RF_STACK_MEASURED) {
             count[(s->depth[i] + 128) / 256]++;
             all++;
         }

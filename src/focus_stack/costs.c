@@ -7,7 +7,6 @@ enum {
     BAND = 64, /* rows that a worker takes at a time */
     SQUARES = 3,
     /* Squares of sharpness, in quarters of a squared code: */
-    NOISE = 1600,     /* 20 codes of second differences: texture that noise hides */
     ERROR_NOISE = 64, /* 4 codes of what a blur is wrong by, which noise and rounding make */
     /* The least sharp frame in parts of the sharpest, Q8, since noise is alike in all frames: */
     SURE = 64,    /* depth is sure down from here; */
@@ -66,14 +65,6 @@ static void move(struct refocus_stack *s, struct rf_stack_frame *frame)
            (size_t)s->columns * (size_t)s->rows * sizeof *frame->sharpness);
 }
 
-/* Squared sharpness, Q2 codes: at most 4080^2 < 2^24, so that 17 x 17 of them fit 33 bits. */
-static uint32_t square(uint16_t sharpness)
-{
-    const uint32_t v = sharpness >> 3;
-
-    return v * v;
-}
-
 static uint32_t *columns_of(const struct refocus_stack *s, int worker, int i, int k)
 {
     return s->column + (size_t)((worker * SQUARES + i) * s->planes + k) * (size_t)s->columns;
@@ -95,14 +86,14 @@ static void add_row(const struct refocus_stack *s, int worker, int y, bool begin
                 const uint16_t *restrict row = in + (size_t)rf_stack_clamp(v, s->rows - 1) * w;
 
                 for (size_t x = 0; x < w; x++)
-                    sum[x] += square(row[x]);
+                    sum[x] += rf_stack_squared(row[x]);
             }
             if (!begin) {
                 const uint16_t *restrict row =
                     in + (size_t)rf_stack_clamp(y - reach[i] - 1, s->rows - 1) * w;
 
                 for (size_t x = 0; x < w; x++)
-                    sum[x] -= square(row[x]);
+                    sum[x] -= rf_stack_squared(row[x]);
             }
         }
 }
@@ -115,7 +106,7 @@ static void add_costs(const struct refocus_stack *s, uint8_t *cost, const uint32
     for (int k = 0; k < s->count; k++)
         most = mean[k] > most ? mean[k] : most;
     for (int k = 0; k < s->count; k++)
-        cost[k] = (uint8_t)(cost[k] + (uint64_t)(most - mean[k]) * 85 / (most + NOISE));
+        cost[k] = (uint8_t)(cost[k] + (uint64_t)(most - mean[k]) * 85 / (most + RF_STACK_NOISE));
 }
 
 /* Costs by mean squares of errors: 0 of the least one, below 85. */
@@ -143,7 +134,7 @@ static uint8_t sure_of(const struct refocus_stack *s, const uint32_t *mean)
         most = mean[k] > most ? mean[k] : most;
     }
     if (s->kind == REFOCUS_STACK_FOCUS)
-        noise = 2 * s->noise > NOISE / 4 ? 2 * s->noise : NOISE / 4;
+        noise = 2 * s->noise > RF_STACK_NOISE / 4 ? 2 * s->noise : RF_STACK_NOISE / 4;
 
     const int ratio = (int)((least + noise) * 256 / (most + noise));
 

@@ -115,7 +115,7 @@ static bool is_flat(const struct refocus_stack *s, int x, int y, int reach)
     const int here = s->moved[sample_at(s, x, y)];
 
     if (x < reach || y < reach || x + reach >= s->width || y + reach >= s->height ||
-        s->sure[sample_at(s, x, y)] < 128)
+        s->sure[sample_at(s, x, y)] < RF_STACK_MEASURED)
         return false;
     for (int j = -4; j <= 4; j++)
         for (int i = -4; i <= 4; i++)
@@ -250,7 +250,7 @@ static uint16_t *nearest_of_tiles(const struct refocus_stack *s, int reach)
     return nearest;
 }
 
-struct veil {
+struct spill {         /* light of what is nearer, over a pixel */
     uint32_t coverage; /* parts of ONE */
     uint64_t light[3]; /* Q12 of ONE */
     int clipped;       /* the largest disparity of what is clipped; 0: nothing */
@@ -258,14 +258,15 @@ struct veil {
 };
 
 /* Adds up what lies over a pixel that is seen at a focus; K is Q8 pixels. */
-static void veil_of(const struct refocus_stack *s, const struct rf_stack_photo *photo,
-                    const struct disc *disc, int most, int focus, int x, int y, struct veil *veil)
+static void spill_of(const struct refocus_stack *s, const struct rf_stack_photo *photo,
+                     const struct disc *disc, int most, int focus, int x, int y,
+                     struct spill *spill)
 {
     /* Exact for columns below 2^16, as no sample is as wide as 2^8 pixels. */
     const uint64_t by = (1 << 24) / (uint32_t)s->reduced + 1;
     const int least = focus + (int)(((int64_t)LEAST << 16) / most);
 
-    memset(veil, 0, sizeof *veil);
+    memset(spill, 0, sizeof *spill);
     for (int j = -disc->taps; j <= disc->taps; j++) {
         const int v = rf_stack_clamp(y + j * disc->apart, s->height - 1);
         const uint16_t *row = s->moved + sample_at(s, 0, v);
@@ -283,32 +284,32 @@ static void veil_of(const struct refocus_stack *s, const struct rf_stack_photo *
             const uint8_t *p = rgb + 3 * (ptrdiff_t)u;
             const uint32_t share = share_of(disc, radius, i, j);
 
-            veil->coverage += share;
+            spill->coverage += share;
             if (p[0] >= CLIPPED || p[1] >= CLIPPED || p[2] >= CLIPPED) {
                 const uint32_t wide = share_of(disc, radius * 5 / 4, i, j);
 
-                veil->bright += wide;
-                if (wide && here > veil->clipped)
-                    veil->clipped = here;
+                spill->bright += wide;
+                if (wide && here > spill->clipped)
+                    spill->clipped = here;
             }
             for (int c = 0; c < 3; c++)
-                veil->light[c] += share * (uint64_t)s->transfer->to_light[p[c]];
+                spill->light[c] += share * (uint64_t)s->transfer->to_light[p[c]];
         }
     }
 }
 
-/* Takes so much of a veil away, Q8, that each channel keeps at least 1 / KEPT of its light: more
+/* Takes so much of a spill away, Q8, that each channel keeps at least 1 / KEPT of its light: more
  * would be more than there is, as far as depth and radius are known. With t of it taken away
  *
  *     (I - t F) / (1 - t A) >= I / KEPT
  */
-static int share_to_take(const struct veil *veil, const int light[3])
+static int share_to_take(const struct spill *spill, const int light[3])
 {
     int64_t share = 256;
 
     for (int c = 0; c < 3; c++) {
         const int64_t here = (int64_t)light[c] * ONE;
-        const int64_t over = KEPT * (int64_t)veil->light[c] - (int64_t)veil->coverage * light[c];
+        const int64_t over = KEPT * (int64_t)spill->light[c] - (int64_t)spill->coverage * light[c];
 
         if (over * share > here * (KEPT - 1) * 256)
             share = here * (KEPT - 1) * 256 / over;
@@ -316,19 +317,19 @@ static int share_to_take(const struct veil *veil, const int light[3])
     return (int)share;
 }
 
-static void lift(const struct refocus_stack *s, const struct veil *veil, uint8_t *p)
+static void lift(const struct refocus_stack *s, const struct spill *spill, uint8_t *p)
 {
     int light[3];
     int64_t share;
 
-    if (veil->coverage < FEW || veil->coverage > MOST)
+    if (spill->coverage < FEW || spill->coverage > MOST)
         return;
     for (int c = 0; c < 3; c++)
         light[c] = s->transfer->to_light[p[c]];
-    share = share_to_take(veil, light);
+    share = share_to_take(spill, light);
     for (int c = 0; c < 3; c++) {
-        const int64_t left = light[c] * (int64_t)ONE - (share * (int64_t)veil->light[c] >> 8);
-        const int64_t out = left / (ONE - (share * (int64_t)veil->coverage >> 8));
+        const int64_t left = light[c] * (int64_t)ONE - (share * (int64_t)spill->light[c] >> 8);
+        const int64_t out = left / (ONE - (share * (int64_t)spill->coverage >> 8));
 
         p[c] = s->transfer->to_code[4 * rf_stack_clamp((int)out, RF_LIGHT_MAX)];
     }
@@ -370,15 +371,15 @@ static void lift_row(void *context, int y, int worker)
         const size_t at = sample_at(s, x, y);
         const int tile =
             (int)(at / (size_t)s->columns) / TILE * across + (int)(at % (size_t)s->columns) / TILE;
-        struct veil veil;
+        struct spill spill;
 
         if ((int64_t)l->most * (l->nearest[tile] - focus) >> 16 < LEAST)
             continue; /* nothing near is nearer */
-        veil_of(s, &l->before, &l->disc, l->most, focus, x, y, &veil);
-        if (veil.bright > ONE / 100)
-            look_past(s, veil.clipped, x, y, row + 3 * (ptrdiff_t)x);
+        spill_of(s, &l->before, &l->disc, l->most, focus, x, y, &spill);
+        if (spill.bright > ONE / 100)
+            look_past(s, spill.clipped, x, y, row + 3 * (ptrdiff_t)x);
         else
-            lift(s, &veil, row + 3 * (ptrdiff_t)x);
+            lift(s, &spill, row + 3 * (ptrdiff_t)x);
     }
 }
 

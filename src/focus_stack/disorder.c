@@ -1,11 +1,6 @@
 /* disorder.c: how many samples of a focus stack show that its frames are out of order. */
 #include "focus_stack/focus_stack.h"
 
-enum {
-    MEASURED = 128, /* confidence from here on */
-    APART = 13,     /* samples from one that is looked at to the next */
-};
-
 /* Whether the sharpness of a sample has two peaks, and less than half of them between. */
 static bool has_two_peaks(const struct refocus_stack *s, size_t i)
 {
@@ -33,8 +28,8 @@ float rf_stack_disorder(const struct refocus_stack *s)
     const size_t samples = (size_t)s->columns * (size_t)s->rows;
     int all = 0, wrong = 0;
 
-    for (size_t i = 0; i < samples; i += APART)
-        if (s->sure[i] >= MEASURED) {
+    for (size_t i = 0; i < samples; i += RF_STACK_STRIDE)
+        if (s->sure[i] >= RF_STACK_MEASURED) {
             all++;
             wrong += has_two_peaks(s, i);
         }

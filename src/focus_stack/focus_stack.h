@@ -22,7 +22,10 @@ enum {
     RF_STACK_RADII = 24,  /* labels of apertures: radii of blur from 0 on, in samples */
     RF_STACK_MARGIN =
         24, /* samples by which frames go on beyond their border, RADII at the least */
-    RF_STACK_LONGER = 960, /* samples along the longer side, at the most */
+    RF_STACK_LONGER = 960,   /* samples along the longer side, at the most */
+    RF_STACK_MEASURED = 128, /* confidence of depth, of 255, from which on it counts as measured */
+    RF_STACK_STRIDE = 13,    /* samples from one that is looked at to the next, in statistics */
+    RF_STACK_NOISE = 1600,   /* squared sharpness of 20 codes: texture that noise hides */
 };
 
 struct rf_transfer;
@@ -227,6 +230,14 @@ enum { RF_STACK_STILL, RF_STACK_PERHAPS, RF_STACK_MOVING };
 static inline bool rf_stack_moves(const uint8_t *row, int column)
 {
     return row && row[column] == RF_STACK_MOVING;
+}
+
+/* Squared sharpness, Q2 codes: at most 4080^2 < 2^24, so that 17 x 17 of them fit 33 bits. */
+static inline uint32_t rf_stack_squared(uint16_t sharpness)
+{
+    const uint32_t v = sharpness >> 3;
+
+    return v * v;
 }
 
 static inline int rf_stack_clamp(int v, int most)

@@ -22,9 +22,7 @@
 #include <math.h>
 
 enum {
-    NOISE = 1600, /* as in costs.c, in quarters of a squared code */
-    APART = 13,   /* samples from one that is looked at to the next */
-    BINS = 128,   /* for ratios, four to an octave */
+    BINS = 128, /* for ratios, four to an octave */
     LEAST_RATIO = 4,
     ONE = 1 << 12, /* a share of all */
     MOST = 85,     /* cost of a square, so that three fit a byte */
@@ -35,13 +33,6 @@ int rf_stack_sub(int frames)
     static const int sub[RF_STACK_FEW + 1] = {1, 1, 12, 6, 5, 3, 3, 2, 2, 2};
 
     return frames <= RF_STACK_FEW ? sub[frames] : 1;
-}
-
-static uint32_t square(uint16_t sharpness)
-{
-    const uint32_t v = sharpness >> 3;
-
-    return v * v;
 }
 
 static int bin_of(uint64_t more, uint64_t less)
@@ -61,14 +52,15 @@ static double ratio_of(const struct refocus_stack *s, uint32_t one_in)
     uint32_t count[BINS] = {0}, all = 0, beyond = 0;
     int bin = BINS;
 
-    for (size_t i = 0; i < samples; i += APART)
+    for (size_t i = 0; i < samples; i += RF_STACK_STRIDE)
         for (int k = 0; k + 1 < s->count; k++) {
-            const uint64_t a = square(s->frame[k].sharpness[i]);
-            const uint64_t b = square(s->frame[k + 1].sharpness[i]);
+            const uint64_t a = rf_stack_squared(s->frame[k].sharpness[i]);
+            const uint64_t b = rf_stack_squared(s->frame[k + 1].sharpness[i]);
 
-            if (a < 4 * NOISE && b < 4 * NOISE)
+            if (a < 4 * RF_STACK_NOISE && b < 4 * RF_STACK_NOISE)
                 continue;
-            count[bin_of((a > b ? a : b) + NOISE / 4, (a > b ? b : a) + NOISE / 4)]++;
+            count[bin_of((a > b ? a : b) + RF_STACK_NOISE / 4,
+                         (a > b ? b : a) + RF_STACK_NOISE / 4)]++;
             all++;
         }
     while (bin > 0 && beyond * one_in <= all)
@@ -150,7 +142,7 @@ static inline void add_costs(const struct refocus_stack *s, uint8_t *restrict co
         }
     }
 
-    const int scale = (int)(MOST * sum / (sum + NOISE));
+    const int scale = (int)(MOST * sum / (sum + RF_STACK_NOISE));
 
     for (int d = s->depths; d < n; d++) /* costs that fill vectors up stay */
         least[d] = 0;

@@ -12,7 +12,6 @@
 #include <string.h>
 
 enum {
-    APART = 13,       /* samples from one that is looked at to the next */
     VALUES = 1 << 13, /* sharpness is below, in half codes */
     FLAT = 10,        /* one noisy sample in so many is flat */
     MANY = 10,        /* one sample in so many is noisy at the least */
@@ -44,7 +43,7 @@ void rf_stack_find_noise(struct refocus_stack *s)
     uint32_t *count = (uint32_t *)(void *)s->moved, all = 0, noisy = 0, below = 0, value = 0;
 
     memset(count, 0, VALUES * sizeof *count);
-    for (size_t i = 0; i < samples; i += APART) {
+    for (size_t i = 0; i < samples; i += RF_STACK_STRIDE) {
         const int least = least_of_noise(s, i);
 
         all++;

@@ -17,9 +17,8 @@ enum {
     SMALL_PIXELS = 1 << 18, /* at the most, in the finest picture of the alignment */
     SQUARES = 3,            /* costs.c */
     PATHS = 8,
-    BESIDE = 16,    /* aggregate.c */
-    MEASURED = 128, /* confidence from here on */
-    TELLING = 25,   /* the direction tells which end is far from 1 / TELLING on */
+    BESIDE = 16,  /* aggregate.c */
+    TELLING = 25, /* the direction tells which end is far from 1 / TELLING on */
 };
 
 static void lay_out(struct refocus_stack *s, struct rf_arena *arena)
@@ -276,7 +275,7 @@ static void write_row(void *context, int y, int worker)
     if (r->confidence)
         memcpy(r->confidence + y * r->confidence_stride, sure, (size_t)s->width);
     for (int x = 0; x < s->width; x++)
-        measured += sure[x] >= MEASURED;
+        measured += sure[x] >= RF_STACK_MEASURED;
     atomic_fetch_add_explicit(&rows->measured, measured, memory_order_relaxed);
     if (r->disparity) {
         uint16_t *out = (uint16_t *)(void *)((char *)r->disparity + y * r->disparity_stride);

@@ -53,4 +53,11 @@ static inline struct rf_rect rf_around(const struct rf_viewport *view, int x, in
                             rf_within(x + by, right) + 1, rf_within(y + by, bottom) + 1};
 }
 
+/* A part of the photo, in pixels of the window. */
+static inline struct rf_rect rf_part_in_window(const struct rf_viewport *view, struct rf_rect part)
+{
+    return (struct rf_rect){part.x0 - view->x0, part.y0 - view->y0, part.x1 - view->x0,
+                            part.y1 - view->y0};
+}
+
 #endif

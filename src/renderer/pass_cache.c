@@ -154,13 +154,6 @@ static void make_smooth(struct rf_frame *f)
     m->smooth = !rf_cancelled(&r->exec);
 }
 
-/* A part of the photo, in pixels of the window. */
-static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect part)
-{
-    return (struct rf_rect){part.x0 - r->view.x0, part.y0 - r->view.y0, part.x1 - r->view.x0,
-                            part.y1 - r->view.y0};
-}
-
 /* The distance beyond a tile within which a thick surface decides how thin structures in the tile
  * are drawn. */
 static int thin_margin(const struct rf_frame *f)
@@ -205,7 +198,8 @@ static bool make_background(struct rf_frame *f, struct rf_rect visible)
     if (rf_cancelled(&r->exec))
         return false;
     if (!contains(m->window, rf_whole(r)) &&
-        !rf_background_is_exact(&r->view, &r->pyramid, in_window(r, visible), sure_part(f)))
+        !rf_background_is_exact(&r->view, &r->pyramid, rf_part_in_window(&r->view, visible),
+                                sure_part(f)))
         return false;
     m->exact = contains(m->window, rf_whole(r)) ? m->window : visible;
     rf_pass_inpaint(f, r->pyramid.levels);
@@ -378,5 +372,5 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
         rf_pass_expand_chroma(f);
     if (f->weighted && rf_is_search(f))
         make_own_weights(f);
-    f->region = in_window(r, region);
+    f->region = rf_part_in_window(&r->view, region);
 }

@@ -44,16 +44,19 @@ static void lay_look(const struct rf_frame *f, struct rf_rect rect)
     rf_look_over(&f->look, &canvas, rect);
 }
 
+/* The part of tile (tx, ty) that is to be rendered. */
+static struct rf_rect part_of_tile(const struct rf_frame *f, int tx, int ty)
+{
+    return (struct rf_rect){
+        rf_larger(tx * RF_TILE, f->region.x0), rf_larger(ty * RF_TILE, f->region.y0),
+        rf_smaller((tx + 1) * RF_TILE, f->region.x1), rf_smaller((ty + 1) * RF_TILE, f->region.y1)};
+}
+
 static void tile_item(void *context, int item, int worker)
 {
     const struct rf_frame *f = context;
     const int tx = f->first_tx + item % f->count_tx, ty = f->first_ty + item / f->count_tx;
-    const struct rf_rect rect = {
-        rf_larger(tx * RF_TILE, f->region.x0),
-        rf_larger(ty * RF_TILE, f->region.y0),
-        rf_smaller((tx + 1) * RF_TILE, f->region.x1),
-        rf_smaller((ty + 1) * RF_TILE, f->region.y1),
-    };
+    const struct rf_rect rect = part_of_tile(f, tx, ty);
 
     if (f->params->max_blur_radius > 0 && rf_renderer_of(f)->yuv->on)
         f->method->yuv_tile(f, tx, ty, rect, worker);
@@ -81,10 +84,7 @@ static void look_item(void *context, int item, int worker)
     const int tx = f->first_tx + item % f->count_tx, ty = f->first_ty + item / f->count_tx;
 
     (void)worker;
-    lay_look(f, (struct rf_rect){rf_larger(tx * RF_TILE, f->region.x0),
-                                 rf_larger(ty * RF_TILE, f->region.y0),
-                                 rf_smaller((tx + 1) * RF_TILE, f->region.x1),
-                                 rf_smaller((ty + 1) * RF_TILE, f->region.y1)});
+    lay_look(f, part_of_tile(f, tx, ty));
 }
 
 /* Sets up the thin structures of a photo of R, G and B, where the renderer has memory for them. */

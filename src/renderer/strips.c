@@ -52,12 +52,6 @@ static struct rf_rect around(const struct refocus_renderer *r, struct rf_rect bl
                             block.y1 + margin < all.y1 ? block.y1 + margin : all.y1};
 }
 
-static struct rf_rect in_window(const struct refocus_renderer *r, struct rf_rect part)
-{
-    return (struct rf_rect){part.x0 - r->view.x0, part.y0 - r->view.y0, part.x1 - r->view.x0,
-                            part.y1 - r->view.y0};
-}
-
 /* A part of a picture, as a picture of its own. */
 static struct refocus_image image_part(const struct refocus_image *image, struct rf_rect part)
 {
@@ -109,7 +103,7 @@ void rf_find_silhouettes_in_blocks(struct refocus_renderer *r)
         if (!rf_cancelled(&r->exec))
             rf_find_silhouettes(&r->exec,
                                 &(struct rf_silhouette_window){&r->view, r->light, r->disparity},
-                                in_window(r, block), &r->photo.silhouettes);
+                                rf_part_in_window(&r->view, block), &r->photo.silhouettes);
     }
 }
 
@@ -273,7 +267,7 @@ void rf_run_strips(struct rf_frame *f, struct rf_rect region, enum rf_need need,
         image = image_part(out, (struct rf_rect){part.x0 - region.x0, part.y0 - region.y0,
                                                  part.x1 - region.x0, part.y1 - region.y0});
         f->out = &image;
-        f->region = in_window(r, part);
+        f->region = rf_part_in_window(&r->view, part);
         if (!rf_cancelled(&r->exec))
             tiles(f);
     }

@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include "commands/commands.h"
 #include "inputs/inputs.h"
 #include "line/interrupt.h"
@@ -175,13 +174,6 @@ static int print_report(const struct settings *settings, const struct input *inp
     return report_end_output();
 }
 
-static bool is_jpeg(const char *path)
-{
-    const char *dot = path ? strrchr(path, '.') : NULL;
-
-    return dot && (!strcasecmp(dot, ".jpg") || !strcasecmp(dot, ".jpeg"));
-}
-
 /* A grey picture of the disparities or of what is known of them. */
 static int write_view(const struct settings *settings, const struct input *input)
 {
@@ -301,7 +293,7 @@ static int write_output(const struct settings *settings, const struct input *inp
 {
     if (settings->view != VIEW_NONE)
         return write_view(settings, input);
-    if (is_jpeg(settings->output))
+    if (output_is_jpeg(settings->output))
         return write_photo(settings, input);
     return output_write_gray16(settings->output, input->disparity, input->width, input->height);
 }
@@ -399,7 +391,7 @@ static int check(const struct settings *settings, const char *const *files, int 
                               "its depth is given twice; give one of RIGHT, "
                               "--side-by-side, --stereo-file, "
                               "--estimate and --depth");
-    if (status == EXIT_DONE && is_made(settings, files) && is_jpeg(settings->output) &&
+    if (status == EXIT_DONE && is_made(settings, files) && output_is_jpeg(settings->output) &&
         settings->side_by_side && settings->view == VIEW_NONE)
         return report_failure(EXIT_WRONG, settings->output,
                               "depth of half a picture does not fit the file; give a "
@@ -411,7 +403,7 @@ static int check(const struct settings *settings, const char *const *files, int 
     if (status == EXIT_DONE && !isnan(settings->blur) && isnan(settings->focus_at[0]))
         return report_failure(EXIT_WRONG, "--blur", "it goes with --focus-at; give that too");
     if (status == EXIT_DONE && !isnan(settings->focus_at[0]) &&
-        (settings->view != VIEW_NONE || !is_jpeg(settings->output)))
+        (settings->view != VIEW_NONE || !output_is_jpeg(settings->output)))
         return report_failure(EXIT_WRONG, "--focus-at",
                               "it is kept in a photo alone; give -o a .jpg, or leave "
                               "it out");
@@ -431,7 +423,7 @@ static int read_input(const struct settings *settings, const char *const *files,
     if (settings->strokes && !settings->depth.file)
         return painted_read(input, files[0], &settings->depth);
     if (settings->depth.file || settings->depth.full ||
-        (is_jpeg(settings->output) && settings->view == VIEW_NONE))
+        (output_is_jpeg(settings->output) && settings->view == VIEW_NONE))
         return input_read(input, files[0], &settings->depth);
     return input_read_depth(input, files[0], &settings->depth);
 }

@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 #include <refocus/platform/file.h>
 #include <refocus/platform/sink.h>
@@ -29,13 +28,6 @@ struct animation {
     struct encoder *encoder;
 };
 
-static bool ends_in(const char *path, const char *ending)
-{
-    const size_t n = strlen(path), m = strlen(ending);
-
-    return n > m && strcasecmp(path + n - m, ending) == 0;
-}
-
 /* Whether a name has one %d, with a width if wanted, and no other %. */
 static bool is_pattern(const char *path)
 {
@@ -51,11 +43,12 @@ static enum kind kind_of(const char *path)
 {
     if (strchr(path, '%'))
         return is_pattern(path) && output_is_picture(path) ? KIND_PICTURES : KIND_NONE;
-    if (ends_in(path, ".y4m"))
+    if (output_ends_in(path, ".y4m"))
         return KIND_Y4M;
-    if (ends_in(path, ".apng"))
+    if (output_ends_in(path, ".apng"))
         return KIND_APNG;
-    if (ends_in(path, ".mp4") || ends_in(path, ".gif") || ends_in(path, ".webm"))
+    if (output_ends_in(path, ".mp4") || output_ends_in(path, ".gif") ||
+        output_ends_in(path, ".webm"))
         return KIND_ENCODER;
     return KIND_NONE;
 }

@@ -1,24 +1,14 @@
 /* editable.c: a result holds its all-in-focus original and depth where it is a JPEG or HEIC, made
  * of one of the two if nothing is asked for. */
 #include <string.h>
-#include <strings.h>
 #include "outputs/editable.h"
 #include "outputs/outputs.h"
 #include "line/report.h"
 
-static bool is_jpeg(const char *name)
-{
-    const char *const dot = strrchr(name, '.');
-
-    return dot && (strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0);
-}
-
 /* Whether the format holds original and depth. */
 static bool is_holder(const char *name)
 {
-    const char *const dot = strrchr(name, '.');
-
-    return is_jpeg(name) || (dot && strcasecmp(dot, ".heic") == 0);
+    return output_is_jpeg(name) || output_ends_in(name, ".heic");
 }
 
 int keep_check(const struct keep_settings *settings, const char *output, bool whole)
@@ -41,7 +31,7 @@ int keep_check(const struct keep_settings *settings, const char *output, bool wh
 
 bool keep_has_light(const struct keep_settings *settings, const char *output)
 {
-    return is_jpeg(output) && !settings->strip;
+    return output_is_jpeg(output) && !settings->strip;
 }
 
 /* Whether the depth is that of the photo's own GDepth as it is. */

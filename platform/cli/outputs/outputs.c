@@ -12,11 +12,16 @@
 
 enum { MOST_ENDINGS = 32 };
 
-static bool ends_in(const char *path, const char *ending)
+bool output_ends_in(const char *path, const char *ending)
 {
     const size_t length = strlen(path), n = strlen(ending);
 
     return length > n && strcasecmp(path + length - n, ending) == 0;
+}
+
+bool output_is_jpeg(const char *path)
+{
+    return path && (output_ends_in(path, ".jpg") || output_ends_in(path, ".jpeg"));
 }
 
 uint32_t output_deep_format(const char *path)
@@ -31,7 +36,7 @@ uint32_t output_deep_format(const char *path)
                 {".pfm", REFOCUS_FORMAT_RGB_FLOAT}};
 
     for (size_t i = 0; i < sizeof deep / sizeof *deep; i++)
-        if (ends_in(path, deep[i].ending))
+        if (output_ends_in(path, deep[i].ending))
             return deep[i].format;
     return REFOCUS_FORMAT_NONE;
 }
@@ -39,7 +44,7 @@ uint32_t output_deep_format(const char *path)
 bool output_is_picture(const char *path)
 {
     for (int i = 0; refocus_file_ending(0, i); i++)
-        if (ends_in(path, refocus_file_ending(0, i)))
+        if (output_ends_in(path, refocus_file_ending(0, i)))
             return true;
     return false;
 }
@@ -58,7 +63,7 @@ static int check_ending(const char *path, unsigned kinds, const char *const *oth
     for (int i = 0; others && others[i] && count < MOST_ENDINGS; i++)
         endings[count++] = others[i];
     for (int i = 0; i < count; i++) {
-        if (ends_in(path, endings[i]))
+        if (output_ends_in(path, endings[i]))
             return EXIT_DONE;
         snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s",
                  i == 0          ? ""

@@ -27,6 +27,9 @@ enum { OUTPUT_PICTURE = 1, OUTPUT_DEPTH = 2 };
  * none of the inputs, some of which may be NULL. */
 int output_check(const char *path, unsigned kinds, const char *const *others,
                  const char *const *inputs, int input_count);
+/* Whether a name ends so, in capitals or not, with something before it. */
+bool output_ends_in(const char *path, const char *ending);
+bool output_is_jpeg(const char *path); /* NULL is not */
 /* The deep format that a picture of that name holds: of PNG, TIFF, OpenEXR and PFM; of others 0. */
 uint32_t output_deep_format(const char *path);
 /* Whether the name ends as that of a picture. */
