@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "depth/smooth.h"
+#include "image/samples.h"
 #include "support/compare.h"
 
 enum {
@@ -24,11 +25,6 @@ static uint16_t most_alike(int step)
 }
 _Static_assert(MOST_STEP * 8 / 5 <= RF_MOST_SMOOTHED, "sums of differences fit in 16 bits");
 
-static int code_at(const struct refocus_disparity *map, const uint8_t *row, int x)
-{
-    return map->bits == 16 ? ((const uint16_t *)row)[x] : row[x] * 257;
-}
-
 /* Sets the bits of the codes in use, and returns how many; MOST + 1: more than MOST. Of a large map
  * it looks at some pixels of each row, others in the next. */
 static int find_codes(const struct refocus_disparity *map, uint64_t used[CODES / 64])
@@ -42,7 +38,7 @@ static int find_codes(const struct refocus_disparity *map, uint64_t used[CODES /
         const uint8_t *row = (const uint8_t *)map->samples + y * map->stride;
 
         for (int x = 5 * y % every; x < map->width; x += every) {
-            const int code = code_at(map, row, x);
+            const int code = rf_map_sample(map, row, x);
             const uint64_t bit = UINT64_C(1) << code % 64;
 
             found += !(used[code / 64] & bit);
@@ -138,8 +134,7 @@ void rf_dequantised_patch(const struct rf_kernels *kernels, const struct refocus
 
     for (int v = y0; v < y1; v++)
         for (int u = x0; u < x1; u++)
-            code[(v - y0) * SIDE + u - x0] =
-                (uint16_t)code_at(map, (const uint8_t *)map->samples + v * map->stride, u);
+            code[(v - y0) * SIDE + u - x0] = rf_map_sample(map, rf_map_row(map, v), u);
     if (step)
         rf_dequantise(&d, NULL);
     for (int v = 0; v < height; v++)

@@ -3,12 +3,8 @@
 
 #include "depth/temporal.h"
 #include "image/format.h"
+#include "image/samples.h"
 #include "support/compare.h"
-
-static int place(int i, int samples, int size)
-{
-    return (int)((2 * (int64_t)i + 1) * size / (2 * (int64_t)samples));
-}
 
 static int within(int v, int size)
 {
@@ -62,17 +58,16 @@ void rf_load_frame(const struct rf_frame *frame, int width, int height,
     const struct brightness at = brightness_of(photo ? photo->format : REFOCUS_FORMAT_NONE);
 
     for (int y = 0; y < height && !rf_run_cancelled(run); y++) {
-        const uint8_t *in = (const uint8_t *)map->samples + y * map->stride;
+        const void *const in = rf_map_row(map, y);
         const size_t row = (size_t)y * (size_t)width;
 
         for (int x = 0; x < width; x++) {
-            const uint16_t d =
-                (uint16_t)(map->bits == 16 ? ((const uint16_t *)in)[x] : in[x] * 257);
+            const uint16_t d = rf_map_sample(map, in, x);
 
             frame->disparity[row + (size_t)x] = d;
             frame->guide[row + (size_t)x] =
-                photo ? guide_at(photo, &at, place(x, width, photo->width),
-                                 place(y, height, photo->height), dx ? dx : 1, dy ? dy : 1)
+                photo ? guide_at(photo, &at, rf_middle_of(x, width, photo->width),
+                                 rf_middle_of(y, height, photo->height), dx ? dx : 1, dy ? dy : 1)
                       : (uint8_t)(d >> 8);
         }
     }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "depth/dequantise.h"
+#include "image/samples.h"
 #include "support/compare.h"
 
 enum {
@@ -15,7 +16,7 @@ enum {
 /* The column or row, of `size`, that the i-th of `samples` lies on. */
 static int place(int i, int samples, int size)
 {
-    return (int)((2 * (int64_t)rf_clamp(i, 0, samples - 1) + 1) * size / (2 * (int64_t)samples));
+    return rf_middle_of(rf_clamp(i, 0, samples - 1), samples, size);
 }
 
 /* place() of 0, 1, 2 ... without divisions: `at` and `rest` / per. */

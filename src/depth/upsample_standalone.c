@@ -6,17 +6,7 @@
 #include "depth/upsample.h"
 #include "image/format.h"
 #include "image/read.h"
-
-static void copy_map(const struct refocus_disparity *map, uint16_t *out, ptrdiff_t stride)
-{
-    for (int y = 0; y < map->height; y++) {
-        const uint8_t *in = (const uint8_t *)map->samples + y * map->stride;
-        uint16_t *to = (uint16_t *)((char *)out + y * stride);
-
-        for (int x = 0; x < map->width; x++)
-            to[x] = (uint16_t)(map->bits == 16 ? ((const uint16_t *)in)[x] : in[x] * 257);
-    }
-}
+#include "image/samples.h"
 
 static bool good_params(const struct refocus_upsample_params *params,
                         const struct refocus_disparity *map)
@@ -66,7 +56,7 @@ int refocus_upsample(const struct refocus_image *photo, const struct refocus_dis
     if (!rf_kernels_select(&kernels, &cpu))
         return REFOCUS_ERR_UNSUPPORTED;
     if (map->width == photo->width && map->height == photo->height) {
-        copy_map(map, out, stride);
+        rf_copy_map(map, out, stride);
         return REFOCUS_OK;
     }
     threads = rf_thread_count(params->threads);

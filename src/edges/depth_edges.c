@@ -12,6 +12,7 @@
 #include "edges/place.h"
 #include "image/format.h"
 #include "image/read.h"
+#include "image/samples.h"
 #include "support/arena.h"
 
 /* A photo of Y, U and V, and the same in RGB8. */
@@ -55,19 +56,6 @@ static void convert(struct guide *guide, struct rf_pool *pool)
     rf_yuv_curve_init(guide->curve, guide->photo->matrix, guide->photo->range,
                       REFOCUS_BLEND_LINEAR);
     rf_pool_run(pool, convert_row, guide, guide->rgb.height);
-}
-
-static void copy_map(const struct refocus_disparity *map, struct rf_disparity_q16 out)
-{
-    for (int y = 0; y < map->height; y++) {
-        const uint8_t *in = (const uint8_t *)map->samples + y * map->stride;
-        uint16_t *to = out.at + y * out.stride;
-
-        if (map->bits == 16)
-            memcpy(to, in, (size_t)map->width * sizeof *to);
-        for (int x = 0; x < map->width && map->bits == 8; x++)
-            to[x] = (uint16_t)(in[x] * 257);
-    }
 }
 
 /* Sets the pointers, or with arena->base == NULL only counts. */
@@ -114,7 +102,7 @@ static int run(struct rf_place_edges *place, int threads, struct refocus_depth_e
         if (guide.curve)
             convert(&guide, &pool);
         if (!rf_place_edges(place, report))
-            copy_map(place->map, place->out);
+            rf_copy_map(place->map, place->out.at, 2 * place->out.stride);
         rf_pool_end(&pool);
     }
     free(block);

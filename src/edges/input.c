@@ -7,6 +7,7 @@
 #include "depth/dequantise.h"
 #include "depth/noise.h"
 #include "image/format.h"
+#include "image/samples.h"
 #include "support/compare.h"
 
 enum { CHANGED = 257 }; /* a code of 8 bits */
@@ -55,24 +56,11 @@ void rf_load_edge_photo(struct rf_edge_job *job)
 
 /* ----- map ----- */
 
-static uint16_t sample_at(const struct refocus_disparity *map, const void *row, int x)
-{
-    return (uint16_t)(map->bits == 16 ? ((const uint16_t *)row)[x]
-                                      : ((const uint8_t *)row)[x] * 257);
-}
-
-/* The sample in the middle of the i-th of n parts of `size`. */
-static int middle_of(int i, int n, int size)
-{
-    return (int)((2 * (int64_t)i + 1) * size / (2 * (int64_t)n));
-}
-
 static void load_samples(void *context, int y, int worker)
 {
     const struct rf_edge_job *job = context;
     const struct refocus_disparity *map = job->map;
-    const void *row =
-        (const uint8_t *)map->samples + middle_of(y, job->rows, map->height) * map->stride;
+    const void *row = rf_map_row(map, rf_middle_of(y, job->rows, map->height));
     uint16_t *out = job->sample.at + y * job->sample.stride;
     const bool all = job->columns == map->width;
 
@@ -82,7 +70,7 @@ static void load_samples(void *context, int y, int worker)
         return;
     }
     for (int x = 0; x < job->columns; x++)
-        out[x] = sample_at(map, row, all ? x : middle_of(x, job->columns, map->width));
+        out[x] = rf_map_sample(map, row, all ? x : rf_middle_of(x, job->columns, map->width));
 }
 
 /* Centres lie at (i + 1/2) / size of both rasters. */

@@ -1,11 +1,11 @@
 /* map.c: looks up a map that covers the picture at any size. */
 #include "focus/focus.h"
 
+#include "image/samples.h"
+
 static int sample(const struct refocus_disparity *map, int x, int y)
 {
-    const uint8_t *row = (const uint8_t *)map->samples + y * map->stride;
-
-    return map->bits == 8 ? row[x] * 257 : ((const uint16_t *)(const void *)row)[x];
+    return rf_map_sample(map, rf_map_row(map, y), x);
 }
 
 /* The place of the middle of pixel `at` of `pixels` among `samples`, Q16 from the middle of the

@@ -6,6 +6,7 @@
 
 #include "image/format.h"
 #include "image/read.h"
+#include "image/samples.h"
 #include "support/compare.h"
 
 enum {
@@ -25,9 +26,7 @@ struct part {
 
 static int value_at(const struct part *part, int x, int y)
 {
-    const uint8_t *row = (const uint8_t *)part->map->samples + y * part->map->stride;
-
-    return part->map->bits == 8 ? row[x] * 257 : ((const uint16_t *)(const void *)row)[x];
+    return rf_map_sample(part->map, rf_map_row(part->map, y), x);
 }
 
 static bool is_inside(const struct part *part, int x, int y)

@@ -9,6 +9,7 @@
 #include "image/format.h"
 #include "image/read.h"
 #include "image/viewport.h"
+#include "image/samples.h"
 #include "renderer/renderer.h"
 #include "renderer/layout.h"
 #include "renderer/load.h"
@@ -59,12 +60,11 @@ static void keep_sure(const struct scene *scene, struct rf_disparity_q16 out)
 
     for (int y = 0; y < map->height; y++) {
         const uint8_t *sure = scene->confidence + y * scene->confidence_stride;
-        const uint8_t *row = (const uint8_t *)map->samples + y * map->stride;
+        const void *const row = rf_map_row(map, y);
 
         for (int x = 0; x < map->width; x++)
             if (sure[x] >= 128)
-                out.at[y * out.stride + x] =
-                    (uint16_t)(map->bits == 16 ? ((const uint16_t *)row)[x] : row[x] * 257);
+                out.at[y * out.stride + x] = rf_map_sample(map, row, x);
     }
 }
 
