@@ -49,6 +49,12 @@ class Files(Live):
         self.report(*pictures, '--out', 'f-%02d.ppm')
         self.assertTrue(os.path.exists('f-02.ppm'))
 
+    def test_no_depth_at_all(self):
+        write('none.y4m', b'YUV4MPEG2 W4 H1 F30:1 Cmono\n')
+        for more in [], ['--frames-policy', 'newest']:
+            self.fails(1, 'y4m:none.y4m: it ended without a depth map', '--camera', 'y4m:in.y4m',
+                       '--depth', 'y4m:none.y4m', '--out', 'y4m:out.y4m', *more)
+
     def test_what_a_header_says_is_carried_on(self):
         video = content('in.y4m')
         write('in.y4m', video.replace(b'F30:1 C420jpeg', b'F30000:1001 Ip A128:117 C420mpeg2'))

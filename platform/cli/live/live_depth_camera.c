@@ -192,6 +192,10 @@ void *live_depth_thread(void *argument)
     free(samples.registered);
     free(samples.work);
     live_range_end(&live->ranger);
+    if (!lane.failed && live->depths.count == 0 && !live_is_over(live)) {
+        lane.failed = true;
+        live_note_failure(live, EXIT_FAILED, lane.name, "it ended without a depth map");
+    }
     live_depths_end(&live->depths, lane.failed);
     if (lane.failed && live->settings->policy == POLICY_NEWEST)
         live_queue_close(&live->captured);
