@@ -126,6 +126,24 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
     return REFOCUS_OK;
 }
 
+/* The end of a sequence is told from a gap by the numbers behind it, this many. */
+enum { LONGEST_GAP = 100 };
+
+static int check_gap(const struct pictures *pictures, const char *missing,
+                     struct refocus_reason *reason)
+{
+    char name[PATH_MAX];
+
+    for (int i = 1; i <= LONGEST_GAP && pictures->next <= INT_MAX - i; i++)
+        if (rf_pattern_name(name, sizeof name, pictures->pattern, pictures->next + i) &&
+            access(name, F_OK) == 0)
+            return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
+                                   "%.120s is missing, and there is %.120s; number them without a "
+                                   "gap",
+                                   missing, name);
+    return REFOCUS_OK;
+}
+
 /* Read the picture that comes next into a buffer. */
 static int read_next(struct refocus_source *source, int buffer, struct refocus_reason *reason)
 {
@@ -134,6 +152,10 @@ static int read_next(struct refocus_source *source, int buffer, struct refocus_r
 
     rf_pattern_name(name, sizeof name, pictures->pattern, pictures->next);
     if (access(name, F_OK) != 0) {
+        const int status = check_gap(pictures, name, reason);
+
+        if (status != REFOCUS_OK)
+            return status;
         if (!(source->config.flags & REFOCUS_SOURCE_LOOP) || pictures->next == pictures->first)
             return rf_capture_fail(reason, REFOCUS_ERR_END,
                                    "there are no more "

@@ -49,6 +49,13 @@ class Files(Live):
         self.report(*pictures, '--out', 'f-%02d.ppm')
         self.assertTrue(os.path.exists('f-02.ppm'))
 
+    def test_a_gap_in_a_sequence(self):
+        for n in 0, 1, 3:
+            write('f-%d.ppm' % n, b'P6\n64 48\n255\n' + bytes(64 * 48 * 3))
+        self.fails(1, 'f-2.ppm is missing, and there is f-3.ppm', '--camera', 'file:f-%d.ppm',
+                   '--depth', 'depth.pgm', '--out', 'o-%d.ppm')
+        self.assertEqual([n for n in range(5) if os.path.exists('o-%d.ppm' % n)], [0, 1])
+
     def test_no_depth_at_all(self):
         write('none.y4m', b'YUV4MPEG2 W4 H1 F30:1 Cmono\n')
         for more in [], ['--frames-policy', 'newest']:

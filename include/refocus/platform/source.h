@@ -8,7 +8,7 @@
  *     pipewire:[NODE]             a node of PipeWire that gives video, by its name, number or
  *         description; of no name the best camera
  *     file:frames-%04d.png        pictures; one conversion that takes an int, from 0 or
- *         1 on
+ *         1 on; a number that is missing before others, up to 100 farther on, is an error
  *     file:photo.jpg              one picture, as often as it is asked for
  *     y4m:FILE                    a YUV4MPEG2 stream of whole frames, not of fields; "-" is
  *         standard input. Of a pipe the header is read when it is started, or asked for its mode

@@ -157,6 +157,32 @@ static void pictures_change(void **state)
     refocus_source_close(&source);
 }
 
+/* A number that is missing is no end where another one follows, up to a hundred farther on. */
+static void a_gap_is_told(void **state)
+{
+    const struct refocus_frame *frame;
+    struct refocus_source *source;
+
+    (void)state;
+    for (int i = 0; i < 2; i++)
+        write_picture(i, 0);
+    for (int far = 3; far <= 103; far += 50) {
+        const int status = far < 103 ? REFOCUS_ERR_FORMAT : REFOCUS_ERR_END;
+
+        write_picture(far, 0);
+        source = started("file:p-%d.ppm", REFOCUS_SOURCE_FAST);
+        for (int i = 0; i < 2; i++) {
+            assert_status(refocus_source_wait(source, 0, &frame, &reason), REFOCUS_OK);
+            refocus_source_release(source, frame);
+        }
+        assert_status(refocus_source_wait(source, 0, &frame, &reason), status);
+        if (status == REFOCUS_ERR_FORMAT)
+            assert_non_null(strstr(reason.text, "p-2.ppm is missing"));
+        refocus_source_close(&source);
+        remove(far == 3 ? "p-3.ppm" : far == 53 ? "p-53.ppm" : "p-103.ppm");
+    }
+}
+
 /* Every allocation -------------------------------------------------------------------- */
 
 /* Opens, starts and takes two frames. */
@@ -238,7 +264,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(depth_of_codes), cmocka_unit_test(pictures_in_time),
-        cmocka_unit_test(pictures_change), cmocka_unit_test(every_allocation)};
+        cmocka_unit_test(pictures_change), cmocka_unit_test(a_gap_is_told),
+        cmocka_unit_test(every_allocation)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
