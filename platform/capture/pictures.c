@@ -60,12 +60,22 @@ static int get_mode(struct refocus_source *source, int index, struct refocus_sou
     return REFOCUS_OK;
 }
 
+/* The reason of an error names the picture of a sequence. */
 static int read_photo(const struct refocus_source *source, struct refocus_photo **photo,
                       const char *name, struct refocus_reason *reason)
 {
-    return source->config.flags & REFOCUS_SOURCE_DEPTH
-               ? refocus_depth_read(photo, name, NULL, 0, 0, NULL, reason)
-               : refocus_photo_read(photo, name, NULL, reason);
+    const struct pictures *const pictures = source->state;
+    struct refocus_reason why = {""};
+    const int status = source->config.flags & REFOCUS_SOURCE_DEPTH
+                           ? refocus_depth_read(photo, name, NULL, 0, 0, NULL, &why)
+                           : refocus_photo_read(photo, name, NULL, &why);
+
+    if (status == REFOCUS_OK || !pictures->many)
+        *reason = why;
+    else
+        rf_capture_fail(reason, status, "%.100s: %.150s", name,
+                        why.text[0] ? why.text : "it cannot be read");
+    return status;
 }
 
 /* Point the frame into the photo. */

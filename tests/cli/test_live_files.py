@@ -96,7 +96,7 @@ class Files(Live):
                    '--out', 'y4m:out.y4m')
         for n in range(5):
             write('f-%d.ppm' % n, b'P6\n64 48\n255\n' + bytes(64 * 48 * 3 * (n < 4)))
-        run('', 4, '--camera', 'file:f-%d.ppm', '--depth', 'depth.pgm')
+        run('refocus: file:f-%d.ppm: f-4.ppm: ', 4, '--camera', 'file:f-%d.ppm', '--depth', 'depth.pgm')
         # As a camera would: what was taken is written, the newest alone if it has to be.
         write('cut.y4m', video + frame(10)[:3000])
         done = live('--camera', 'y4m:cut.y4m', '--depth', 'depth.pgm', '--frames-policy', 'newest',
