@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """usage: test_live_files.py REFOCUS  -- refocus live from files to files: what is damaged, ends or is in the way."""
+import json
 import os
 import unittest
 
@@ -55,6 +56,17 @@ class Files(Live):
         self.fails(1, 'f-2.ppm is missing, and there is f-3.ppm', '--camera', 'file:f-%d.ppm',
                    '--depth', 'depth.pgm', '--out', 'o-%d.ppm')
         self.assertEqual([n for n in range(5) if os.path.exists('o-%d.ppm' % n)], [0, 1])
+
+    def test_a_run_that_fails_is_reported(self):
+        write('cut.y4m', content('in.y4m') + frame(10)[:3000])
+        args = ['--depth', 'depth.pgm', '--out', 'y4m:out.y4m', '--json']
+        done = live('--camera', 'y4m:cut.y4m', *args)
+        self.assertEqual(done.returncode, 1)
+        r = json.loads(done.stdout)
+        self.assertEqual('refocus: %s\n' % r['error'], done.stderr.decode())
+        self.assertEqual((r['frames_in'], r['frames_out']), (10, 10))
+        self.assertNotIn('error', self.report('--camera', 'y4m:in.y4m', *args[:-1]))
+        self.fails(1, 'it is not there', '--camera', 'y4m:none.y4m', *args)  # no frame: no report
 
     def test_no_depth_at_all(self):
         write('none.y4m', b'YUV4MPEG2 W4 H1 F30:1 Cmono\n')

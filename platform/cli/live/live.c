@@ -119,7 +119,7 @@ static void run_threads(struct live *live)
            !live_is_over(live))
         continue;
     live_render(live);
-    /* Pictures that are rendered already are still written, unless something failed or a signal
+    /* Pictures that are rendered already are still written, unless the sink failed or a signal
      * came. */
     if (running[OUTPUT])
         pthread_join(thread[OUTPUT], NULL);
@@ -152,10 +152,14 @@ static int run_live(struct live *live)
         if (status != EXIT_DONE && live->what[0])
             status = report_failure(status, live->what, "%s", live->why);
     }
-    if (refocus_sink_close(&live->sink, &reason) != REFOCUS_OK && status == EXIT_DONE)
-        status = report_failure(EXIT_FAILED, live->settings->out, "%s", reason.text);
+    if (refocus_sink_close(&live->sink, &reason) != REFOCUS_OK && status == EXIT_DONE) {
+        live_note_failure(live, EXIT_FAILED, live->settings->out, reason.text);
+        status = report_failure(EXIT_FAILED, live->what, "%s", live->why);
+    }
     if (status == EXIT_DONE)
         status = live_report(live);
+    else if (live->settings->engine.json && live->capture.frames > 0)
+        live_report(live); /* The frames until then count all the same. */
     interrupt_call(NULL, NULL);
     live_sources_close(live);
     live_commands_close(live);

@@ -43,6 +43,16 @@ static double metres(const struct live_range *range, bool near)
     return live_range_is_known(range) ? 1 / (near ? range->near : range->far) : 0;
 }
 
+/* A failure whose words were printed where it happened has none here. */
+static json_t *error_json(const struct live *live)
+{
+    char text[sizeof live->what + sizeof live->why + 2];
+
+    snprintf(text, sizeof text, "%s%s%s", live->what, live->what[0] ? ": " : "",
+             live->what[0] ? live->why : "it failed; standard error says why");
+    return report_text_json(text);
+}
+
 int live_report(struct live *live)
 {
     const struct live_settings *settings = live->settings;
@@ -77,6 +87,8 @@ int live_report(struct live *live)
         (json_int_t)live->without_depth, "commands", (json_int_t)live->commands, "fps", fps,
         "latency_ms", live_times_json(&live->latency), "outside_rendering", outside_rendering(live),
         "create_ms", live->create_ms);
+    if (json && live->exit_code != EXIT_DONE)
+        json_object_set_new(json, "error", error_json(live));
     if (json) {
         json_object_set_new(json, "rendered_in", json_string(rendered_in(live->rendered_format)));
         json_object_set_new(json, "colour", stage_json(&live->capture));
