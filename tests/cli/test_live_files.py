@@ -68,6 +68,14 @@ class Files(Live):
         self.assertNotIn('error', self.report('--camera', 'y4m:in.y4m', *args[:-1]))
         self.fails(1, 'it is not there', '--camera', 'y4m:none.y4m', *args)  # no frame: no report
 
+    def test_a_focus_outside_of_the_picture(self):
+        args = ['--depth', 'depth.pgm', '--out', 'y4m:out.y4m', '--focus-at']
+        for at in '64,0', '0,48', '-1,5', 'inf,5':
+            self.fails(2, '--focus-at: %s lies outside of the 64x48 pixels of the camera; give 0,0 to '
+                       '63,47' % at, '--camera', 'y4m:in.y4m', *args, at)
+            self.assertFalse(os.path.exists('out.y4m'))
+        self.report('--camera', 'y4m:in.y4m', *args, '63,47')
+
     def test_no_depth_at_all(self):
         write('none.y4m', b'YUV4MPEG2 W4 H1 F30:1 Cmono\n')
         for more in [], ['--frames-policy', 'newest']:

@@ -49,6 +49,25 @@ int live_look_check_method(const struct live *live)
     return status == EXIT_DONE ? bokeh_check_method(&params, live->engine->has_sides) : status;
 }
 
+/* The places that options name have to be in the first frame; later ones may be smaller. */
+static int check_places(struct live *live, int width, int height)
+{
+    const double *const box = live->settings->lens.focus_rectangle;
+    const double *const at = live->settings->lens.focus_at;
+
+    live_focus_size(&live->focus, width, height);
+    if (!isnan(box[0]) && !live_focus_has_inside(&live->focus, box))
+        return report_failure(EXIT_WRONG, "--focus-rectangle",
+                              "%g,%g,%g,%g does not lie within the %dx%d pixels of the camera",
+                              box[0], box[1], box[2], box[3], width, height);
+    if (!isnan(at[0]) && !(at[0] >= 0 && at[0] < width && at[1] >= 0 && at[1] < height))
+        return report_failure(EXIT_WRONG, "--focus-at",
+                              "%g,%g lies outside of the %dx%d pixels of the camera; give 0,0 to "
+                              "%d,%d",
+                              at[0], at[1], width, height, width - 1, height - 1);
+    return EXIT_DONE;
+}
+
 int live_look_place(struct live *live, int width, int height)
 {
     static const struct refocus_depth_range one_dioptre = {1, INFINITY};
@@ -58,15 +77,8 @@ int live_look_place(struct live *live, int width, int height)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, 3 * (ptrdiff_t)width);
     int status = papers_place(&live->settings->engine.papers, &live->engine->params, width, height);
 
-    if (status == EXIT_DONE && !isnan(lens->focus_rectangle[0]) && live->frames_rendered <= 1) {
-        live_focus_size(&live->focus, width, height);
-        if (!live_focus_has_inside(&live->focus, lens->focus_rectangle))
-            status =
-                report_failure(EXIT_WRONG, "--focus-rectangle",
-                               "%g,%g,%g,%g does not lie within the %dx%d pixels of the camera",
-                               lens->focus_rectangle[0], lens->focus_rectangle[1],
-                               lens->focus_rectangle[2], lens->focus_rectangle[3], width, height);
-    }
+    if (status == EXIT_DONE && live->frames_rendered <= 1)
+        status = check_places(live, width, height);
     if (status == EXIT_DONE)
         status = live_look_aim(live, &photo, &aimed);
     if (status == EXIT_DONE && !isnan(lens->f_number)) {
