@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 #include "pattern.h"
@@ -22,6 +23,7 @@ struct stream {
     char *path;
     int fd;
     bool y4m, begun;
+    bool ours, made;            /* the file was opened here; it was not there before */
     bool own;                   /* raw: frames are as pictures come */
     bool tall;                  /* y4m: U and V have all rows */
     uint32_t range;             /* enum refocus_range of its pictures */
@@ -100,15 +102,35 @@ static int parse_raw(struct stream *stream, struct refocus_reason *reason)
     return REFOCUS_OK;
 }
 
+/* A file that is there stays as it is until the first frame is announced. */
 static int open_file(struct stream *stream, struct refocus_reason *reason)
 {
+    const int flags = O_WRONLY | O_CREAT | O_CLOEXEC;
+
     if (!*stream->path)
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "give the name of a file behind the colon, or '-'");
-    stream->fd = strcmp(stream->path, "-") == 0
-                     ? fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)
-                     : open(stream->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    stream->ours = strcmp(stream->path, "-") != 0;
+    if (stream->ours) {
+        stream->fd = open(stream->path, flags | O_EXCL, 0666);
+        stream->made = stream->fd >= 0;
+        if (!stream->made && errno == EEXIST)
+            stream->fd = open(stream->path, flags, 0666);
+    } else {
+        stream->fd = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+    }
     return stream->fd < 0 ? rf_capture_fail_errno(reason, errno, stream->path) : REFOCUS_OK;
+}
+
+/* The old contents go; pipes and devices have none. */
+static int empty_file(const struct stream *stream, struct refocus_reason *reason)
+{
+    struct stat found;
+
+    if (!stream->ours || fstat(stream->fd, &found) != 0 || !S_ISREG(found.st_mode) ||
+        ftruncate(stream->fd, 0) == 0)
+        return REFOCUS_OK;
+    return rf_capture_fail_errno(reason, errno, stream->path);
 }
 
 static int open_stream(struct refocus_sink *sink, const char *rest, bool y4m,
@@ -227,6 +249,7 @@ static int start_stream(struct refocus_sink *sink, int width, int height, double
 {
     struct stream *stream = sink->state;
     char header[RF_Y4M_HEADER];
+    int status;
 
     const uint32_t layout = layout_of(sink);
     const bool tall = stream->y4m && is_422(sink->format);
@@ -246,6 +269,9 @@ static int start_stream(struct refocus_sink *sink, int width, int height, double
     stream->range = range_of(sink);
     if (!lay_out(stream, layout, width, height))
         return rf_capture_fail_memory(reason);
+    status = empty_file(stream, reason);
+    if (status != REFOCUS_OK)
+        return status;
     /* y4m says the size at once: only a header that was written is begun. */
     stream->begun = true;
     if (!stream->y4m)
@@ -279,6 +305,8 @@ static int close_stream(struct refocus_sink *sink, struct refocus_reason *reason
 
     if (close(stream->fd) != 0)
         status = rf_capture_fail_errno(reason, errno, stream->path);
+    if (stream->made && !stream->begun)
+        unlink(stream->path);
     free(stream->memory);
     free(stream->path);
     free(stream);

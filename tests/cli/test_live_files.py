@@ -2,9 +2,12 @@
 """usage: test_live_files.py REFOCUS  -- refocus live from files to files: what is damaged, ends or is in the way."""
 import json
 import os
+import signal
+import subprocess
+import time
 import unittest
 
-from living import Live, content, live
+from living import REFOCUS, SLOW, SMALL, Live, content, live
 
 PHOTO = bytes((x * 37 + y * 91 + x * y * 13) % 199 for y in range(48) for x in range(64))
 
@@ -75,6 +78,33 @@ class Files(Live):
                        '63,47' % at, '--camera', 'y4m:in.y4m', *args, at)
             self.assertFalse(os.path.exists('out.y4m'))
         self.report('--camera', 'y4m:in.y4m', *args, '63,47')
+
+    def test_a_stream_without_frames(self):
+        header = b'YUV4MPEG2 W64 H48 F30:1 Ip A1:1 C420jpeg XCOLORRANGE=LIMITED\n'
+        write('none.y4m', content('in.y4m').split(b'FRAME')[0])
+        args = ['--depth', 'depth.pgm', '--out', 'y4m:out.y4m']
+        self.assertEqual(self.report('--camera', 'y4m:none.y4m', *args)['frames_out'], 0)
+        self.assertEqual(content('out.y4m'), header)
+        os.remove('out.y4m')
+        # A signal before the first frame: of a camera the size is known, of a pipe it is not.
+        os.mkfifo('pipe')
+        for camera, out in ('replay::size 64x48;at 0 late 100000', header), ('y4m:pipe', None):
+            run = subprocess.Popen([REFOCUS, 'live', *SMALL, '--no-commands', '--camera', camera, *args],
+                                   stderr=subprocess.DEVNULL)
+            time.sleep(0.5 * SLOW)
+            run.send_signal(signal.SIGINT)
+            self.assertEqual(run.wait(60 * SLOW), 0)
+            self.assertEqual(os.path.exists('out.y4m'), out is not None)
+            if out:
+                self.assertEqual(content('out.y4m'), out)
+                os.remove('out.y4m')
+        # A failure before the first frame leaves no file, and one that was there as it was.
+        write('none.y4m', content('none.y4m') + b'FRAME\nabc')
+        self.fails(1, 'it ends within frame 0', '--camera', 'y4m:none.y4m', *args)
+        self.assertFalse(os.path.exists('out.y4m'))
+        write('out.y4m', b'precious')
+        self.fails(1, 'it ends within frame 0', '--camera', 'y4m:none.y4m', *args)
+        self.assertEqual(content('out.y4m'), b'precious')
 
     def test_no_depth_at_all(self):
         write('none.y4m', b'YUV4MPEG2 W4 H1 F30:1 Cmono\n')

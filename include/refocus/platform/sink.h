@@ -43,7 +43,7 @@ struct refocus_sink;
 
 /**
  * Whether a sink would write over a file that is read. Sinks of files begin them anew when they are
- * opened, so ask before that.
+ * started, so ask before that.
  *
  * @param sink   as for refocus_sink_open()
  * @param input  a source as for refocus_source_open(), or the name of a file
@@ -54,7 +54,8 @@ struct refocus_sink;
 REFOCUS_API int refocus_sink_overwrites(const char *sink, const char *input);
 
 /**
- * Open a sink. Nothing is written yet.
+ * Open a sink. Nothing is written yet: a file that is there stays as it is until the sink is
+ * started, and one that is made is removed by refocus_sink_close() if it never was.
  *
  * @param sink    receives the sink, or NULL on an error; ended by refocus_sink_close()
  * @param reason  receives words on an error; may be NULL, as in all functions here

@@ -133,6 +133,20 @@ static void run_threads(struct live *live)
             pthread_join(thread[i], NULL);
 }
 
+/* A stream without frames has its header all the same, if the size of a frame is known. */
+static void begin_without_frames(struct live *live)
+{
+    const uint32_t own = refocus_frame_image_format(live->mode.format);
+    const struct refocus_image like = {
+        .struct_size = sizeof(struct refocus_image),
+        .format = live->yuv_formats >> own & 1 ? own : (uint32_t)REFOCUS_FORMAT_RGB8,
+        .width = live->mode.width,
+        .height = live->mode.height};
+
+    if (atomic_load(&live->frames_out) == 0 && live_output_is_stream(live) && like.width > 0)
+        refocus_sink_start_image(live->sink, &like, live->mode.fps, NULL);
+}
+
 static void end_live(void *live)
 {
     live_end(live);
@@ -151,6 +165,8 @@ static int run_live(struct live *live)
         status = live->exit_code;
         if (status != EXIT_DONE && live->what[0])
             status = report_failure(status, live->what, "%s", live->why);
+        if (status == EXIT_DONE)
+            begin_without_frames(live);
     }
     if (refocus_sink_close(&live->sink, &reason) != REFOCUS_OK && status == EXIT_DONE) {
         live_note_failure(live, EXIT_FAILED, live->settings->out, reason.text);

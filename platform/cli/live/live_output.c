@@ -32,8 +32,7 @@ static bool is_device(const struct live *live)
            strncmp(live->settings->out, "pipewire:", 9) == 0;
 }
 
-/* Whether a write may wait for whoever reads: then a signal may cut it short. */
-static bool is_stream(const struct live *live)
+bool live_output_is_stream(const struct live *live)
 {
     return strncmp(live->settings->out, "y4m:", 4) == 0 ||
            strncmp(live->settings->out, "raw:", 4) == 0;
@@ -99,7 +98,7 @@ void *live_output_thread(void *argument)
             live_queue_return(&live->rendered, picture);
             continue;
         }
-        interrupt_hold(!is_stream(live));
+        interrupt_hold(!live_output_is_stream(live));
         go_on = write_picture(live, picture, &last);
         interrupt_hold(false);
         live_times_add(&live->output.times, (double)(live_now_ns() - begin) / 1e6);

@@ -1,6 +1,8 @@
-/* test_y4m.c: what the header of a y4m says goes over into that of a y4m that is made of it. */
+/* test_y4m.c: what the header of a y4m says goes over into that of a y4m that is made of it, and
+ * when a stream begins. */
 #include "check.h"
 
+#include <unistd.h>
 #include <refocus/platform/sink.h>
 
 /* The header of a stream that is made of one with this header, of pictures of such a format. */
@@ -59,9 +61,45 @@ static void y4m_keeps_its_header(void **state)
                  "F30:1 Ip A4:3 C420jpeg XCOLORRANGE=LIMITED");
 }
 
+/* The old contents are there until a frame is announced, and no file is left empty. */
+static void nothing_is_lost_before_it_begins(void **state)
+{
+    static const char *const names[] = {"y4m:begun.tmp", "raw:begun.tmp,NV12"};
+    struct refocus_sink *sink = NULL;
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        char text[8] = "";
+        FILE *file;
+
+        remove("begun.tmp");
+        assert_status(refocus_sink_open(&sink, names[i], NULL), REFOCUS_OK);
+        assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+        assert_int_equal(access("begun.tmp", F_OK), -1);
+        file = fopen("begun.tmp", "wb");
+        assert_non_null(file);
+        assert_true(fputs("precious", file) >= 0);
+        fclose(file);
+        assert_status(refocus_sink_open(&sink, names[i], NULL), REFOCUS_OK);
+        assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+        assert_status(refocus_sink_open(&sink, names[i], NULL), REFOCUS_OK);
+        file = fopen("begun.tmp", "rb");
+        assert_int_equal(fread(text, 1, sizeof text, file), 8);
+        assert_memory_equal(text, "precious", 8);
+        assert_status(refocus_sink_start(sink, 4, 4, 30, NULL), REFOCUS_OK);
+        assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+        rewind(file);
+        assert_int_equal(fread(text, 1, sizeof text, file), i == 0 ? 8 : 0);
+        assert_memory_equal(text, i == 0 ? "YUV4MPEG" : "precious", 8);
+        fclose(file);
+    }
+    remove("begun.tmp");
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(y4m_keeps_its_header)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(y4m_keeps_its_header),
+                                       cmocka_unit_test(nothing_is_lost_before_it_begins)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
