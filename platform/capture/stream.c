@@ -1,6 +1,7 @@
 /* stream.c: the sources `y4m:` and `raw:`: streams of frames out of one file. */
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -54,6 +55,29 @@ static int parse_y4m(const struct refocus_source *source, struct refocus_reason 
     return status;
 }
 
+/* A number that is the whole of the text, above 0. */
+static bool parse_rate(const char *text, double *fps)
+{
+    char *end;
+
+    *fps = strtod(text, &end);
+    return strspn(text, "0123456789.") > 0 && !strpbrk(text, "xX") && *end == '\0' &&
+           isfinite(*fps) && *fps > 0;
+}
+
+/* "640x480", each of at most six digits, and nothing behind it. */
+static bool parse_size(const char *text, int *width, int *height)
+{
+    const size_t first = strspn(text, "0123456789");
+    const size_t second = text[first] == 'x' ? strspn(text + first + 1, "0123456789") : 0;
+
+    if (first < 1 || first > 6 || second < 1 || second > 6 || text[first + 1 + second])
+        return false;
+    *width = (int)strtol(text, NULL, 10);
+    *height = (int)strtol(text + first + 1, NULL, 10);
+    return true;
+}
+
 /* "FILE,NV12,640x480,30": from the end, as names may hold commas. */
 static int parse_raw(struct stream *stream, struct refocus_reason *reason)
 {
@@ -71,8 +95,8 @@ static int parse_raw(struct stream *stream, struct refocus_reason *reason)
             break;
     }
     stream->fps = 30;
-    if (n < 2 || (n == 3 && (stream->fps = strtod(word[0], NULL)) <= 0) ||
-        sscanf(word[n - 2], "%6dx%6d", &stream->width, &stream->height) != 2)
+    if (n < 2 || (n == 3 && !parse_rate(word[0], &stream->fps)) ||
+        !parse_size(word[n - 2], &stream->width, &stream->height))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "give raw:FILE,FORMAT,WIDTHxHEIGHT or with ,FPS behind");
     stream->format = rf_format_by_name(word[n - 1]);

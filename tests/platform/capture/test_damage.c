@@ -239,6 +239,18 @@ static void names(void **state)
                                           "raw:x,NV12,99999x8,30",
                                           "raw:x,NV12,8x99999,30",
                                           "raw:x,NV12,8x8,30,9",
+                                          "raw:damage-raw.tmp,NV12,8x8abc,30",
+                                          "raw:damage-raw.tmp,NV12,8x8 ,30",
+                                          "raw:damage-raw.tmp,NV12, 8x8,30",
+                                          "raw:damage-raw.tmp,NV12,8x8x8,30",
+                                          "raw:damage-raw.tmp,NV12,0000008x8,30",
+                                          "raw:damage-raw.tmp,NV12,8x8,30xyz",
+                                          "raw:damage-raw.tmp,NV12,8x8,nan",
+                                          "raw:damage-raw.tmp,NV12,8x8,inf",
+                                          "raw:damage-raw.tmp,NV12,8x8,0x10",
+                                          "raw:damage-raw.tmp,NV12,8x8, 30",
+                                          "raw:damage-raw.tmp,NV12,8x8,-30",
+                                          "raw:damage-raw.tmp,NV12,8x8,",
                                           "y4m:",
                                           "file:",
                                           "file:none-%d-%d.png",
@@ -258,6 +270,16 @@ static void names(void **state)
     struct refocus_reason reason;
 
     (void)state;
+    for (int i = 0; i < 3; i++) {
+        static const char *const right[] = {"raw:damage-raw.tmp,NV12,8x8",
+                                            "raw:damage-raw.tmp,NV12,000008x8,29.97",
+                                            "raw:damage-raw.tmp,NV12,8x8,1e1"};
+        FILE *const file = fopen("damage-raw.tmp", "wb");
+
+        assert_non_null(file);
+        fclose(file);
+        assert_status(open_and_start(right[i], &reason), REFOCUS_OK);
+    }
     for (size_t i = 0; i < COUNT(sources); i++) {
         if (open_and_start(sources[i], &reason) == REFOCUS_OK)
             fail_msg("'%s' is a source", sources[i]);
@@ -274,6 +296,7 @@ static void names(void **state)
         assert_string_not_equal(reason.text, "");
         refocus_sink_close(&sink, NULL);
     }
+    unlink("damage-raw.tmp");
 }
 
 /* Sizes that the sink `null` takes, and sizes that none takes. */
