@@ -219,6 +219,11 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
 
     if (status != REFOCUS_OK)
         return status;
+    if (stream->is_pipe && source->config.flags & REFOCUS_SOURCE_LOOP)
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "%.160s: a pipe has no beginning to go back to; read it without a "
+                               "loop",
+                               stream->path);
     if (!stream->is_pipe && lseek(stream->fd, stream->begin, SEEK_SET) < 0)
         return rf_capture_fail_errno(reason, errno, stream->path);
     stream->ring.count = source->config.buffers;

@@ -106,6 +106,18 @@ class Files(Live):
         self.fails(1, 'it ends within frame 0', '--camera', 'y4m:none.y4m', *args)
         self.assertEqual(content('out.y4m'), b'precious')
 
+    def test_a_pipe_is_read_once(self):
+        args = ['--depth', 'depth.pgm', '--out', 'y4m:out.y4m']
+        for camera in 'y4m:-', 'raw:-,NV12,64x48':
+            self.fails(2, 'a pipe has no beginning to go back to', '--camera', camera, *args, '--loop',
+                       '--frames', '30', stdin=content('in.y4m'))
+        self.fails(2, 'a pipe has no beginning to go back to', '--camera', 'y4m:in.y4m', '--depth',
+                   'y4m:-', *args[2:], '--loop', '--frames', '30', stdin=content('depth.y4m'))
+        with open('in.y4m', 'rb') as file:  # a file on standard input is none
+            done = subprocess.run([REFOCUS, 'live', *SMALL, '--camera', 'y4m:-', *args, '--loop',
+                                   '--frames', '30'], stdin=file, stderr=subprocess.DEVNULL)
+        self.assertEqual((done.returncode, content('out.y4m').count(b'FRAME')), (0, 30))
+
     def test_no_depth_at_all(self):
         write('none.y4m', b'YUV4MPEG2 W4 H1 F30:1 Cmono\n')
         for more in [], ['--frames-policy', 'newest']:

@@ -155,7 +155,7 @@ static inline struct refocus_source_mode refocus_source_mode_default(void)
 
 enum refocus_source_flags {
     REFOCUS_SOURCE_FAST = 1,   /**< files and scripts: as fast as can be, none is dropped */
-    REFOCUS_SOURCE_LOOP = 2,   /**< files: from the beginning again at the end */
+    REFOCUS_SOURCE_LOOP = 2,   /**< files: from the beginning again at the end; no pipes */
     REFOCUS_SOURCE_DEPTH = 4,  /**< files: the samples of depth files, not their pictures */
     REFOCUS_SOURCE_DMABUF = 8, /**< V4L2: export the buffers as DMA-BUF */
 };
