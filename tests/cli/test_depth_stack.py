@@ -139,8 +139,20 @@ class DepthOfAStack(Case):
         again = self.reports('depth', '--focal-stack', *('kept/' + f for f in kept['frames']),
                              '--positions', 'kept/stack.json', '-o', 'g.pgm')
         self.assertEqual(again['depth'], report['depth'])
+        self.assertEqual(report['file'], 'kept/01.' + kept['frames'][1].split('.')[1])
         self.fails(1, 'kept: it is there already; give a new folder',
                    *self.stack('', '--keep', 'kept'))
+        # Files that do not stay are not named.
+        report = self.reports(*self.stack('', '-o', 'e.pgm'))
+        self.assertEqual(report['file'], self.CAMERA)
+        os.mkdir('flat')
+        for name in self.frames:
+            with open(os.path.join('flat', name), 'wb') as file:
+                file.write(b'P6\n64 48\n255\n' + bytes([90]) * (64 * 48 * 3))
+        flat = self.CAMERA.replace('%d', 'flat/%d')
+        self.fails(1, flat + ': no part of the picture is sharper in one frame than in the others; '
+                   'give frames of different focus', 'stack', '--camera', flat,
+                   '--steps', '3', '-o', 'x.pgm')
         self.assertEqual([f for f in os.listdir('.') if f.startswith('.refocus')], [])
 
     def test_the_example_for_a_pi(self):

@@ -428,7 +428,7 @@ static int read_input(const struct settings *settings, const char *const *files,
     return input_read_depth(input, files[0], &settings->depth);
 }
 
-static int run(int argc, char **argv)
+int depth_of_stack(int argc, char **argv, const char *called)
 {
     struct settings settings = {.network = NETWORK_SETTINGS_NONE,
                                 .depth = DEPTH_SETTINGS_NONE,
@@ -442,6 +442,7 @@ static int run(int argc, char **argv)
     status = options_parse(&depth_command, argc, argv, &settings, files);
     if (status != OPTIONS_PARSED)
         return status;
+    settings.stack.called = called;
     status = check(&settings, files, argc, argv);
     if (status != EXIT_DONE)
         return status;
@@ -466,6 +467,11 @@ static int run(int argc, char **argv)
         status = print_report(&settings, &input);
     input_free(&input);
     return status;
+}
+
+static int run(int argc, char **argv)
+{
+    return depth_of_stack(argc, argv, NULL);
 }
 
 const struct command depth_command = {

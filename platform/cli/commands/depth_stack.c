@@ -76,6 +76,11 @@ const char *stack_in_focus_summary(uint32_t index)
 
 /* ----- frames ----- */
 
+static const char *name_of(const struct stack_frames *frames, int k)
+{
+    return frames->called ? frames->called : frames->file[k];
+}
+
 static int add(struct refocus_stack *stack, const struct stack_frames *frames, int k)
 {
     struct input other;
@@ -84,14 +89,14 @@ static int add(struct refocus_stack *stack, const struct stack_frames *frames, i
     if (status == EXIT_DONE) {
         status = refocus_stack_add(stack, other.photo->image, frames->position[k]);
         if (status == REFOCUS_ERR_ARGUMENT)
-            status = report_failure(EXIT_FAILED, frames->file[k],
+            status = report_failure(EXIT_FAILED, name_of(frames, k),
                                     "it is %dx%d, and other frames are not; give frames of one "
                                     "size",
                                     other.photo->image->width, other.photo->image->height);
         else if (status != REFOCUS_OK)
             status =
-                report_failure(EXIT_FAILED, frames->file[k], "it cannot be added to the stack: %s",
-                               refocus_strerror(status));
+                report_failure(EXIT_FAILED, name_of(frames, k),
+                               "it cannot be added to the stack: %s", refocus_strerror(status));
     }
     input_free(&other);
     return status;
@@ -108,7 +113,8 @@ static int add_all(struct refocus_stack *stack, const struct stack_frames *frame
             if (status != EXIT_DONE)
                 return status;
         } else if (refocus_stack_add(stack, input->photo->image, frames->position[k])) {
-            return report_failure(EXIT_FAILED, frames->file[k], "it cannot be added to the stack");
+            return report_failure(EXIT_FAILED, name_of(frames, k),
+                                  "it cannot be added to the stack");
         }
     }
     return EXIT_DONE;
@@ -294,7 +300,7 @@ int input_read_stack(struct input *input, const char *const *files,
 {
     struct refocus_stack_params params;
     struct refocus_stack *stack = NULL;
-    struct stack_frames frames = {.file = files};
+    struct stack_frames frames = {.file = files, .called = how->called};
     int status;
 
     while (files[frames.count])
@@ -308,6 +314,7 @@ int input_read_stack(struct input *input, const char *const *files,
     if (status != EXIT_DONE)
         return status;
     begin(input);
+    input->photo_name = name_of(&frames, frames.reference);
     params = refocus_stack_params_default(input->width, input->height, frames.count);
     if (frames.kind != REFOCUS_STACK_FOCUS && !isnan(how->reference))
         return report_failure(EXIT_WRONG, "--reference",
@@ -319,7 +326,7 @@ int input_read_stack(struct input *input, const char *const *files,
     params.kind = frames.kind;
     status = refocus_stack_create(&stack, &params);
     if (status != REFOCUS_OK)
-        return report_failure(EXIT_FAILED, files[frames.reference], "%s",
+        return report_failure(EXIT_FAILED, name_of(&frames, frames.reference), "%s",
                               status == REFOCUS_ERR_ARGUMENT
                                   ? "it is too small; give frames of 16 x 16 pixels and more"
                                   : refocus_strerror(status));

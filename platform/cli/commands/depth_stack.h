@@ -16,10 +16,11 @@ struct stack_settings {
     int order;             /* enum refocus_stack_order */
     int in_focus;          /* enum in_focus */
     const char *photo;     /* receives the photo as well, or NULL */
+    const char *called;    /* name of all frames in reports and errors; NULL: their files */
 };
 #define STACK_SETTINGS_NONE                                                                        \
     {                                                                                              \
-        false, NULL, NAN, 0, REFOCUS_STACK_ORDER_EITHER, IN_FOCUS_AUTO, NULL                       \
+        false, NULL, NAN, 0, REFOCUS_STACK_ORDER_EITHER, IN_FOCUS_AUTO, NULL, NULL                 \
     }
 
 /* Rows for tables of options. */

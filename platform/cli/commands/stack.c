@@ -151,7 +151,7 @@ static int make_depth(const struct settings *settings, const struct shots *shots
         argv[argc++] = name[k + 1];
     }
     argv[argc] = NULL;
-    return depth_command.run(argc, argv);
+    return depth_of_stack(argc, argv, settings->keep ? NULL : settings->shots.camera);
 }
 
 struct place {

@@ -17,15 +17,16 @@ enum in_focus {
 
 struct stack_frames {
     const char *const *file;
-    int count, reference;                       /* the latter from 0 on */
-    uint32_t kind;                              /* enum refocus_stack_kind */
+    const char *called;   /* name of all of them in reports; NULL: their files */
+    int count, reference; /* the latter from 0 on */
+    uint32_t kind;        /* enum refocus_stack_kind */
     double position[REFOCUS_STACK_MOST_FRAMES]; /* see refocus_stack_add() */
     bool no_unit;                               /* positions are not dioptres */
     bool of_files;                              /* positions are distances of EXIF, or f-numbers */
 };
 
-/* Sets all but `reference` of frames whose files are counted. `text` is that of --positions, or
- * NULL. Returns an exit code and prints why. */
+/* Sets all but `reference` and `called` of frames whose files are counted. `text` is that of
+ * --positions, or NULL. Returns an exit code and prints why. */
 int stack_frames_read(struct stack_frames *frames, const char *text, int in_focus);
 
 /* The frame that the photo is like, if none is asked for: that in the middle of the focus, as the
