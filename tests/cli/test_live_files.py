@@ -118,6 +118,14 @@ class Files(Live):
                                    '--frames', '30'], stdin=file, stderr=subprocess.DEVNULL)
         self.assertEqual((done.returncode, content('out.y4m').count(b'FRAME')), (0, 30))
 
+    def test_names_are_said_once(self):
+        for camera in 'y4m:none.y4m', 'raw:none.raw,NV12,64x48,30', 'y4m:depth.pgm':
+            done = live('--camera', camera, '--depth', 'depth.pgm')
+            self.assertTrue(done.stderr.decode().startswith('refocus: %s: it is not ' % camera))
+        for out in 'y4m:none/o.y4m', 'raw:none/o.raw,NV12':
+            self.fails(1, 'refocus: %s: it is not there' % out, '--camera', 'y4m:in.y4m', '--depth',
+                       'depth.pgm', '--out', out)
+
     def test_no_depth_at_all(self):
         write('none.y4m', b'YUV4MPEG2 W4 H1 F30:1 Cmono\n')
         for more in [], ['--frames-policy', 'newest']:
@@ -146,7 +154,7 @@ class Files(Live):
                 self.assertEqual(out.count(b'FRAME\n'), whole)
                 self.assertEqual(len(out) - out.index(b'FRAME'), whole * size)
         write('cut.y4m', video + frame(10)[:3000])
-        run('it ends within frame 10', 10, '--camera', 'y4m:cut.y4m', '--depth', 'depth.pgm')
+        run('refocus: y4m:cut.y4m: it ends within frame 10', 10, '--camera', 'y4m:cut.y4m', '--depth', 'depth.pgm')
         write('cut.y4m', video + b'FROM\n' + video)
         run('frame 10 does not begin with FRAME', 10, '--camera', 'y4m:cut.y4m', '--depth', 'depth.pgm')
         write('cut.y4m', depth[:-52])

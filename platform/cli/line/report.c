@@ -25,6 +25,18 @@ void report_clean(char *clean, size_t size, const char *text)
     clean[i] = '\0';
 }
 
+const char *report_without_name(const char *what, const char *why)
+{
+    const char *const end = strstr(why, ": "), *const colon = strchr(what, ':');
+    const size_t length = end ? (size_t)(end - why) : 0;
+    const char *const names[] = {what, colon ? colon + 1 : what};
+
+    for (int i = 0; i < 2 && length > 0; i++)
+        if (strncmp(why, names[i], length) == 0 && (!names[i][length] || names[i][length] == ','))
+            return end + 2;
+    return why;
+}
+
 static char *kept; /* failures go there, or NULL */
 static size_t kept_size;
 
@@ -39,7 +51,7 @@ static void keep_line(const char *what, const char *why, va_list list)
     char text[LINE_LENGTH], line[2 * LINE_LENGTH];
 
     vsnprintf(text, sizeof text, why, list);
-    snprintf(line, sizeof line, "%s: %s", what, text);
+    snprintf(line, sizeof line, "%s: %s", what, report_without_name(what, text));
     report_clean(kept, kept_size, line);
 }
 
@@ -48,7 +60,7 @@ static void print_line(const char *what, const char *why, va_list list)
     char text[LINE_LENGTH], line[LINE_LENGTH], name[LINE_LENGTH];
 
     vsnprintf(text, sizeof text, why, list);
-    report_clean(line, sizeof line, text);
+    report_clean(line, sizeof line, report_without_name(what, text));
     report_clean(name, sizeof name, what);
     report_progress_end();
     if (about && strcmp(about, what) != 0) {

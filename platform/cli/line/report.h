@@ -10,7 +10,8 @@
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_WRONG = 2 };
 
-/* Print "refocus: WHAT: WHY" on one line of standard error; returns exit_code. */
+/* Print "refocus: WHAT: WHY" on one line of standard error; returns exit_code. A name in WHY that
+ * stands in WHAT already is left out. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
@@ -63,6 +64,10 @@ json_t *report_spread_json(struct spread spread);
 json_t *report_number_json(double value);
 json_t *report_metres_json(double metres);
 json_t *report_text_json(const char *text);
+
+/* WHY without WHAT and a colon before it, or without the name that follows on the kind of a source
+ * or sink in WHAT: "cut.y4m: it ends" of "y4m:cut.y4m" is "it ends". */
+const char *report_without_name(const char *what, const char *why);
 
 /* Text with control characters replaced, cut to the size. */
 void report_clean(char *clean, size_t size, const char *text);

@@ -49,7 +49,8 @@ static json_t *error_json(const struct live *live)
     char text[sizeof live->what + sizeof live->why + 2];
 
     snprintf(text, sizeof text, "%s%s%s", live->what, live->what[0] ? ": " : "",
-             live->what[0] ? live->why : "it failed; standard error says why");
+             live->what[0] ? report_without_name(live->what, live->why)
+                           : "it failed; standard error says why");
     return report_text_json(text);
 }
 
