@@ -1,10 +1,10 @@
 /* gain_apply.c: the light that a base rendition and its gain map stand for.
  *
  * A map is smaller than its photo, mostly a quarter of its sides: a sample is the gain of the mean
- * of a block of pixels. Interpolated, the gain of a lamp of few pixels would fall on what is beside
- * it, and the lamp would have too little. But what the map adds was lost where the photo clips. So
- * gains are interpolated without those of blocks that clip, and the light that is missing then in
- * the mean of such a block goes to its clipped values, evenly; by a map for all
+ * of a block of pixels. Interpolated, the gain of a highlight of few pixels would fall on what is
+ * beside it, and the highlight would have too little. But what the map adds was lost where the
+ * photo clips. So gains are interpolated without those of blocks that clip, and the light that is
+ * missing then in the mean of such a block goes to its clipped values, evenly; by a map for all
  * channels it goes to its clipped pixels, which keep their hue. */
 #include "gain_apply.h"
 

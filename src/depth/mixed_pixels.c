@@ -2,8 +2,9 @@
  *
  * Photos of many megapixels are soft: five pixels across a silhouette are mixtures of both
  * surfaces, and the map's edge runs through their middle. Those beyond it would be blurred with the
- * background, and leave a dim rim around a subject in focus; those of a blurred foreground would
- * stay as its outline on a background in focus. Either goes when the nearer surface has them all.
+ * background, and leave a dim outline around a subject in focus; those of a blurred foreground
+ * would stay as its outline on a background in focus. Either goes when the nearer surface has them
+ * all.
  *
  * Across each step of the map, from F (far) to N (near), a pixel of colour p is a mixture of
  *

@@ -1,7 +1,7 @@
 /* settle.c: gives what lies beside a ramp the disparity of its surface farther in.
  *
- * Networks, JPEG and the filters of cameras overshoot beside an edge: a surface of 172 has a rim of
- * 187 there, which is not in the scene. So of the pixels beside a ramp (its band) those whose
+ * Networks, JPEG and the filters of cameras overshoot beside an edge: a surface of 172 has an edge
+ * of 187 there, which is not in the scene. So of the pixels beside a ramp (its band) those whose
  * surface goes on beyond the band take the mean of what is there. What has nothing like it beyond
  * the band is thin, and is left to thin.c.
  */

@@ -31,7 +31,7 @@ enum {
     HALF = 2 * RADII + 1,     /* rows of the largest disc */
     LESS = 8,                 /* bits that sums over a square have less when they are stored */
     FINE = 16,                /* parts of a code */
-    CLIPPED = 250,            /* codes from here on do not tell how bright a blurred lamp is */
+    CLIPPED = 250,            /* codes from here on do not tell how bright a blurred highlight is */
     INVERSE = 40,             /* bits of the inverse of an area */
 };
 

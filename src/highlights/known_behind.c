@@ -1,6 +1,6 @@
 /* known_behind.c: what lies behind the foreground is as bright as what is seen beside it, also
- * where that is brighter than white, as a sky may be. A lamp is not taken to go on there: it would
- * be spread as wide as what hides it.
+ * where that is brighter than white, as a sky may be. A highlight is not taken to go on there: it
+ * would be spread as wide as what hides it.
  */
 #include <assert.h>
 

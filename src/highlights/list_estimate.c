@@ -30,7 +30,7 @@ static float nearness_to_white(int light)
 }
 
 /* How near to white the second brightest channel is. Where one channel alone is clipped, a petal or
- * a painted wall is as likely as a lamp. */
+ * a painted wall is as likely as a light source. */
 static float whiteness(const int colour[3])
 {
     const int most = rf_larger(colour[0], rf_larger(colour[1], colour[2]));

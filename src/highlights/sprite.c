@@ -233,8 +233,8 @@ static bool set_light(struct rf_sprite *sprite, const struct rf_splat *splat,
 
 /* Stores that light in 16 bits. Where known light exceeds these, lengths are shifted by more bits,
  * as far as the longest part of the run that a pixel sees lets them, and the sprite is drawn more
- * often. Estimated light stays at that: it is that of large lamps, hardly blurred, whose rims would
- * be too wide by it (.8 dB at nightlights, K = 10). */
+ * often. Estimated light stays at that: it is that of large highlights, hardly blurred, whose edges
+ * would be too wide by it (.8 dB at nightlights, K = 10). */
 static void store_light(struct rf_sprite *sprite, const double each[3], bool known)
 {
     struct rf_disc_job *const job = &sprite->job;

@@ -135,7 +135,7 @@ static void run_tiles(struct rf_frame *f)
     rf_pool_run(&rf_renderer_of(f)->pool, tile_item, f, f->count_tx * f->count_ty);
 }
 
-/* Where rays gather highlights, long steps would spread a lamp of a pixel so thin that Q12 rounds
+/* Where rays gather highlights, long steps would spread one of a pixel so thin that Q12 rounds
  * it away. */
 static int prefilter_steps(const struct rf_frame *f)
 {
