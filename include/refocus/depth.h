@@ -110,9 +110,9 @@ static inline struct refocus_depth_report refocus_depth_report_default(void)
  *     d = (v - value_far) / (value_near - value_far)   for disparities
  *
  * Samples without a value, and strays, are filled from the nearest samples that have one, from
- * the farther side where two surfaces meet, and at the border of the map from behind what is
- * near and no wider than the unmeasured strip there, as a pole. A map of one single depth becomes
- * all 0.
+ * the farther side where two surfaces meet. At the border of the map surfaces go on to it, but for
+ * what is near and no wider than the unmeasured strip there, as a pole: what is behind that does.
+ * A map of one single depth becomes all 0.
  *
  * @param map        see struct refocus_depth_map
  * @param disparity  receives width x height values; may not overlap the samples

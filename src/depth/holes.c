@@ -11,6 +11,7 @@ enum {
     THIN_STEP = 65535 / 2,   /* from a thin thing at the border to what is behind it, at least */
     SPREADS = 4,             /* scans to spread: enough to turn three corners */
     WIDEST = 16,             /* widest smoothing step, a power of 2 */
+    OUTER = 4,               /* w is so much less in the outer columns */
 };
 
 struct holes {
@@ -62,14 +63,47 @@ static int unknown_to(const uint8_t *state, int x)
 }
 
 /* |p - q| + w d(q) in units of 1/65535 half sample: below 2^30 + 2^24. */
-static uint32_t cost(const struct holes *holes, uint32_t distance, uint32_t disparity)
+static uint32_t cost(uint32_t weight, uint32_t distance, uint32_t disparity)
 {
-    return distance * 65535 + holes->weight * disparity;
+    return distance * 65535 + weight * disparity;
+}
+
+/* A row's samples from the first known one to the last one; last < first if none is known. */
+struct known {
+    int first, last;
+};
+
+static struct known known_of(const uint8_t *state, int width)
+{
+    struct known known = {0, width - 1};
+
+    while (known.first < width && state[known.first] != RF_SAMPLE_KNOWN)
+        known.first++;
+    while (known.last >= 0 && state[known.last] != RF_SAMPLE_KNOWN)
+        known.last--;
+    return known;
+}
+
+enum samples { ALL, INNER }; /* inner ones have a known one at either side in their row */
+
+static int is_outer(struct known known, int x)
+{
+    return x < known.first || x > known.last;
+}
+
+static int is_meant(struct known known, int x, enum samples which)
+{
+    return which == ALL || !is_outer(known, x);
+}
+
+static uint32_t weight_at(const struct holes *holes, struct known known, int x)
+{
+    return is_outer(known, x) ? holes->weight / OUTER : holes->weight;
 }
 
 /* Let the sample at @p x take its neighbour's disparity when that costs less. */
-static void spread_from(const struct holes *holes, uint16_t *disparity, uint8_t *state,
-                        uint16_t from, uint8_t from_state, uint32_t step)
+static void spread_from(uint32_t weight, uint16_t *disparity, uint8_t *state, uint16_t from,
+                        uint8_t from_state, uint32_t step)
 {
     uint32_t distance;
 
@@ -79,7 +113,7 @@ static void spread_from(const struct holes *holes, uint16_t *disparity, uint8_t 
     if (distance > FARTHEST)
         distance = FARTHEST;
     if (*state == RF_SAMPLE_UNKNOWN ||
-        cost(holes, distance, from) < cost(holes, *state, *disparity)) {
+        cost(weight, distance, from) < cost(weight, *state, *disparity)) {
         *disparity = from;
         *state = (uint8_t)distance;
     }
@@ -128,16 +162,16 @@ static int behind_thin(const struct holes *holes, const struct line *line, int f
     return 0;
 }
 
-/* Lets the last sample of a hole at the border see the surface behind a thin thing. */
+/* Lets the last sample of a hole at the border have what lies behind a thin thing. */
 static void look_behind(const struct holes *holes, const struct line *line)
 {
     const int first = unknown_at_start(holes, line);
     const int behind = first > 0 ? behind_thin(holes, line, first) : 0;
 
     if (behind > 0)
-        spread_from(holes, disparity_at(holes, line, first - 1), state_at(holes, line, first - 1),
-                    *disparity_at(holes, line, behind), RF_SAMPLE_KNOWN,
-                    (uint32_t)(behind - first + 1) * STRAIGHT);
+        spread_from(holes->weight, disparity_at(holes, line, first - 1),
+                    state_at(holes, line, first - 1), *disparity_at(holes, line, behind),
+                    RF_SAMPLE_KNOWN, STRAIGHT);
 }
 
 static void look_behind_from_borders(const struct holes *holes)
@@ -154,8 +188,23 @@ static void look_behind_from_borders(const struct holes *holes)
     }
 }
 
+/* Lets an unknown sample take disparities of its neighbours in the row before. */
+static void spread_down(const struct holes *holes, uint32_t weight, int x, int y, int before)
+{
+    uint16_t *d = disparity_row(holes, y) + x;
+    uint8_t *state = state_row(holes, y) + x;
+    const uint16_t *last = disparity_row(holes, before);
+    const uint8_t *last_state = state_row(holes, before);
+
+    spread_from(weight, d, state, last[x], last_state[x], STRAIGHT);
+    if (x > 0)
+        spread_from(weight, d, state, last[x - 1], last_state[x - 1], DIAGONAL);
+    if (x + 1 < holes->width)
+        spread_from(weight, d, state, last[x + 1], last_state[x + 1], DIAGONAL);
+}
+
 /* Scans rows from the top or the bottom, and each row in both directions. */
-static void spread(const struct holes *holes, int down)
+static void spread(const struct holes *holes, int down, enum samples which)
 {
     const int width = holes->width;
 
@@ -163,24 +212,58 @@ static void spread(const struct holes *holes, int down)
         const int y = down ? i : holes->height - 1 - i;
         uint16_t *d = disparity_row(holes, y);
         uint8_t *state = state_row(holes, y);
+        const struct known known = known_of(state, width);
 
-        if (i > 0) {
-            const uint16_t *last = disparity_row(holes, down ? y - 1 : y + 1);
-            const uint8_t *last_state = state_row(holes, down ? y - 1 : y + 1);
-
-            for (int x = -1; (x = unknown_from(state, x + 1, width)) < width;) {
-                spread_from(holes, d + x, state + x, last[x], last_state[x], STRAIGHT);
-                if (x > 0)
-                    spread_from(holes, d + x, state + x, last[x - 1], last_state[x - 1], DIAGONAL);
-                if (x + 1 < width)
-                    spread_from(holes, d + x, state + x, last[x + 1], last_state[x + 1], DIAGONAL);
-            }
-        }
+        for (int x = -1; i > 0 && (x = unknown_from(state, x + 1, width)) < width;)
+            if (is_meant(known, x, which))
+                spread_down(holes, weight_at(holes, known, x), x, y, down ? y - 1 : y + 1);
         for (int x = 0; (x = unknown_from(state, x + 1, width)) < width;)
-            spread_from(holes, d + x, state + x, d[x - 1], state[x - 1], STRAIGHT);
+            if (is_meant(known, x, which))
+                spread_from(weight_at(holes, known, x), d + x, state + x, d[x - 1], state[x - 1],
+                            STRAIGHT);
         for (int x = width - 1; (x = unknown_to(state, x - 1)) >= 0;)
-            spread_from(holes, d + x, state + x, d[x + 1], state[x + 1], STRAIGHT);
+            if (is_meant(known, x, which))
+                spread_from(weight_at(holes, known, x), d + x, state + x, d[x + 1], state[x + 1],
+                            STRAIGHT);
     }
+}
+
+static int has_outer(const struct holes *holes)
+{
+    for (int y = 0; y < holes->height; y++) {
+        const uint8_t *state = state_row(holes, y);
+
+        if (state[0] != RF_SAMPLE_KNOWN || state[holes->width - 1] != RF_SAMPLE_KNOWN)
+            return 1;
+    }
+    return 0;
+}
+
+static void forget_inner(const struct holes *holes)
+{
+    for (int y = 0; y < holes->height; y++) {
+        uint8_t *state = state_row(holes, y);
+        const struct known known = known_of(state, holes->width);
+
+        for (int x = known.first; x <= known.last; x++)
+            if (state[x] != RF_SAMPLE_KNOWN)
+                state[x] = RF_SAMPLE_UNKNOWN;
+    }
+}
+
+/* Fills all samples; then the inner ones anew, as they may have what an outer one had that took
+ * another disparity since. */
+static void spread_all(const struct holes *holes)
+{
+    look_behind_from_borders(holes);
+    for (int i = 0; i < SPREADS; i++)
+        spread(holes, i % 2 == 0, ALL);
+    if (!has_outer(holes))
+        return;
+    forget_inner(holes);
+    look_behind_from_borders(holes);
+    for (int i = 0; i < SPREADS; i++)
+        spread(holes, i % 2 == 0, INNER);
 }
 
 /* Mean of the sample and of those of its eight neighbours @p step away that continue it. */
@@ -226,9 +309,7 @@ void rf_fill_holes(uint16_t *disparity, ptrdiff_t stride, int width, int height,
     const struct holes holes = {
         disparity, stride, state, width, height, (uint32_t)(side > 128 ? side / 8 : 16) * STRAIGHT};
 
-    look_behind_from_borders(&holes);
-    for (int i = 0; i < SPREADS; i++)
-        spread(&holes, i % 2 == 0);
+    spread_all(&holes);
     for (int step = WIDEST; step >= 1; step /= 2) {
         smooth(&holes, step, 1);
         smooth(&holes, step, 0);

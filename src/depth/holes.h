@@ -17,11 +17,13 @@ enum { RF_SAMPLE_KNOWN = 0, RF_SAMPLE_UNKNOWN = 255 };
  *
  * over paths through unknown samples: the nearest one on a continuous surface, whose d
  * changes by less than 1/w a sample, and the farther of two surfaces that meet, up to w
- * times their difference away. At the map's border, where a hole has no other side, a path may
- * also go straight behind a thing that is no wider than the hole is there, and nearer than what is
- * behind it by half of the range: a pole beside the unmeasured columns at the left of a Kinect's
- * map does not grow to the border. What is inpainted is then smoothed where it is continuous,
- * the wider the deeper it lies in a hole.
+ * times their difference away. For outer samples, those left of the first known sample of their
+ * row or right of the last one, w is a quarter: the hole has no other side there, and surfaces
+ * mostly go on to the border of the map. Not so a thing that is no wider than the hole at the
+ * border is there, and nearer than what is behind it by half of the range, as a pole beside the
+ * unmeasured columns at the left of a Kinect's map: the hole is next to what is behind it.
+ * What is inpainted is then smoothed where it is continuous, the wider the deeper it lies in a
+ * hole.
  *
  * Time is linear in the number of samples. At least one sample is known.
  *

@@ -90,6 +90,48 @@ static void wide_things_go_on(void **nothing)
     }
 }
 
+/* Fills a hole along the border that ends at a far surface, and at a near one from the middle on.
+ * Returns how far the far one goes before the near one, at the border itself. */
+static int fill_beside_near(int border)
+{
+    int along = SIDE / 2;
+
+    for (int at = 0; at < SIDE; at++)
+        for (int i = 0; i < SIDE; i++)
+            put(border, i, at, at < SIDE / 2 ? FAR : 62000,
+                i < HOLE ? RF_SAMPLE_UNKNOWN : RF_SAMPLE_KNOWN);
+    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
+    while (along < SIDE - 1 && get(border, 0, along) < FAR + FAR)
+        along++;
+    return along - SIDE / 2;
+}
+
+/* Without an other side, a step of 60000 outweighs 30 / 4 * 60000 / 65535 = 6.9 samples, and the
+ * way to the border is longer by half of what it goes to the side: 13 samples. */
+static void surfaces_go_on_to_the_border(void **nothing)
+{
+    (void)nothing;
+    for (int border = 0; border < 4; border++)
+        assert_in_range(fill_beside_near(border), 12, 14);
+}
+
+/* A dent of the hole at the top, between known samples of its rows, has nothing that the samples
+ * above it do not have, however far what is left of them. */
+static void dents_follow_what_is_above(void **nothing)
+{
+    (void)nothing;
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            map[y][x] = x < 60 ? FAR : 42000;
+            state[y][x] = y < (x < 60 ? 8 : 12) || (y < 14 && x >= 72 && x < 96) ? RF_SAMPLE_UNKNOWN
+                                                                                 : RF_SAMPLE_KNOWN;
+        }
+    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
+    for (int y = 12; y < 14; y++)
+        for (int x = 72; x < 96; x++)
+            assert_int_equal(map[y][x], 42000);
+}
+
 /* Lines without a known sample, and maps of one line, have nothing to look behind. */
 static void lines_without_samples(void **nothing)
 {
@@ -101,9 +143,9 @@ static void lines_without_samples(void **nothing)
     rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
     for (int i = 0; i < SIDE * SIDE; i++)
         assert_int_equal(map[i / SIDE][i % SIDE], 60000);
-    for (int known = 0; known < SIDE; known += 40) {
+    for (int x = 0; x < SIDE; x += 40) {
         memset(state[0], RF_SAMPLE_UNKNOWN, sizeof state[0]);
-        state[0][known] = RF_SAMPLE_KNOWN;
+        state[0][x] = RF_SAMPLE_KNOWN;
         rf_fill_holes(map[0], sizeof map[0], SIDE, 1, state[0]);
         assert_int_equal(map[0][SIDE - 1], 60000);
     }
@@ -114,6 +156,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(thin_things_end),
         cmocka_unit_test(wide_things_go_on),
+        cmocka_unit_test(surfaces_go_on_to_the_border),
+        cmocka_unit_test(dents_follow_what_is_above),
         cmocka_unit_test(lines_without_samples),
     };
 
