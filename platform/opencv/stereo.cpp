@@ -62,6 +62,31 @@ float remove_specks(cv::Mat &disparity)
     return (float)left / (float)disparity.total();
 }
 
+/* Takes out what lies far behind all else: chance matches that filling, which takes the farther
+ * side, would spread over all that could not be matched. They are fewer than 1 of 500 matches, in
+ * patches too large for specks, and beyond a gap of 1/16 of the range that is left. */
+void remove_far_chance(cv::Mat &disparity)
+{
+    enum { SHARE = 500, GAP = 16 };
+    std::vector<float> values;
+    float greatest;
+    size_t most, far = 0;
+
+    for (int y = 0; y < disparity.rows; y++)
+        for (int x = 0; x < disparity.cols; x++)
+            if (!std::isnan(disparity.at<float>(y, x)))
+                values.push_back(disparity.at<float>(y, x));
+    most = values.size() / SHARE;
+    if (most == 0)
+        return;
+    greatest = *std::max_element(values.begin(), values.end());
+    std::partial_sort(values.begin(), values.begin() + (long)most + 1, values.end());
+    for (size_t i = 1; i <= most; i++)
+        if ((values[i] - values[i - 1]) * GAP > greatest - values[i])
+            far = i;
+    disparity.setTo(none, disparity < values[far]);
+}
+
 /* Disparities of left from left to right and from right to left, each at its own pixels. */
 void match_pair(const cv::Mat &left, const cv::Mat &right, int least, int count, cv::Mat &out,
                 cv::Mat &back)
@@ -235,6 +260,7 @@ matches match_in_order(const pair &p, const refocus_stereo_params *params,
     raw = m.disparity.clone();
     m.matched = check(m.disparity, back);
     m.order = find_order(p, m, back, raw);
+    remove_far_chance(m.disparity);
     m.status = m.matched < params->least_match ? (int)REFOCUS_ERR_NO_DEPTH : (int)REFOCUS_OK;
     if (m.status != REFOCUS_OK)
         m.why =

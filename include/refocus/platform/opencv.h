@@ -26,7 +26,8 @@ struct refocus_cv_reason {
 /** How the disparities of a pair are found. */
 enum refocus_stereo_method {
     REFOCUS_STEREO_CHECKED = 0, /**< both ways; where they disagree by more than a
-                                     pixel, and in specks, there is no value */
+                                     pixel, in specks, and in patches far behind all else that
+                                     are less than 1/500 of it, there is no value */
     REFOCUS_STEREO_PLAIN = 1,   /**< OpenCV's semi-global matching as it is: to compare
                                      with */
     REFOCUS_STEREO_WLS = 2,     /**< both ways, and filled by the weighted least squares

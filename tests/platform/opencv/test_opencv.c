@@ -92,6 +92,41 @@ static void stereo(void **state)
     }
 }
 
+/* Copies a patch of the left picture to where it has disparity -10: beyond the wall. Returns how
+ * many of its samples have about that, and the least one of all. */
+static int beyond_the_wall(int width, int height, float *least)
+{
+    static uint8_t left[3 * W * H], right[3 * W * H];
+    static float d[W * H];
+    const struct refocus_image a = picture(left), b = picture(right);
+    const struct refocus_stereo_params params = refocus_stereo_params_default();
+    struct refocus_stereo_report report = refocus_stereo_report_default();
+    struct refocus_cv_reason reason;
+    int count = 0;
+
+    make_pair(left, right, 0);
+    for (int y = 20; y < 20 + height; y++)
+        memcpy(right + 3 * (y * W + 50), left + 3 * (y * W + 40), 3 * (size_t)width);
+    assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &report, &reason), REFOCUS_OK);
+    for (int i = 0; i < W * H; i++)
+        count += d[i] < -5;
+    *least = report.least;
+    return count;
+}
+
+/* A patch behind all else, a quarter of which matches, is chance if that is less than 1 of 500 of
+ * all matches. */
+static void stereo_far_chance(void **state)
+{
+    float least;
+
+    (void)state;
+    assert_int_equal(beyond_the_wall(24, 12, &least), 0);
+    assert_true(least > -1); /* the noise at the right border is the same in both */
+    assert_in_range(beyond_the_wall(26, 20, &least), 130, 260);
+    assert_true(least < -9);
+}
+
 /* The disparity of the square in the first picture, nearly all of which has it, and of the wall. */
 static void two_disparities(const float *d, int square_left, float *near, float *far)
 {
@@ -565,6 +600,7 @@ static void estimates_of_any_size(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(stereo),
+                                       cmocka_unit_test(stereo_far_chance),
                                        cmocka_unit_test(stereo_order),
                                        cmocka_unit_test(stereo_unrectified),
                                        cmocka_unit_test(stereo_refuses),
