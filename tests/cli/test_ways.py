@@ -80,6 +80,31 @@ class Ways(Case):
         self.fails(1, re.compile(r'^refocus: no.onnx: '), 'render', 'red.ppm', '--estimate',
                    'no.onnx', '-o', 'new.ppm')
 
+    def test_doubtful_pair(self):
+        """A line says so where less than 45 % of the pixels agree."""
+        if not self.opencv:
+            self.skipTest('this build has no OpenCV')
+        rng = random.Random(5)
+        noise = [[[rng.randrange(256) for _ in range(340)] for _ in range(128)] for _ in range(3)]
+
+        def seen(x, y, shift, alike):
+            """Two surfaces in the upper rows, and below what each picture has for itself."""
+            if y >= alike:
+                return noise[shift + 1][y][x]
+            return noise[0][y][x + 20 + ((14 if x + 14 * shift >= 120 else 4) if shift else 0)]
+        for alike, doubtful in (50, True), (80, False):
+            for name, shift in ('some-left.ppm', 0), ('some-right.ppm', 1):
+                pictures.ppm(name, 240, 128, lambda x, y, s=shift: (seen(x, y, s, alike),) * 3)
+            for arguments in (('depth', 'some-left.ppm', 'some-right.ppm', '-o', 'some.pgm'),
+                              ('render', 'some-left.ppm', '--stereo', 'some-right.ppm', '--blur',
+                               '3', '-o', 'out.ppm')):
+                result = self.run_it(*arguments)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertEqual(bool(re.fullmatch(
+                    r'refocus: some-right.ppm: depth is doubtful, as only 3\d % of the pixels .*\n',
+                    result.stderr)), doubtful, result.stderr)
+                self.assertEqual(bool(result.stderr), doubtful)
+
     def test_which_picture_is_the_left_one(self):
         if not self.opencv:
             self.skipTest('this build has no OpenCV')
