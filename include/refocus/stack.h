@@ -123,7 +123,10 @@ struct refocus_stack_result {
                           tell. 0 where the order was not to be told */
     float blur; /**< receives, of apertures, the blur radius in the frame of the widest one of what
                      is farthest from the focus, in pixels: K of its depth of field; else 0 */
-    uint32_t reserved_too; /**< 0 */
+    uint32_t by_rows; /**< receives 1 where edges say little, so that `direction` is by what lies
+                           lower, too; else 0. That is doubtful where no ground is seen: 16 of 16
+                           photos that it was chosen by and tried with were right, an engraved
+                           surface through a macro lens was wrong */
 };
 
 static inline struct refocus_stack_result refocus_stack_result_default(void)

@@ -203,7 +203,7 @@ static double of_rows(const struct refocus_stack *s)
     return variance > 0 && of_squares > 0 ? (double)both / sqrt(variance * of_squares) : 0;
 }
 
-float rf_stack_direction(struct refocus_stack *s)
+float rf_stack_direction(struct refocus_stack *s, uint32_t *by_rows)
 {
     const size_t bytes = (size_t)s->columns * (size_t)s->rows * sizeof *s->depth;
     double direction;
@@ -211,7 +211,8 @@ float rf_stack_direction(struct refocus_stack *s)
     memcpy(s->moved, s->depth, bytes);
     rf_stack_smooth(s);
     direction = of_edges(s);
-    if (fabs(direction) < SURE)
+    *by_rows = fabs(direction) < SURE;
+    if (*by_rows)
         direction += LOWER * of_rows(s);
     memcpy(s->depth, s->moved, bytes);
     return (float)direction;

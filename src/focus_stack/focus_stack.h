@@ -180,8 +180,8 @@ void rf_stack_aggregate(struct refocus_stack *stack);
 void rf_stack_choose(struct refocus_stack *stack);
 /* Returns `disorder` of stack.h, from sharpness that has been moved to the reference. */
 float rf_stack_disorder(const struct refocus_stack *stack);
-/* Returns `direction` of stack.h, once depth is filled. */
-float rf_stack_direction(struct refocus_stack *stack);
+/* Returns `direction` of stack.h, and `by_rows`, once depth is filled. */
+float rf_stack_direction(struct refocus_stack *stack, uint32_t *by_rows);
 /* Frames without positions, and depth, become as if frames had been added in reverse. */
 void rf_stack_reverse(struct refocus_stack *stack);
 /* Depth beside a nearer surface, which windows of sharpness take for it, is filled once more. */

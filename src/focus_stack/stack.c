@@ -303,15 +303,16 @@ static bool good_result(const struct refocus_stack *s, const struct refocus_stac
            (!r->confidence || rf_good_stride(r->confidence_stride, w, s->height)) &&
            (!r->disparity || (!((uintptr_t)r->disparity & 1) && !(r->disparity_stride & 1) &&
                               rf_good_stride(r->disparity_stride, 2 * w, s->height))) &&
-           !r->reserved && !r->reserved_too;
+           !r->reserved;
 }
 
 /* Puts the far end first, where the order is to be told and the picture tells it. */
 static void direct(struct refocus_stack *s, struct refocus_stack_result *own)
 {
     own->direction = 0;
+    own->by_rows = 0;
     if (s->order != REFOCUS_STACK_ORDER_ADDED && s->without_positions) {
-        own->direction = rf_stack_direction(s);
+        own->direction = rf_stack_direction(s, &own->by_rows);
         if (TELLING * own->direction <= -1)
             rf_stack_reverse(s);
     }

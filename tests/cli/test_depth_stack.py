@@ -79,8 +79,8 @@ class DepthOfAStack(Case):
         for order, far in (names, 'first'), (names[::-1], 'last'):
             report = self.reports('depth', '--focal-stack', *order, '--align', 'none', '-o',
                                   'd.pgm')
-            self.assertEqual(report['evidence'][1], 'focus stack: edges, and what lies lower, '
-                             f'show that the {far} frame is focused farthest')
+            self.assertEqual(report['evidence'][1],
+                             f'focus stack: edges show that the {far} frame is focused farthest')
             samples = pictures.read_pnm('d.pgm')[2]
             for y in range(4, height - 4):
                 self.assertGreater(samples[y * width + 48], 60000)
@@ -92,6 +92,26 @@ class DepthOfAStack(Case):
                               'd.pgm', '--order', 'given')
         self.assertEqual(len(report['evidence']), 1)
         self.assertLess(pictures.read_pnm('d.pgm')[2][20 * width + 48], 9999)
+        for name in names:
+            os.remove(name)
+
+    def test_what_lies_lower_is_doubtful(self):
+        """Where that alone turns the order that was given, a line says so."""
+        names = [f'floor-{k}.ppm' for k in range(FRAMES)]
+        for k, name in enumerate(names):
+            pictures.ppm(name, W, H, lambda x, y: (mean(x, y, abs(k - y * FRAMES // H)),) * 3)
+        tells = ('focus stack: what lies lower, which is nearer in most pictures, tells that the %s '
+                 'frame is focused farthest')
+        turned = ('floor-1.ppm: the last frame is taken for the farthest, by what lies lower alone, '
+                  'which is doubtful; if the first is the farthest, give --order given')
+        command = ['depth', '--align', 'none', '-o', 'd.pgm', '--focal-stack']
+        self.assertEqual(self.reports(*command, *names)['evidence'][1], tells % 'first')
+        report = self.warns(turned, *command, *names[::-1])
+        self.assertEqual(report['evidence'][1], tells % 'last')
+        self.succeeds(*command, *names[::-1], '--order', 'given')
+        self.warns('floor-1.ppm: frames are taken in the order 3 2 1, the farthest first, by what '
+                   'lies lower alone, which is doubtful: give --positions if it is not',
+                   *command, *names[::-1], '--order', 'found')
         for name in names:
             os.remove(name)
 

@@ -197,11 +197,11 @@ static void tells_which_end_is_far(void **state)
 
         draw_surfaces(brightness[i]);
         result = run_order(far_first, REFOCUS_STACK_ORDER_EITHER, false);
-        assert_true(result.direction > 0.1f);
+        assert_true(result.direction > 0.1f && result.by_rows == 0);
         assert_int_equal(result.order[0], 1);
         assert_true(misplaced() < H);
         result = run_order(near_first, REFOCUS_STACK_ORDER_EITHER, false);
-        assert_true(result.direction < -0.1f);
+        assert_true(result.direction < -0.1f && result.by_rows == 0);
         for (int k = 0; k < FRAMES; k++)
             assert_int_equal(result.order[k], FRAMES - k);
         assert_int_equal(result.reference, 3);
@@ -238,11 +238,13 @@ static void lower_is_nearer(void **state)
     }
     result = run_order(far_first, REFOCUS_STACK_ORDER_EITHER, false);
     assert_in_range(1000 * result.direction, 160, 240);
+    assert_int_equal(result.by_rows, 1);
     assert_int_equal(result.order[0], 1);
     assert_in_range(disparity[10 * W + W / 2], 0, 9999);
     assert_in_range(disparity[(H - 10) * W + W / 2], 55000, 65535);
     result = run_order(near_first, REFOCUS_STACK_ORDER_EITHER, false);
     assert_in_range(-1000 * result.direction, 160, 240);
+    assert_int_equal(result.by_rows, 1);
     assert_int_equal(result.order[0], FRAMES);
     assert_in_range(disparity[10 * W + W / 2], 0, 9999);
     assert_in_range(disparity[(H - 10) * W + W / 2], 55000, 65535);

@@ -180,24 +180,35 @@ static void tell_order(const struct refocus_stack_result *result, const char *na
                        "farthest is not seen: give --positions if it does not",
                        list);
     else
-        report_warning(name, "frames are taken in the order %s, the farthest first", list);
-}
-
-/* Why the first frame is taken for the farthest, or the last. */
-static const char *direction_of(const struct refocus_stack_result *result)
-{
-    return (double)result->direction >= LEAST_DIRECTION
-               ? "focus stack: edges, and what lies lower, show that the first frame is focused "
-                 "farthest"
-           : (double)result->direction <= -LEAST_DIRECTION
-               ? "focus stack: edges, and what lies lower, show that the last frame is focused "
-                 "farthest"
-               : "focus stack: nothing shows which end is far; the first is taken for it";
+        report_warning(name, "frames are taken in the order %s, the farthest first%s", list,
+                       result->by_rows ? ", by what lies lower alone, which is doubtful: give "
+                                         "--positions if it is not"
+                                       : "");
 }
 
 static void add_evidence(struct refocus_photo_info *info, const char *text)
 {
     snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH, "%s", text);
+}
+
+/* Tell why the first frame is taken for the farthest, or the last. */
+static void tell_direction(struct refocus_photo_info *info, const char *name,
+                           const struct refocus_stack_result *result)
+{
+    const char *const farthest = result->direction > 0 ? "first" : "last";
+    const char *const why =
+        result->by_rows ? "what lies lower, which is nearer in most pictures, tells" : "edges show";
+
+    if (fabs((double)result->direction) < LEAST_DIRECTION) {
+        add_evidence(info,
+                     "focus stack: nothing shows which end is far; the first is taken for it");
+        return;
+    }
+    snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH,
+             "focus stack: %s that the %s frame is focused farthest", why, farthest);
+    if (result->by_rows && result->direction < 0)
+        report_warning(name, "the last frame is taken for the farthest, by what lies lower alone, "
+                             "which is doubtful; if the first is the farthest, give --order given");
 }
 
 static int judge_apertures(const struct refocus_stack_result *result, const char *name)
@@ -277,7 +288,7 @@ static int finish(struct input *input, struct refocus_stack *stack,
     if (frames->of_files)
         add_evidence(&input->made_info, "EXIF: the subject distances of the frames");
     if (isnan(frames->position[0]) && order == REFOCUS_STACK_ORDER_EITHER)
-        add_evidence(&input->made_info, direction_of(&result));
+        tell_direction(&input->made_info, input->photo_name, &result);
     return EXIT_DONE;
 }
 
