@@ -171,7 +171,7 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max
  * Strip mode, params->in_place, takes no more than
  *
  *     28 (S + 63) (S + 16) + 0.78 (W + 16) (H + 64) + 4 T (W + R) + 620000 T
- *     + 24 min(P, 129)^2 + 400000
+ *     + 24 min(P, 129)^2 + 150000, of K above 127 400000
  *
  * with S = 144 + 2N - M + max(M, 2P), M = P + 28, of K above 54 P + 52, above 127 P + 148, and N =
  * max(M, 2P + 9), M and N rounded up to multiples of 16: 1920x1080 with K = 40 takes less than

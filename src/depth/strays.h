@@ -7,7 +7,7 @@
 
 struct rf_ranks {
     const struct refocus_depth_map *map;
-    const uint32_t *count; /* how many samples have each value; NULL: samples are read */
+    const uint32_t *count; /* samples of each value; NULL: they are read from the map */
     uint64_t known;        /* samples that hold a value */
     double far;            /* the least rank of them */
 };

@@ -3,7 +3,7 @@
 
 #include "depth/temporal.h"
 #include "image/format.h"
-#include "image/samples.h"
+#include "image/disparity_map.h"
 #include "support/compare.h"
 
 static int within(int v, int size)

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "depth/dequantise.h"
-#include "image/samples.h"
+#include "image/disparity_map.h"
 #include "support/compare.h"
 
 enum {

@@ -6,7 +6,7 @@
 #include "depth/upsample.h"
 #include "image/format.h"
 #include "image/read.h"
-#include "image/samples.h"
+#include "image/disparity_map.h"
 
 static bool good_params(const struct refocus_upsample_params *params,
                         const struct refocus_disparity *map)

@@ -12,7 +12,7 @@
 #include "edges/place.h"
 #include "image/format.h"
 #include "image/read.h"
-#include "image/samples.h"
+#include "image/disparity_map.h"
 #include "support/arena.h"
 
 /* A photo of Y, U and V, and the same in RGB8. */

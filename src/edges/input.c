@@ -7,7 +7,7 @@
 #include "depth/dequantise.h"
 #include "depth/noise.h"
 #include "image/format.h"
-#include "image/samples.h"
+#include "image/disparity_map.h"
 #include "support/compare.h"
 
 enum { CHANGED = 257 }; /* a code of 8 bits */

@@ -1,7 +1,7 @@
 /* map.c: looks up a map that covers the picture at any size. */
 #include "focus/focus.h"
 
-#include "image/samples.h"
+#include "image/disparity_map.h"
 
 static int sample(const struct refocus_disparity *map, int x, int y)
 {

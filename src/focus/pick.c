@@ -6,7 +6,7 @@
 
 #include "image/format.h"
 #include "image/read.h"
-#include "image/samples.h"
+#include "image/disparity_map.h"
 #include "support/compare.h"
 
 enum {

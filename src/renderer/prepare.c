@@ -9,7 +9,7 @@
 #include "image/format.h"
 #include "image/read.h"
 #include "image/viewport.h"
-#include "image/samples.h"
+#include "image/disparity_map.h"
 #include "renderer/renderer.h"
 #include "renderer/layout.h"
 #include "renderer/load.h"

@@ -55,7 +55,7 @@ struct rf_photo {
     struct rf_highlights highlights;
     uint32_t highlights_blend; /* blend that they were found in, or RF_NO_BLEND */
     float highlights_estimate; /* times the estimate that they have lost; 0: for a fixed gain */
-    float highlights_steady;   /* how far their light follows that of the last photo */
+    float highlights_steady;   /* part of small changes since the last photo that was left out */
     struct rf_thin_list thin;
     struct rf_behind behind; /* width 0: the scene has none */
 };

@@ -173,7 +173,7 @@ static double stated_in_place(int width, int height, float blur, int threads)
 
     return 28 * (s + 63) * (s + 16) + 0.78 * (width + 16.0) * (height + 64.0) +
            4.0 * threads * (width + scratch(blur)) + 62e4 * threads +
-           24 * fmin(p, 129) * fmin(p, 129) + 400000;
+           24 * fmin(p, 129) * fmin(p, 129) + (p > 129 ? 400000 : 150000);
 }
 
 /* The figures that strip mode is for. */

@@ -1,4 +1,4 @@
-/* test_opencv.c: depth of pictures by OpenCV: pairs and networks that the test makes itself. */
+/* test_opencv.c: depth of pictures by OpenCV and networks that the test makes itself. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,247 +11,11 @@
 #include <cmocka.h>
 #include <refocus/platform/opencv.h>
 
-enum { W = 320, H = 200, FAR = 8, NEAR = 26 };
-
-static uint32_t state_of = 1;
-
-static uint8_t noise(void)
-{
-    state_of = state_of * 1664525u + 1013904223u;
-    return (uint8_t)(state_of >> 24);
-}
-
-static int disparity_at(int x, int y)
-{
-    return x >= 120 && x < 220 && y >= 60 && y < 150 ? NEAR : FAR;
-}
-
-/* A textured square before a textured wall; the right picture lies @p lower pixels lower. */
-static void make_pair(uint8_t *left, uint8_t *right, int lower)
-{
-    state_of = 7;
-    for (int i = 0; i < 3 * W * H; i++)
-        left[i] = right[i] = noise();
-    for (int pass = 0; pass < 2; pass++) /* the near square covers the wall */
-        for (int y = 0; y < H; y++)
-            for (int x = 0; x < W; x++) {
-                const int d = disparity_at(x, y), to = y + lower;
-
-                if ((d == NEAR) == pass && x - d >= 0 && to >= 0 && to < H)
-                    memcpy(right + 3 * (to * W + x - d), left + 3 * (y * W + x), 3);
-            }
-}
-
-/* The square is bright, and the wall dark, also where one picture alone shows it. */
-static void make_colours(uint8_t *left, uint8_t *right)
-{
-    make_pair(left, right, 0);
-    for (int y = 0; y < H; y++)
-        for (int x = 0; x < W; x++)
-            for (int c = 0; c < 3; c++) {
-                const int i = 3 * (y * W + x) + c;
-
-                left[i] = (uint8_t)(left[i] / 2 + (disparity_at(x, y) == NEAR ? 128 : 0));
-                right[i] = (uint8_t)(right[i] / 2 + (disparity_at(x + NEAR, y) == NEAR ? 128 : 0));
-            }
-}
+enum { W = 320, H = 200 };
 
 static struct refocus_image picture(uint8_t *pixels)
 {
     return refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
-}
-
-/* Seven tenths have a disparity, and of these so many percent the right one. */
-static void check_disparities(const float *d, int percent)
-{
-    int known = 0, good = 0;
-
-    for (int i = 0; i < W * H; i++) {
-        known += !isnan(d[i]);
-        good += fabsf(d[i] - (float)disparity_at(i % W, i / W)) <= 1;
-    }
-    assert_in_range(known, W * H * 7 / 10, W * H);
-    assert_in_range(good, known * percent / 100, known);
-}
-
-static void stereo(void **state)
-{
-    static uint8_t left[3 * W * H], right[3 * W * H];
-    static float d[W * H];
-    const struct refocus_image a = picture(left), b = picture(right);
-    const struct refocus_stereo_params params = refocus_stereo_params_default();
-    struct refocus_stereo_report report = refocus_stereo_report_default();
-    struct refocus_cv_reason reason;
-
-    (void)state;
-    for (int lower = -3; lower <= 3; lower += 3) {
-        make_pair(left, right, lower);
-        assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &report, &reason), REFOCUS_OK);
-        assert_true(fabsf(report.vertical_offset - (float)lower) < 0.5f);
-        check_disparities(d, 97);
-    }
-}
-
-/* Copies a patch of the left picture to where it has disparity -10: beyond the wall. Returns how
- * many of its samples have about that, and the least one of all. */
-static int beyond_the_wall(int width, int height, float *least)
-{
-    static uint8_t left[3 * W * H], right[3 * W * H];
-    static float d[W * H];
-    const struct refocus_image a = picture(left), b = picture(right);
-    const struct refocus_stereo_params params = refocus_stereo_params_default();
-    struct refocus_stereo_report report = refocus_stereo_report_default();
-    struct refocus_cv_reason reason;
-    int count = 0;
-
-    make_pair(left, right, 0);
-    for (int y = 20; y < 20 + height; y++)
-        memcpy(right + 3 * (y * W + 50), left + 3 * (y * W + 40), 3 * (size_t)width);
-    assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &report, &reason), REFOCUS_OK);
-    for (int i = 0; i < W * H; i++)
-        count += d[i] < -5;
-    *least = report.least;
-    return count;
-}
-
-/* A patch behind all else, a quarter of which matches, is chance if that is less than 1 of 500 of
- * all matches. */
-static void stereo_far_chance(void **state)
-{
-    float least;
-
-    (void)state;
-    assert_int_equal(beyond_the_wall(24, 12, &least), 0);
-    assert_true(least > -1); /* the noise at the right border is the same in both */
-    assert_in_range(beyond_the_wall(26, 20, &least), 130, 260);
-    assert_true(least < -9);
-}
-
-/* The disparity of the square in the first picture, nearly all of which has it, and of the wall. */
-static void two_disparities(const float *d, int square_left, float *near, float *far)
-{
-    int more = 0, below = 0;
-
-    *near = d[100 * W + square_left + 50];
-    *far = d[20 * W + 200];
-    for (int y = 65; y < 145; y++)
-        for (int x = square_left + 5; x < square_left + 95; x++) {
-            more += d[y * W + x] > *near + 1;
-            below += d[y * W + x] < *near - 1;
-        }
-    assert_in_range(more + below, 0, 72); /* 1 of 100 */
-}
-
-static void stereo_order(void **state)
-{
-    static uint8_t left[3 * W * H], right[3 * W * H];
-    static float d[W * H];
-    const struct refocus_image a = picture(left), b = picture(right);
-    struct refocus_stereo_params params = refocus_stereo_params_default();
-    struct refocus_stereo_report report = refocus_stereo_report_default();
-    struct refocus_cv_reason reason;
-    float near, far;
-
-    (void)state;
-    make_colours(left, right);
-    for (params.order = 0; params.order <= REFOCUS_STEREO_ORDER_SEEN; params.order++) {
-        const int turned = params.order == REFOCUS_STEREO_RIGHT_FIRST;
-
-        assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &report, &reason), REFOCUS_OK);
-        two_disparities(d, 120, &near, &far);
-        assert_true(fabsf(near - (float)(turned ? -NEAR : NEAR)) <= 1);
-        assert_true(fabsf(far - (float)(turned ? -FAR : FAR)) <= 1);
-        assert_true(report.order > 0.5f);
-    }
-    for (params.order = 0; params.order <= REFOCUS_STEREO_ORDER_SEEN; params.order++) {
-        const int turned = params.order == REFOCUS_STEREO_LEFT_FIRST;
-
-        assert_int_equal(refocus_cv_stereo(&b, &a, &params, d, &report, &reason), REFOCUS_OK);
-        two_disparities(d, 120 - NEAR, &near, &far);
-        assert_true(fabsf(near - (float)(turned ? -NEAR : NEAR)) <= 1);
-        assert_true(fabsf(far - (float)(turned ? -FAR : FAR)) <= 1);
-        assert_true(report.order < -0.5f);
-    }
-    /* All of one colour: nothing tells. */
-    params.order = REFOCUS_STEREO_ORDER_SEEN;
-    make_pair(left, right, 0);
-    for (int i = 0; i < 3 * W * H; i++) {
-        left[i] = (uint8_t)(112 + left[i] / 8);
-        right[i] = (uint8_t)(112 + right[i] / 8);
-    }
-    assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &report, &reason), REFOCUS_OK);
-    assert_true(fabsf(report.order) < 0.15f);
-    two_disparities(d, 120, &near, &far);
-    assert_true(fabsf(near - NEAR) <= 1);
-}
-
-/* The light of a wall or a square at any place: sums of sines. */
-static uint8_t sines_at(double x, double y, int near)
-{
-    double sum = near ? 150 : 100;
-
-    for (int i = 1; i <= 6; i++)
-        sum += 14 * sin((0.13 * i + 0.2 * near) * x + 0.4 * i * i) * sin(0.21 * i * y + 0.9 * i) +
-               6 * sin(0.37 * i * x - 0.29 * i * y + near);
-    return (uint8_t)(sum < 0 ? 0 : sum > 255 ? 255 : sum);
-}
-
-/* Cameras that are turned about their axes and of other focal lengths. */
-static void stereo_unrectified(void **state)
-{
-    static const double apart[][3] = {{0, 0, 0}, {2, 0.012, 0}, {-1, 0, -0.01}, {1, -0.01, 0.008}};
-    static uint8_t left[3 * W * H], right[3 * W * H];
-    static float d[W * H];
-    const struct refocus_image a = picture(left), b = picture(right);
-    const struct refocus_stereo_params params = refocus_stereo_params_default();
-    struct refocus_stereo_report report = refocus_stereo_report_default();
-    struct refocus_cv_reason reason;
-
-    (void)state;
-    for (size_t n = 0; n < sizeof apart / sizeof *apart; n++) {
-        const double down = apart[n][0], turn = apart[n][1], grow = apart[n][2];
-        for (int i = 0; i < W * H; i++) {
-            const double u = i % W - (W - 1) / 2.0, v = i / W - (H - 1) / 2.0 - down;
-            const double size = (1 + grow) * (1 + grow) + turn * turn;
-            const double x = ((1 + grow) * u + turn * v) / size + (W - 1) / 2.0;
-            const double y = ((1 + grow) * v - turn * u) / size + (H - 1) / 2.0;
-            const int near = x + NEAR >= 120 && x + NEAR < 220 && y >= 60 && y < 150;
-
-            memset(left + 3 * i, sines_at(i % W, i / W, disparity_at(i % W, i / W) == NEAR), 3);
-            memset(right + 3 * i, sines_at(x + (near ? NEAR : FAR), y, near), 3);
-        }
-        assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &report, &reason), REFOCUS_OK);
-        assert_true(fabs((double)report.vertical_offset - down) < 0.15);
-        assert_true(fabs((double)report.turn - turn) < 0.001);
-        assert_true(fabs((double)report.grow - grow) < 0.001);
-        assert_true(n || (report.vertical_offset == 0 && report.turn == 0 && report.grow == 0));
-        check_disparities(d, 96);
-    }
-}
-
-static void stereo_refuses(void **state)
-{
-    static uint8_t left[3 * W * H], right[3 * W * H];
-    static float d[W * H];
-    const struct refocus_image a = picture(left);
-    struct refocus_image b = picture(right);
-    const struct refocus_stereo_params params = refocus_stereo_params_default();
-    struct refocus_cv_reason reason;
-
-    (void)state;
-    for (int i = 0; i < 3 * W * H; i++) {
-        left[i] = noise();
-        right[i] = noise();
-    }
-    assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, NULL, &reason), REFOCUS_ERR_NO_DEPTH);
-    assert_non_null(strstr(reason.text, "match"));
-    assert_int_equal(refocus_cv_stereo(&a, &a, &params, d, NULL, &reason), REFOCUS_ERR_NO_DEPTH);
-    assert_non_null(strstr(reason.text, "one shift"));
-    b.width--;
-    assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, NULL, &reason), REFOCUS_ERR_ARGUMENT);
-    assert_int_equal(refocus_cv_stereo(&a, NULL, &params, d, NULL, NULL), REFOCUS_ERR_ARGUMENT);
-    assert_int_equal(refocus_cv_stereo(&a, &a, NULL, d, NULL, NULL), REFOCUS_ERR_ARGUMENT);
-    assert_int_equal(refocus_cv_stereo(&a, &a, &params, NULL, NULL, NULL), REFOCUS_ERR_ARGUMENT);
 }
 
 /* ONNX by hand: protobuf fields, all shorter than 128 bytes. */
@@ -463,40 +227,6 @@ static void estimator(void **state)
 static const uint32_t no_sizes[] = {0, 4, REFOCUS_MAX_STRUCT_SIZE + 1, UINT32_MAX};
 enum { NO_SIZES = sizeof no_sizes / sizeof *no_sizes };
 
-static void reports_of_any_size(void **state)
-{
-    static uint8_t left[3 * W * H], right[3 * W * H];
-    static float d[W * H];
-    struct newer {
-        struct refocus_stereo_report known;
-        uint32_t added, behind;
-    } older, newer, untouched;
-    const struct refocus_image a = picture(left), b = picture(right);
-    const struct refocus_stereo_params params = refocus_stereo_params_default();
-
-    (void)state;
-    memset(&older, 0xa5, sizeof older);
-    newer = older;
-    older.known.struct_size = REFOCUS_SIZE_TO(struct refocus_stereo_report, matched);
-    newer.known.struct_size = offsetof(struct newer, behind);
-    make_pair(left, right, 3);
-    for (int i = 0; i < 2; i++) {
-        struct newer got = i ? newer : older;
-
-        assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &got.known, NULL), REFOCUS_OK);
-        assert_int_equal(got.known.struct_size, (i ? newer : older).known.struct_size);
-        assert_true(fabsf(got.known.vertical_offset - 3) < 0.5f && got.known.matched > 0.5f);
-        assert_true(got.added == (i ? 0 : older.added) && got.behind == older.behind);
-    }
-    for (int i = 0; i < NO_SIZES; i++) {
-        newer.known.struct_size = no_sizes[i];
-        untouched = newer;
-        assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &newer.known, NULL),
-                         REFOCUS_ERR_ARGUMENT);
-        assert_memory_equal(&newer, &untouched, sizeof newer);
-    }
-}
-
 static void networks_of_any_size(void **state)
 {
     struct newer {
@@ -599,16 +329,11 @@ static void estimates_of_any_size(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(stereo),
-                                       cmocka_unit_test(stereo_far_chance),
-                                       cmocka_unit_test(stereo_order),
-                                       cmocka_unit_test(stereo_unrectified),
-                                       cmocka_unit_test(stereo_refuses),
-                                       cmocka_unit_test(estimate),
-                                       cmocka_unit_test(estimator),
-                                       cmocka_unit_test(reports_of_any_size),
-                                       cmocka_unit_test(networks_of_any_size),
-                                       cmocka_unit_test(estimates_of_any_size)};
+    const struct CMUnitTest tests[] = {
+
+        cmocka_unit_test(estimate), cmocka_unit_test(estimator),
+
+        cmocka_unit_test(networks_of_any_size), cmocka_unit_test(estimates_of_any_size)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

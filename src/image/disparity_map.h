@@ -1,6 +1,6 @@
-/* samples.h: the samples of a map of disparities, and where they lie in the photo. */
-#ifndef RF_SAMPLES_H
-#define RF_SAMPLES_H
+/* disparity_map.h: the samples of a map of disparities, and where they lie in the photo. */
+#ifndef RF_DISPARITY_MAP_H
+#define RF_DISPARITY_MAP_H
 
 #include <stddef.h>
 #include <stdint.h>
