@@ -42,7 +42,7 @@ static void push_rows(const struct rf_executor *exec, const struct rf_pyramid *p
         const uint16_t *const lower[3] = {from[0] + b, from[1] + b, from[2] + b};
 
         exec->kernels->push(out, coarse.blur.at + at, upper, lower, fine.blur.at + a,
-                            fine.blur.at + b, coarse.width);
+                            fine.blur.at + b, pyramid->apart, coarse.width);
         if (coarse.width % 2)
             coarse.blur.at[at + coarse.width] = RF_NO_BLUR;
     }
@@ -93,7 +93,7 @@ bool rf_next_unknown(const int16_t *blur, int n, struct rf_unknown *run)
 
 /* Pulls a row of level i from the next level, in so many planes of light. */
 static void pull_row(const struct rf_executor *exec, const struct rf_pyramid *pyramid, int i,
-                     int planes, int16_t apart, uint16_t *scratch, int y)
+                     int planes, uint16_t *scratch, int y)
 {
     const struct rf_level *fine = &pyramid->level[i], *coarse = &pyramid->level[i + 1];
     const int near_y = y / 2, width = fine->width;
@@ -112,7 +112,7 @@ static void pull_row(const struct rf_executor *exec, const struct rf_pyramid *py
         struct rf_parents parents = {
             .near_blur = coarse->blur.at + near_y * coarse->blur.stride + parent,
             .far_blur = coarse->blur.at + far_y * coarse->blur.stride + parent,
-            .apart = apart,
+            .apart = pyramid->apart,
         };
 
         for (int c = 0; c < planes; c++) {
@@ -139,7 +139,6 @@ struct step {
     const struct rf_viewport *view;
     const struct rf_pyramid *pyramid;
     int level;
-    int16_t apart;
 };
 
 static int end_of(int band, int height)
@@ -163,8 +162,7 @@ static void pull_item(void *context, int band, int worker)
     const int y0 = band * BAND, y1 = end_of(band, level->height);
 
     for (int y = y0; y < y1; y++)
-        pull_row(step->exec, step->pyramid, step->level, 3, step->apart,
-                 rf_scratch(step->exec, worker), y);
+        pull_row(step->exec, step->pyramid, step->level, 3, rf_scratch(step->exec, worker), y);
     if (step->level == 0)
         extend_background(step->view, level, 3, y0, y1);
 }
@@ -190,9 +188,9 @@ void rf_background_push(const struct rf_executor *exec, const struct rf_pyramid 
 }
 
 void rf_background_pull(const struct rf_executor *exec, const struct rf_viewport *view,
-                        const struct rf_pyramid *pyramid, int from, int to, int16_t apart)
+                        const struct rf_pyramid *pyramid, int from, int to)
 {
-    struct step step = {exec, view, pyramid, to - 1, apart};
+    struct step step = {exec, view, pyramid, to - 1};
 
     for (; step.level >= from; step.level--)
         run(&step, pull_item, pyramid->level[step.level].height);
@@ -226,7 +224,7 @@ static void push_yuv_band(void *context, int band, int worker)
 
         step->exec->kernels->push1(coarse->light.channel[0] + at, blur, fine->light.channel[0] + a,
                                    fine->light.channel[0] + b, fine->blur.at + a, fine->blur.at + b,
-                                   coarse->width);
+                                   step->pyramid->apart, coarse->width);
         step->exec->kernels->split2(coarse->light.channel[1] + at, coarse->light.channel[2] + at,
                                     smooth.at + (shared ? y : 2 * y) * smooth.stride,
                                     smooth.at + (shared ? y : second) * smooth.stride,
@@ -265,8 +263,7 @@ static void pull_yuv_band(void *context, int band, int worker)
     const int down = step->chroma->size.down;
 
     for (int y = y0; y < y1; y++)
-        pull_row(step->exec, step->pyramid, 0, 1, step->chroma->apart,
-                 rf_scratch(step->exec, worker), y);
+        pull_row(step->exec, step->pyramid, 0, 1, rf_scratch(step->exec, worker), y);
     extend_background(step->view, &step->pyramid->level[0], 1, y0, y1);
     pull_chroma(step, y0 >> down, rf_chroma_end(down, y1));
 }
@@ -292,6 +289,6 @@ void rf_background_inpaint_yuv(const struct rf_executor *exec, const struct rf_v
     }
     rf_pool_run(exec->pool, push_yuv_band, &step, rf_bands(view));
     rf_background_push(exec, pyramid, 1, pyramid->levels);
-    rf_background_pull(exec, view, pyramid, 1, pyramid->levels, chroma->apart);
+    rf_background_pull(exec, view, pyramid, 1, pyramid->levels);
     rf_pool_run(exec->pool, pull_yuv_band, &step, rf_bands(view));
 }

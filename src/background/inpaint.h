@@ -2,8 +2,9 @@
  *
  * Marked pixels (mark.h) take light and blur from the known ones around them. Push: each level of
  * a pyramid has the mean light and the farthest blur of those of 2 x 2 pixels of the level before
- * that are known. Pull: from the last level down, unknown pixels take from the four nearest pixels
- * of the level above, or from the deeper ones of them. Gortler et al. 1996, section 3.4.
+ * that are known, or of the deeper ones of them. Pull: from the last level down, unknown pixels
+ * take from the four nearest pixels of the level above, or from the deeper ones of them. Gortler et
+ * al. 1996, section 3.4.
  *
  * A photo of Y, U and V has luminance alone in level 0. Chroma of 4:2:0 is as large as level 1 and
  * is inpainted from there on; a sample is known if any of its pixels is. That of 4:2:2 is made as
@@ -30,13 +31,13 @@ void rf_background_push_band(const struct rf_executor *exec, const struct rf_pyr
 void rf_background_push(const struct rf_executor *exec, const struct rf_pyramid *pyramid, int from,
                         int to);
 void rf_background_pull(const struct rf_executor *exec, const struct rf_viewport *view,
-                        const struct rf_pyramid *pyramid, int from, int to, int16_t apart);
+                        const struct rf_pyramid *pyramid, int from, int to);
 
 /*
  * A marked area ends at known pixels on both sides: at the background, and farther in at the
  * foreground itself. If both were mixed, a bright sky behind a dark cap would be grey there, and
- * where the depth of the middle of a tile comes from the cap, the tile would show as a square. So
- * of parents whose blurs are more than `apart` apart the pull takes the deeper ones alone: a
+ * light of a subject in focus would get into the background beside it. So of children and of
+ * parents whose blurs are more than `apart` apart push and pull take the deeper ones alone: a
  * quarter of the largest blur, which is a quarter of the range of disparities, with any lens. With
  * a tenth, one of the scenes with exact maps loses 0.28 dB, where a surface between the foreground
  * and the background is hidden, too.
@@ -46,7 +47,6 @@ static inline int16_t rf_layers_apart(float max_blur_radius, int unit)
     return (int16_t)((int)(max_blur_radius * (256.0f / 4)) >> unit);
 }
 static_assert((int)REFOCUS_MAX_BLUR_RADIUS * 64 >> RF_MAX_UNIT < INT16_MAX, "quarters of a blur");
-enum { RF_NEVER_APART = INT16_MAX };
 
 /* Chroma that is read and written beside the pyramid, for a photo of Y, U and V. */
 struct rf_inpaint_chroma {
@@ -54,7 +54,6 @@ struct rf_inpaint_chroma {
     struct rf_blur_q8 blur;          /* read: of each pixel */
     struct rf_chroma_q12 smooth;     /* read */
     struct rf_chroma_q12 background; /* written, with its border */
-    int16_t apart;                   /* by rf_layers_apart() */
 };
 
 /* Push and pull of all levels of a photo of Y, U and V. */

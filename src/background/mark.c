@@ -64,8 +64,7 @@ void rf_background_mark_rows(const struct rf_executor *exec, const struct rf_vie
         for (int x = 0; x < w; x++)
             row[x] = down[x] > up[x] ? down[x] : up[x];
         dilated = exec->kernels->spread_row(row, spare, mark->reach, unit, w);
-        exec->kernels->mark_foreground(blur, mark->blur.at + y * mark->blur.stride, dilated, unit,
-                                       w);
+        exec->kernels->mark_foreground(blur, mark->blur.at + y * mark->blur.stride, dilated, w);
         blur[w] = RF_NO_BLUR; /* a column more if the width is odd */
         copy_row(mark, y, w);
     }

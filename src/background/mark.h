@@ -6,12 +6,14 @@
  *
  * p is foreground where some farther pixel q is near enough in the picture,
  *
- *     max over q of (s(q) - |p - q| / 2) > s(p) + 1/2 pixel,
+ *     max over q of (s(q) - |p - q| / 2) > s(p),
  *
  * a grey dilation of s by a cone; |p - q| is the octagonal distance with steps of 1 and sqrt 2. If
- * p has the blur -6, a q of blur 0 that is 10 pixels away makes it foreground, as 0 - 5 > -5.5; one
+ * p has the blur -6, a q of blur 0 that is 11 pixels away makes it foreground, as 0 - 5.5 > -6; one
  * that is 12 pixels away does not. Slope 1 would mark the pixels that rays could pass. Slope 1/2
- * marks twice as deep, so that what rays can see there is inpainted from the far side alone.
+ * marks twice as deep, so that what rays can see there is inpainted from the far side alone; and
+ * the pixel beside an edge in focus from half a pixel of blur behind it on, from which on rays are
+ * rounded to it.
  */
 #ifndef RF_MARK_H
 #define RF_MARK_H

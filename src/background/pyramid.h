@@ -14,9 +14,13 @@ struct rf_level {
     struct rf_blur_q8 blur;
 };
 
+enum { RF_NEVER_APART = INT16_MAX };
+
 /* Level 0 is the background of the window itself; a pixel of the next one is 2 x 2 pixels. */
 struct rf_pyramid {
-    int levels; /* the last one, of one pixel; 0: the picture has one pixel */
+    int16_t apart; /* blurs that differ by more are two layers, and light of the nearer one does not
+                      count: by rf_layers_apart(), or RF_NEVER_APART */
+    int levels;    /* the last one, of one pixel; 0: the picture has one pixel */
     struct rf_level level[RF_LEVELS + 1];
 };
 

@@ -53,6 +53,7 @@ struct step {
     const struct rf_texture *texture;
     const struct rf_level *fine, *coarse;
     int level, blocks_x;
+    int16_t apart;            /* as of the pyramid */
     int8_t around[AROUND][2]; /* x and y, the nearest first */
 };
 
@@ -82,7 +83,7 @@ static int pulled(const struct step *step, int c, int x, int y)
     const int16_t *far_blur = coarse->blur.at + far_y * coarse->blur.stride;
     const struct rf_two_blurs beside = {near_blur[near_x], far_blur[near_x]};
     const struct rf_two_blurs beyond = {near_blur[far_x], far_blur[far_x]};
-    const int16_t apart = step->texture->apart;
+    const int16_t apart = step->apart;
 
     return rf_mix_light(
         rf_mix_light(light[near + near_x], light[far + near_x], beside, apart),
@@ -342,7 +343,7 @@ static void pull_blur_band(void *context, int band, int worker)
             const struct rf_parents parents = {
                 .near_blur = parent + y / 2 * coarse->blur.stride,
                 .far_blur = parent + far_y * coarse->blur.stride,
-                .apart = step->texture->apart,
+                .apart = step->apart,
             };
 
             step->exec->kernels->pull_blur(blur + run.x0, &parents,
@@ -373,7 +374,7 @@ static void list_around(struct step *step)
 void rf_background_pull_textured(const struct rf_executor *exec, const struct rf_viewport *view,
                                  const struct rf_pyramid *pyramid, const struct rf_texture *texture)
 {
-    struct step step = {.exec = exec, .view = view, .texture = texture};
+    struct step step = {.exec = exec, .view = view, .texture = texture, .apart = pyramid->apart};
 
     list_around(&step);
     for (step.level = pyramid->levels - 1; step.level >= 0; step.level--) {
@@ -385,5 +386,5 @@ void rf_background_pull_textured(const struct rf_executor *exec, const struct rf
         rf_pool_run(exec->pool, pull_blur_band, &step, (step.fine->height + BAND - 1) / BAND);
     }
     if (pyramid->levels == 0) /* a picture of one pixel: nothing is unknown */
-        rf_background_pull(exec, view, pyramid, 0, 0, texture->apart);
+        rf_background_pull(exec, view, pyramid, 0, 0);
 }

@@ -38,7 +38,6 @@ struct rf_texture {
     const struct rf_transfer *transfer; /* residuals are in codes */
     int same;                           /* blurs of one surface differ by no more, as is stored */
     int unit;                           /* unit of the blurs */
-    int16_t apart;                      /* by rf_layers_apart() */
 };
 
 /* Pulls all levels, as rf_background_pull() does, with texture. */

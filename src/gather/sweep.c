@@ -19,6 +19,7 @@
  * This is plain C that states the arithmetic; sums are whole numbers, so their order does
  * not matter.
  */
+#include "gather/corners.h"
 #include "gather/fine_means.h"
 #include "gather/frame.h"
 #include "gather/sums.h"
@@ -91,13 +92,6 @@ static void set_lookups(struct lookups *lookups, const struct rf_frame *f,
     }
 }
 
-/* The blur of the hidden background of a tile: one for all, that of the tile's middle, which keeps
- * the offsets of a ray constant. Looking it up for each pixel measured no better. */
-static int background_blur_of(const struct rf_frame *f, int tx, int ty)
-{
-    return f->bins[(size_t)ty * f->view->tiles_x + tx].background_blur;
-}
-
 /* The sums of a tile: of light, plain or times weight, and of weights. */
 union tally {
     uint32_t sum[4][LANES];
@@ -111,6 +105,7 @@ struct share {
     alignas(64) struct rf_sums sums;
     alignas(64) struct lookups lookups;
     alignas(64) struct rf_sorted_rays sorted;
+    alignas(64) uint32_t corners[3][LANES];
 };
 
 /* Where fine means lie in the share: splats, which come between, use what is before them. */
@@ -231,11 +226,10 @@ static_assert((uint64_t)RF_FULL_RAYS * RF_MOST_GAIN * RF_LIGHT_MAX * RF_WEIGHT_M
                                                                                          << 51,
               "and of weighted light what kernels->weighted_means takes");
 static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                       const struct rf_tile_rays *tile_rays, int tx, int ty,
+                       const struct rf_tile_rays *tile_rays, int background_blur, int tx, int ty,
                        struct rf_tile_rows rows, struct share *share)
 {
     const struct rf_ray_set *set = tile_rays->set;
-    const int background_blur = background_blur_of(f, tx, ty);
     struct lookups *const lookups = &share->lookups;
     const int lanes = rows.count * RF_TILE;
     int rays = 0; /* in this run */
@@ -275,18 +269,18 @@ static void clamp_run(union tally *run, int lanes, bool wide, uint32_t rays)
 
 /* Computes the means of channels `from` to `to` - 1 of a tile from rays of equal weight. */
 static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                        const struct rf_tile_rays *tile_rays, int tx, int ty, struct share *share,
-                        uint16_t mean[3][LANES], struct rf_fine_means *fine, int from, int to)
+                        const struct rf_tile_rays *tile_rays, int background_blur, int tx, int ty,
+                        struct share *share, uint16_t mean[3][LANES], struct rf_fine_means *fine,
+                        int from, int to)
 {
     const uint32_t count = (uint32_t)tile_rays->set->count;
-    const int background_blur = background_blur_of(f, tx, ty);
     const struct rf_tile_rows rows = rf_tile_rows(f, plan, background_blur);
     const uint16_t softness = rf_softness(f, plan, background_blur);
     const int lanes = rows.count * RF_TILE;
     uint16_t computed[LANES];
     union tally *const run = &share->run;
 
-    sweep_rays(f, plan, tile_rays, tx, ty, rows, share);
+    sweep_rays(f, plan, tile_rays, background_blur, tx, ty, rows, share);
     if (rf_cancelled(f->exec))
         return;
     if (!f->premultiplied && rf_exceeds_means(plan))
@@ -312,17 +306,17 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
 
 /* Computes these means from rays that do not weigh the same. */
 static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                       const struct rf_tile_rays *rays, int tx, int ty, struct share *share,
-                       uint16_t mean[3][LANES], int from, int to)
+                       const struct rf_tile_rays *rays, int background_blur, int tx, int ty,
+                       struct share *share, uint16_t mean[3][LANES], int from, int to)
 {
     const uint64_t most = 4 * RF_MOST_MEAN;
     const uint64_t unit =
         f->premultiplied ? 8192 : 4; /* light is Q13 times weight Q12, or plain Q12 */
-    const uint16_t softness = rf_softness(f, plan, background_blur_of(f, tx, ty));
+    const uint16_t softness = rf_softness(f, plan, background_blur);
     struct rf_sums *const sums = &share->sums;
 
     memset(sums, 0, sizeof *sums);
-    sweep_rays(f, plan, rays, tx, ty, (struct rf_tile_rows){1, RF_TILE}, share);
+    sweep_rays(f, plan, rays, background_blur, tx, ty, (struct rf_tile_rows){1, RF_TILE}, share);
     if (rf_cancelled(f->exec)) /* a cancelled run has no weights to divide by */
         return;
     for (int c = from; c < to; c++) {
@@ -336,10 +330,31 @@ static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan
     }
 }
 
+/* Computes means for the blur of the hidden background at each corner of the tile. */
+static void sweep_corners(const struct rf_frame *f, const struct rf_tile_plan *plan,
+                          const struct rf_tile_rays *rays, const struct rf_corners *corners, int tx,
+                          int ty, struct share *share, uint16_t mean[3][LANES],
+                          struct rf_fine_means *fine, int from, int to)
+{
+    static const struct rf_corner_layout pixels = {1, 1};
+
+    for (int k = 0; k < corners->count && !rf_cancelled(f->exec); k++) {
+        if (rays->set->equal)
+            sweep_means(f, plan, rays, corners->blur[k], tx, ty, share, mean, fine, from, to);
+        else
+            sweep_sums(f, plan, rays, corners->blur[k], tx, ty, share, mean, from, to);
+        for (int c = from; c < to && corners->count > 1; c++)
+            rf_add_corner(share->corners[c], mean[c], k, pixels);
+    }
+    for (int c = from; c < to && corners->count > 1; c++)
+        rf_corner_means(mean[c], share->corners[c], pixels);
+}
+
 void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
     struct rf_tile_plan plan;
     struct rf_tile_rays rays;
+    struct rf_corners corners;
     uint16_t mean[3][LANES];
     struct rf_fine_means *fine = NULL;
     void *const share = rf_share(&f->exec->shares, worker);
@@ -358,17 +373,15 @@ void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect
     rf_expect_tile(f, rect);
     rf_tile_rays_make(&rays, f, rf_choose_ray_set(f->ray_sets, plan.reach, plan.undersampled), tx,
                       ty);
-    if (f->deep_out->on && rays.set->equal && !f->weighted)
+    rf_find_corners(&corners, f, tx, ty);
+    if (f->deep_out->on && rays.set->equal && !f->weighted && corners.count == 1)
         fine = (void *)((uint8_t *)share + fine_at());
     for (int pass = 0; pass < (f->params->fringe != 0 ? 2 : 1); pass++) {
         const int from = pass, to = pass ? 2 : 3; /* all channels, and green again */
 
         if (pass)
             rf_use_green_rays(&rays, f->params->fringe);
-        if (rays.set->equal)
-            sweep_means(f, &plan, &rays, tx, ty, share, mean, fine, from, to);
-        else
-            sweep_sums(f, &plan, &rays, tx, ty, share, mean, from, to);
+        sweep_corners(f, &plan, &rays, &corners, tx, ty, share, mean, fine, from, to);
     }
     if (f->splats)
         rf_splat_highlights(&f->splat, &plan, tx, ty, share,

@@ -5,6 +5,7 @@
  * and in 4:2:0 down, and a part of them lies as densely among its samples as all rays do
  * among pixels.
  */
+#include "gather/corners.h"
 #include "gather/frame.h"
 #include "gather/sums.h"
 #include "gather/tile_rows.h"
@@ -28,8 +29,8 @@ struct tile {
     const struct rf_frame *f;
     struct rf_tile_plan plan;
     const struct rf_ray_set *set;
-    int background_blur;                        /* at the tile's middle, as it is stored */
-    const uint32_t *range;                      /* from the tile's first cell on */
+    int background_blur;   /* It is that of a corner of the tile, as it is stored. */
+    const uint32_t *range; /* from the tile's first cell on */
     const uint16_t *weight, *background_weight; /* eq. 5 from its first pixel on, or NULL */
     struct plane luma, chroma;
 };
@@ -71,6 +72,7 @@ struct sums {
 struct share {
     alignas(64) struct sums sums;
     alignas(64) struct lookups lookups;
+    alignas(64) uint32_t corners[2][LANES]; /* luma, chroma */
 };
 
 uint64_t rf_sweep_yuv_share(void)
@@ -311,6 +313,31 @@ static void set_planes(struct tile *tile, int tx, int ty)
     };
 }
 
+/* Computes means for the blur of the hidden background at each corner of the tile. */
+static void sweep_corners(struct tile *tile, int tx, int ty, struct share *share,
+                          struct rf_decode_job *means)
+{
+    const struct rf_corner_layout pixels = {1, 1}, chroma = {2, 1 << tile->chroma.down};
+    struct rf_corners corners;
+
+    rf_find_corners(&corners, tile->f, tx, ty);
+    for (int k = 0; k < corners.count && !rf_cancelled(tile->f->exec); k++) {
+        tile->background_blur = corners.blur[k];
+        if (tile->set->equal)
+            sweep_means(tile, share, means);
+        else
+            sweep_sums(tile, share, means);
+        if (corners.count > 1) {
+            rf_add_corner(share->corners[0], means->luma, k, pixels);
+            rf_add_corner(share->corners[1], means->chroma, k, chroma);
+        }
+    }
+    if (corners.count > 1) {
+        rf_corner_means(means->luma, share->corners[0], pixels);
+        rf_corner_means(means->chroma, share->corners[1], chroma);
+    }
+}
+
 void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
     struct rf_decode_job means;
@@ -318,7 +345,6 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
     void *const share = rf_share(&f->exec->shares, worker);
 
     tile.f = f;
-    tile.background_blur = f->bins[(size_t)ty * f->view->tiles_x + tx].background_blur;
     rf_plan_tile(f->view, f->bins, &f->reach, tx, ty, &tile.plan);
     if (tile.plan.sharp) {
         rf_copy_yuv_tile(f, rect);
@@ -326,10 +352,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
     }
     tile.set = rf_choose_ray_set(f->ray_sets, tile.plan.reach, tile.plan.undersampled);
     set_planes(&tile, tx, ty);
-    if (tile.set->equal)
-        sweep_means(&tile, share, &means);
-    else
-        sweep_sums(&tile, share, &means);
+    sweep_corners(&tile, tx, ty, share, &means);
     if (rf_cancelled(f->exec))
         return;
     if (f->splats)

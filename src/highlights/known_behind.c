@@ -21,6 +21,7 @@ struct behind {
     const struct rf_highlight_window *window;
     struct rf_disparity_q16 disparity;
     const struct rf_level *fine, *coarse;
+    int apart; /* as of the pyramid */
 };
 
 /* Light above white of the pixels of a tile, Q12; 0 where they have none. */
@@ -96,15 +97,23 @@ static bool is_wide(const struct behind *b, const struct tile *tile)
     return above > 0 && 4 * above >= 3 * all;
 }
 
-/* How many of the pixels that (x, y) has one parent with are known. */
-static int count_known(const struct behind *b, int x, int y)
+/* Whether a pixel counts for the mean light of its parent: rf_background_push(). */
+static bool counts(const struct behind *b, int x, int y)
 {
-    const struct rf_level *const fine = b->fine;
+    const int own = b->fine->blur.at[y * b->fine->blur.stride + x];
+    const int parent = b->coarse->blur.at[y / 2 * b->coarse->blur.stride + x / 2];
+
+    return own != RF_NO_BLUR && parent - own <= b->apart;
+}
+
+/* How many of the pixels that (x, y) has one parent with count for it. */
+static int count_all(const struct behind *b, int x, int y)
+{
     int count = 0;
 
-    for (int v = y & ~1; v <= (y | 1) && v < fine->height; v++)
-        for (int u = x & ~1; u <= (x | 1) && u < fine->width; u++)
-            count += fine->blur.at[v * fine->blur.stride + u] != RF_NO_BLUR;
+    for (int v = y & ~1; v <= (y | 1) && v < b->fine->height; v++)
+        for (int u = x & ~1; u <= (x | 1) && u < b->fine->width; u++)
+            count += counts(b, u, v);
     return count;
 }
 
@@ -117,16 +126,16 @@ static void add_to_parents(const struct behind *b, const struct tile *tile)
         for (int x = tile->at.x0; x < tile->at.x1; x++) {
             const int i = place_of(tile, x, y);
             const ptrdiff_t at = y / 2 * light->stride + x / 2;
-            int known;
+            int count;
 
-            if (!is_above(tile, i) || !is_background(b, x, y))
+            if (!is_above(tile, i) || !is_background(b, x, y) || !counts(b, x, y))
                 continue;
-            known = count_known(b, x, y);
+            count = count_all(b, x, y);
             for (int c = 0; c < 3; c++) {
                 const int more = rf_smaller(tile->excess[c][i], MOST);
 
                 light->channel[c][at] =
-                    (uint16_t)rf_smaller(light->channel[c][at] + (more + known / 2) / known, MOST);
+                    (uint16_t)rf_smaller(light->channel[c][at] + (more + count / 2) / count, MOST);
             }
         }
 }
@@ -134,7 +143,8 @@ static void add_to_parents(const struct behind *b, const struct tile *tile)
 void rf_push_known(const struct rf_highlight_window *window, struct rf_disparity_q16 disparity,
                    const struct rf_pyramid *pyramid, int band)
 {
-    const struct behind b = {window, disparity, &pyramid->level[0], &pyramid->level[1]};
+    const struct behind b = {window, disparity, &pyramid->level[0], &pyramid->level[1],
+                             pyramid->apart};
 
     for (int tx = 0; tx < window->view->tiles_x && pyramid->levels > 0; tx++) {
         const bool is_left = rf_known_is_left(window, tx, band);

@@ -40,16 +40,17 @@ typedef uint16_t *rf_spread_row_fn(uint16_t *row, uint16_t *spare, int reach, in
 typedef void rf_dilate_from_fn(uint16_t *row, const uint16_t *before, int unit, int n);
 
 /* mark_foreground: the blur of pixels that are not foreground, RF_NO_BLUR of those whose dilated
- * value is more than half a pixel above their own. `dilated` is s + 2^15. */
+ * value is above their own. `dilated` is s + 2^15. */
 typedef void rf_mark_foreground_fn(int16_t *background_blur, const int16_t *blur,
-                                   const uint16_t *dilated, int unit, int n);
+                                   const uint16_t *dilated, int n);
 
-/* push: n parents of 2 x 2 children: the mean of the known ones, half up, and their
- * farthest blur; 0 and RF_NO_BLUR if none is known. */
+/* push: n parents of 2 x 2 children: the mean of the known ones, half up, and their farthest blur;
+ * 0 and RF_NO_BLUR if none is known. Those that are more than `apart` in front of the farthest do
+ * not count, none with INT16_MAX. */
 static_assert(4 * 4 * RF_LIGHT_MAX + 2 <= UINT16_MAX, "four children of push fit 16 bits");
 typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur, const uint16_t *const upper[3],
                         const uint16_t *const lower[3], const int16_t *blur0, const int16_t *blur1,
-                        int n);
+                        int16_t apart, int n);
 
 /*
  * pull: unknown ones of 2 x pairs children take 3 and 1 quarters of the nearest parents, down and
@@ -77,7 +78,8 @@ typedef void rf_pull_blur_fn(int16_t *out, const struct rf_parents *parents, int
 
 /* push1: push, of one plane. */
 typedef void rf_push1_fn(uint16_t *out, int16_t *out_blur, const uint16_t *upper,
-                         const uint16_t *lower, const int16_t *blur0, const int16_t *blur1, int n);
+                         const uint16_t *lower, const int16_t *blur0, const int16_t *blur1,
+                         int16_t apart, int n);
 
 /* split2: n means of two rows of pairs, half up, the firsts and the seconds apart.
  * join2: pairs of them again.

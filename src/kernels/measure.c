@@ -57,7 +57,7 @@ static void dilate_from(const struct rf_kernels *k, struct rows *r)
 
 static void mark(const struct rf_kernels *k, struct rows *r)
 {
-    k->mark_foreground(r->blur[1] + MARGIN, r->blur[0] + MARGIN, r->shorts[0] + MARGIN, 0, N);
+    k->mark_foreground(r->blur[1] + MARGIN, r->blur[0] + MARGIN, r->shorts[0] + MARGIN, N);
 }
 
 static void push(const struct rf_kernels *k, struct rows *r)
@@ -66,7 +66,7 @@ static void push(const struct rf_kernels *k, struct rows *r)
     const uint16_t *const upper[3] = {r->shorts[0], r->shorts[1], r->shorts[2]};
     const uint16_t *const lower[3] = {r->shorts[3], r->shorts[4], r->shorts[5]};
 
-    k->push(out, r->blur[1], upper, lower, r->blur[0], r->blur[2], N / 2);
+    k->push(out, r->blur[1], upper, lower, r->blur[0], r->blur[2], 1280, N / 2);
 }
 
 static void pull(const struct rf_kernels *k, struct rows *r)

@@ -6,9 +6,18 @@
 
 #include <assert.h>
 
-static inline uint16_t rf_push_known(int16_t blur)
+/* The largest difference of two blurs of one layer. */
+static inline uint16_t rf_push_apart(int16_t apart)
 {
-    return (uint16_t)(blur != RF_NO_BLUR ? 0xffff : 0);
+    return apart == INT16_MAX ? UINT16_MAX : (uint16_t)apart;
+}
+
+/* Whether a child counts: it is known, and not in front of what is `farthest`. */
+static inline uint16_t rf_push_known(int16_t blur, int16_t farthest, int16_t apart)
+{
+    const uint16_t in_front = (uint16_t)((uint16_t)farthest - (uint16_t)blur);
+
+    return (uint16_t)(blur != RF_NO_BLUR && in_front <= rf_push_apart(apart) ? 0xffff : 0);
 }
 
 static inline int16_t rf_push_farther(int16_t a, int16_t b)
@@ -17,15 +26,18 @@ static inline int16_t rf_push_farther(int16_t a, int16_t b)
 }
 
 /* The first plane finds the blurs of the level, too. */
-static RF_ALWAYS_INLINE void rf_push_plane(uint16_t *restrict out, int16_t *restrict out_blur,
-                                           const uint16_t *restrict upper,
-                                           const uint16_t *restrict lower,
-                                           const int16_t *restrict blur0,
-                                           const int16_t *restrict blur1, int n, const bool first)
+static RF_ALWAYS_INLINE void
+rf_push_plane(uint16_t *restrict out, int16_t *restrict out_blur, const uint16_t *restrict upper,
+              const uint16_t *restrict lower, const int16_t *restrict blur0,
+              const int16_t *restrict blur1, int16_t apart, int n, const bool first)
 {
     for (int x = 0; x < n; x++) {
-        const uint16_t k0 = rf_push_known(blur0[2 * x]), k1 = rf_push_known(blur0[2 * x + 1]);
-        const uint16_t k2 = rf_push_known(blur1[2 * x]), k3 = rf_push_known(blur1[2 * x + 1]);
+        const int16_t farthest = rf_push_farther(rf_push_farther(blur0[2 * x], blur0[2 * x + 1]),
+                                                 rf_push_farther(blur1[2 * x], blur1[2 * x + 1]));
+        const uint16_t k0 = rf_push_known(blur0[2 * x], farthest, apart);
+        const uint16_t k1 = rf_push_known(blur0[2 * x + 1], farthest, apart);
+        const uint16_t k2 = rf_push_known(blur1[2 * x], farthest, apart);
+        const uint16_t k3 = rf_push_known(blur1[2 * x + 1], farthest, apart);
         const uint16_t count = (uint16_t) - (uint16_t)(k0 + k1 + k2 + k3);
         const uint16_t sum = (uint16_t)((upper[2 * x] & k0) + (upper[2 * x + 1] & k1) +
                                         (lower[2 * x] & k2) + (lower[2 * x + 1] & k3));
@@ -37,8 +49,7 @@ static RF_ALWAYS_INLINE void rf_push_plane(uint16_t *restrict out, int16_t *rest
 
         out[x] = count == 4 ? quarter : count == 3 ? third : count == 2 ? half : sum;
         if (first)
-            out_blur[x] = rf_push_farther(rf_push_farther(blur0[2 * x], blur0[2 * x + 1]),
-                                          rf_push_farther(blur1[2 * x], blur1[2 * x + 1]));
+            out_blur[x] = farthest;
     }
 }
 

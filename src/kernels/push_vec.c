@@ -1,6 +1,7 @@
 /* push_vec.c: reduces a level of the inpainting pyramid to the next coarser one, a vector of
  * parents at a time. */
 #include "kernels/kernels.h"
+#include "kernels/push_planes.h"
 #include "kernels/pyramid_vec.h"
 #include "simd/vec.h"
 
@@ -21,13 +22,14 @@ struct use {
  * three plus 1 times 43691 (a third), of two plus 2 times 65535, which takes 1 off it, and
  * one child twice, plus 1, times that.
  */
-static inline struct use use_of(const vec_u16 blur[4])
+static inline struct use use_of(const vec_u16 blur[4], vec_u16 farthest, vec_u16 apart)
 {
     struct use use;
     vec_u16 first, last, either, odd, all;
 
     for (int i = 0; i < 4; i++)
-        use.known[i] = invert(rf_unknown(blur[i]));
+        use.known[i] = vec_u16_without(vec_u16_at_most(vec_u16_sub(farthest, blur[i]), apart),
+                                       rf_unknown(blur[i]));
     first = vec_u16_and(use.known[0], use.known[1]);
     last = vec_u16_and(use.known[2], use.known[3]);
     either =
@@ -70,7 +72,7 @@ static inline void push_light(uint16_t *out, const uint16_t *upper, const uint16
 
 void RF_VEC(rf_push)(uint16_t *const out[3], int16_t *out_blur, const uint16_t *const upper[3],
                      const uint16_t *const lower[3], const int16_t *blur0, const int16_t *blur1,
-                     int n)
+                     int16_t apart, int n)
 {
     const vec_u16 sign = vec_u16_set(0x8000);
     int x = 0;
@@ -80,16 +82,17 @@ void RF_VEC(rf_push)(uint16_t *const out[3], int16_t *out_blur, const uint16_t *
         struct use use;
 
         children(blur, blur0 + 2 * x, blur1 + 2 * x);
-        use = use_of(blur);
         farthest = vec_u16_xor(blur[0], sign);
         for (int i = 1; i < 4; i++)
             farthest = vec_u16_max(farthest, vec_u16_xor(blur[i], sign));
-        vec_u16_store(out_blur + x, vec_u16_xor(farthest, sign));
+        farthest = vec_u16_xor(farthest, sign);
+        vec_u16_store(out_blur + x, farthest);
+        use = use_of(blur, farthest, vec_u16_set(rf_push_apart(apart)));
         for (int c = 0; c < 3; c++)
             push_light(out[c] + x, upper[c] + 2 * x, lower[c] + 2 * x, &use);
     }
     rf_push_c((uint16_t *const[3]){out[0] + x, out[1] + x, out[2] + x}, out_blur + x,
               (const uint16_t *const[3]){upper[0] + 2 * x, upper[1] + 2 * x, upper[2] + 2 * x},
               (const uint16_t *const[3]){lower[0] + 2 * x, lower[1] + 2 * x, lower[2] + 2 * x},
-              blur0 + 2 * x, blur1 + 2 * x, n - x);
+              blur0 + 2 * x, blur1 + 2 * x, apart, n - x);
 }

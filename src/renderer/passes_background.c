@@ -94,6 +94,7 @@ void rf_pass_mark_background(struct rf_frame *f, int levels)
                                  .background = r->background},
                         .levels = levels};
 
+    r->pyramid.apart = rf_layers_apart(f->params->max_blur_radius, f->focus.unit);
     rf_plane_read(&r->lifetimes, RF_PLANE_BLUR);
     rf_plane_read(&r->lifetimes, RF_PLANE_SMOOTH);
     mark_and_push(r, &mark);
@@ -132,11 +133,6 @@ static int same_surface(const struct rf_frame *f)
     return rf_larger((int)(f->params->max_blur_radius * (256.0f / 24)), 256) >> unit;
 }
 
-static int16_t apart_of(const struct rf_frame *f)
-{
-    return rf_layers_apart(f->params->max_blur_radius, f->focus.unit);
-}
-
 static void take_filled_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
@@ -154,8 +150,7 @@ static void pull_textured(struct rf_frame *f)
                                 &(struct rf_texture){.scratch = r->texture,
                                                      .transfer = &r->transfer[r->blend],
                                                      .same = same_surface(f),
-                                                     .unit = f->focus.unit,
-                                                     .apart = apart_of(f)});
+                                                     .unit = f->focus.unit});
     if (f->thin.disc_scale)
         rf_pool_run(&r->pool, take_filled_band, f, rf_bands(&r->view));
 }
@@ -170,11 +165,11 @@ void rf_pass_inpaint(struct rf_frame *f, int levels)
         rf_background_inpaint_yuv(&r->exec, &r->view, &r->pyramid,
                                   &(struct rf_inpaint_chroma){r->chroma.size, r->blur,
                                                               r->chroma.smooth,
-                                                              r->chroma.background, apart_of(f)});
+                                                              r->chroma.background});
     else if (f->textured)
         pull_textured(f);
     else
-        rf_background_pull(&r->exec, &r->view, &r->pyramid, 0, levels, apart_of(f));
+        rf_background_pull(&r->exec, &r->view, &r->pyramid, 0, levels);
     rf_plane_begin(&r->lifetimes, RF_PLANE_FOREGROUND);
     rf_pool_run(&r->pool, note_band, f, rf_bands(&r->view));
     if (f->bright != RF_WHITE && !f->splats)

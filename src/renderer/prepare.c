@@ -160,6 +160,7 @@ static void take_in_matte(struct refocus_renderer *r, const struct refocus_dispa
         .list = &r->photo.thin,
     };
 
+    r->pyramid.apart = RF_NEVER_APART;
     rf_matte_take_in(&pass);
     rf_planes_end(&r->lifetimes);
 }

@@ -158,6 +158,7 @@ static void mark(struct rf_frame *f)
     struct rf_in_place *in_place = &r->in_place;
 
     rf_pyramid_shape(&in_place->kept, r->photo.width, r->photo.height);
+    in_place->kept.apart = rf_layers_apart(f->params->max_blur_radius, f->focus.unit);
     for (int i = 0; i < blocks(r, in_place->mark_block) && !rf_cancelled(&r->exec); i++) {
         const struct rf_rect block = block_of(r, in_place->mark_block, i);
 
@@ -170,8 +171,7 @@ static void mark(struct rf_frame *f)
             keep_level(r, block);
     }
     rf_background_push(&r->exec, &in_place->kept, RF_KEPT, in_place->kept.levels);
-    rf_background_pull(&r->exec, &r->view, &in_place->kept, RF_KEPT, in_place->kept.levels,
-                       rf_layers_apart(f->params->max_blur_radius, f->focus.unit));
+    rf_background_pull(&r->exec, &r->view, &in_place->kept, RF_KEPT, in_place->kept.levels);
 }
 
 static void known_band(void *context, int band, int worker)
@@ -202,6 +202,7 @@ static void make_background(struct rf_frame *f)
     rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_BLUR);
     rf_plane_begin(&r->lifetimes, RF_PLANE_BACKGROUND_LIGHT);
     rf_plane_begin(&r->lifetimes, RF_PLANE_PYRAMID);
+    r->pyramid.apart = r->in_place.kept.apart;
     rf_pool_run(&r->pool, known_band, r, rf_bands(&r->view));
     own = *level;
     at = (r->view.y0 >> RF_KEPT) * kept->blur.stride + (r->view.x0 >> RF_KEPT);

@@ -84,7 +84,7 @@ static void measure_side(struct deviations *d, bool is_near)
     rf_background_push(pass->exec, pyramid, first, pyramid->levels);
     known = !rf_cancelled(pass->exec) && pyramid->level[pyramid->levels].blur.at[0] != RF_NO_BLUR;
     if (known)
-        rf_background_pull(pass->exec, pass->view, pyramid, first, pyramid->levels, RF_NEVER_APART);
+        rf_background_pull(pass->exec, pass->view, pyramid, first, pyramid->levels);
     for (int y = 0; y < d->level->height; y++)
         for (int x = 0; x < d->level->width; x++) {
             const int deviation =

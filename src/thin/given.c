@@ -104,7 +104,7 @@ static bool push_pull(struct side *side, bool of_light)
     rf_background_push(pass->exec, pyramid, 0, pyramid->levels);
     if (rf_cancelled(pass->exec) || pyramid->level[pyramid->levels].blur.at[0] == RF_NO_BLUR)
         return false;
-    rf_background_pull(pass->exec, pass->view, pyramid, 0, pyramid->levels, RF_NEVER_APART);
+    rf_background_pull(pass->exec, pass->view, pyramid, 0, pyramid->levels);
     return true;
 }
 

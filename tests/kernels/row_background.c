@@ -72,7 +72,8 @@ void expect_dilate_from(void *const *row, int parameter, int n)
 
 void run_mark(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
-    k->mark_foreground(row[0], row[1], row[2], parameter, n);
+    (void)parameter;
+    k->mark_foreground(row[0], row[1], row[2], n);
 }
 
 void expect_mark(void *const *row, int parameter, int n)
@@ -81,8 +82,9 @@ void expect_mark(void *const *row, int parameter, int n)
     const int16_t *blur = row[1];
     const uint16_t *dilated = row[2];
 
+    (void)parameter;
     for (int x = 0; x < n; x++) {
-        if (dilated[x] - 32768 > blur[x] + (128 >> parameter))
+        if (dilated[x] - 32768 > blur[x])
             background[x] = RF_NO_BLUR;
         else
             background[x] = blur[x];
@@ -96,32 +98,39 @@ void run_push(const struct rf_kernels *k, void *const *row, int parameter, int n
     const uint16_t *const upper[3] = {row[4], row[5], row[5]};
     const uint16_t *const lower[3] = {row[6], row[7], row[6]};
 
-    (void)parameter;
-    k->push(out, row[3], upper, lower, row[8], row[9], n);
+    k->push(out, row[3], upper, lower, row[8], row[9], (int16_t)parameter, n);
+}
+
+/* The mean of the children that count: those not far in front of the farthest. */
+static uint16_t expected_mean(const int *light, const int *blur, int apart, int *farthest)
+{
+    int sum = 0, count = 0;
+
+    *farthest = RF_NO_BLUR;
+    for (int i = 0; i < 4; i++)
+        *farthest = blur[i] > *farthest ? blur[i] : *farthest;
+    for (int i = 0; i < 4; i++)
+        if (blur[i] != RF_NO_BLUR && (apart == INT16_MAX || *farthest - blur[i] <= apart)) {
+            sum += light[i];
+            count++;
+        }
+    return count == 0 ? 0 : (uint16_t)((2 * sum + count) / (2 * count));
 }
 
 void expect_push(void *const *row, int parameter, int n)
 {
     static const int upper[3] = {4, 5, 5}, lower[3] = {6, 7, 6};
 
-    (void)parameter;
     for (int x = 0; x < n; x++) {
-        int sum[3] = {0}, count = 0, farthest = RF_NO_BLUR;
+        int light[4], blur[4], farthest;
 
-        for (int i = 0; i < 4; i++) {
-            const int at = 2 * x + i % 2;
-            const int blur = ((const int16_t *)row[8 + i / 2])[at];
-
-            if (blur == RF_NO_BLUR)
-                continue;
-            count++;
-            farthest = blur > farthest ? blur : farthest;
-            for (int c = 0; c < 3; c++)
-                sum[c] += ((const uint16_t *)row[i < 2 ? upper[c] : lower[c]])[at];
+        for (int i = 0; i < 4; i++)
+            blur[i] = ((const int16_t *)row[8 + i / 2])[2 * x + i % 2];
+        for (int c = 0; c < 3; c++) {
+            for (int i = 0; i < 4; i++)
+                light[i] = ((const uint16_t *)row[i < 2 ? upper[c] : lower[c]])[2 * x + i % 2];
+            ((uint16_t *)row[c])[x] = expected_mean(light, blur, parameter, &farthest);
         }
-        for (int c = 0; c < 3; c++)
-            ((uint16_t *)row[c])[x] =
-                count == 0 ? 0 : (uint16_t)((2 * sum[c] + count) / (2 * count));
         ((int16_t *)row[3])[x] = (int16_t)farthest;
     }
 }
@@ -194,26 +203,19 @@ void expect_pull_blur(void *const *row, int parameter, int n)
 
 void run_push1(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
-    (void)parameter;
-    k->push1(row[0], row[1], row[2], row[3], row[4], row[5], n);
+    k->push1(row[0], row[1], row[2], row[3], row[4], row[5], (int16_t)parameter, n);
 }
 
 void expect_push1(void *const *row, int parameter, int n)
 {
-    (void)parameter;
     for (int x = 0; x < n; x++) {
-        int sum = 0, count = 0, farthest = RF_NO_BLUR;
+        int light[4], blur[4], farthest;
 
         for (int i = 0; i < 4; i++) {
-            const int blur = ((const int16_t *)row[4 + i / 2])[2 * x + i % 2];
-
-            if (blur == RF_NO_BLUR)
-                continue;
-            count++;
-            farthest = blur > farthest ? blur : farthest;
-            sum += ((const uint16_t *)row[2 + i / 2])[2 * x + i % 2];
+            light[i] = ((const uint16_t *)row[2 + i / 2])[2 * x + i % 2];
+            blur[i] = ((const int16_t *)row[4 + i / 2])[2 * x + i % 2];
         }
-        ((uint16_t *)row[0])[x] = count == 0 ? 0 : (uint16_t)((2 * sum + count) / (2 * count));
+        ((uint16_t *)row[0])[x] = expected_mean(light, blur, parameter, &farthest);
         ((int16_t *)row[1])[x] = (int16_t)farthest;
     }
 }

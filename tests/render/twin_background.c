@@ -35,7 +35,7 @@ static void mark(struct twin *t)
 
             for (int q = 0; q < t->width && !foreground; q++)
                 foreground = fmax(down[y * t->width + q], up[y * t->width + q]) >
-                             t->blur[p] + 0.5 + abs(q - x) / 2.0;
+                             t->blur[p] + abs(q - x) / 2.0;
             t->background_blur[p] = foreground ? NAN : t->blur[p];
             for (int c = 0; c < 3; c++)
                 t->background[c][p] = t->smooth[c][p];
@@ -62,23 +62,37 @@ static struct level coarser(const struct level *fine)
     return coarse;
 }
 
-/* Parents: the mean of the known children's light, their farthest blur. */
-static void push(const struct level *fine, struct level *coarse)
+/* The children of a parent that are in the picture. Returns their number. */
+static int children(const struct level *fine, const struct level *coarse, int parent, int child[4])
+{
+    int n = 0;
+
+    for (int j = 0; j < 4; j++) {
+        const int x = parent % coarse->width * 2 + j % 2, y = parent / coarse->width * 2 + j / 2;
+
+        if (x < fine->width && y < fine->height)
+            child[n++] = y * fine->width + x;
+    }
+    return n;
+}
+
+/* Parents: the farthest blur of known children, and the mean of the light of those that are not
+ * far in front of it. */
+static void push(const struct level *fine, struct level *coarse, double apart)
 {
     for (int i = 0; i < coarse->width * coarse->height; i++) {
         double sum[3] = {0}, farthest = NAN;
-        int count = 0;
+        int child[4], count = 0;
+        const int n = children(fine, coarse, i, child);
 
-        for (int j = 0; j < 4; j++) {
-            const int x = i % coarse->width * 2 + j % 2, y = i / coarse->width * 2 + j / 2;
-            const int q = y * fine->width + x;
-
-            if (x >= fine->width || y >= fine->height || isnan(fine->plane[3][q]))
+        for (int j = 0; j < n; j++)
+            farthest = fmax(farthest, fine->plane[3][child[j]]);
+        for (int j = 0; j < n; j++) {
+            if (isnan(fine->plane[3][child[j]]) || farthest - fine->plane[3][child[j]] > apart)
                 continue;
             count++;
-            farthest = fmax(farthest, fine->plane[3][q]);
             for (int c = 0; c < 3; c++)
-                sum[c] += fine->plane[c][q];
+                sum[c] += fine->plane[c][child[j]];
         }
         for (int c = 0; c < 3; c++)
             coarse->plane[c][i] = sum[c] / count;
@@ -151,7 +165,7 @@ void twin_background(struct twin *t)
     mark(t);
     while (level[levels - 1].width > 1 || level[levels - 1].height > 1) {
         level[levels] = coarser(&level[levels - 1]);
-        push(&level[levels - 1], &level[levels]);
+        push(&level[levels - 1], &level[levels], t->K / 4);
         levels++;
     }
     while (--levels > 0) {

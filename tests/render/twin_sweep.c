@@ -212,13 +212,12 @@ static void sweep_strip(const struct twin *t, const struct twin_cells *cells,
     }
 }
 
-static void sweep_tile(const struct twin *t, const struct twin_cells *cells,
-                       const struct twin_plan *plan, const struct sets *sets, int tx, int ty,
-                       uint8_t *rgb)
+/* Sums of all pixels of a tile, for a blur of the hidden background. */
+static void sweep_for(const struct twin *t, const struct twin_cells *cells,
+                      const struct twin_plan *plan, const struct sets *sets, int x0, int y0,
+                      double background_blur, struct twin_sum out[TWIN_TILE * TWIN_TILE])
 {
-    const int x0 = tx * TWIN_TILE, y0 = ty * TWIN_TILE, set = set_for(sets, plan->reach);
-    const double background_blur =
-        t->background_blur[twin_at(t, x0 + TWIN_TILE / 2, y0 + TWIN_TILE / 2)];
+    const int set = set_for(sets, plan->reach);
     const double least = least_blur(plan, background_blur);
     const struct rows rows = rows_of(t, sets, least);
     const int strips = rows.count < TWIN_TILE / 2 ? 1 : 2;
@@ -229,17 +228,77 @@ static void sweep_tile(const struct twin *t, const struct twin_cells *cells,
                     (struct twin_strip){x0, y0 + i * TWIN_TILE / 2, TWIN_TILE / strips},
                     sets->ray[set], sets->count[set], background_blur, sums);
     soften(sums, rows.count, softness(t, plan, least));
-    for (int y = 0; y < TWIN_TILE && y0 + y < t->height; y++) {
-        for (int x = 0; x < TWIN_TILE && x0 + x < t->width; x++) {
-            struct twin_sum column[TWIN_TILE], own = sums[y * TWIN_TILE + x];
+    for (int i = 0; i < TWIN_TILE * TWIN_TILE; i++) {
+        struct twin_sum column[TWIN_TILE];
 
-            for (int k = 0; k < rows.count; k++)
-                column[k] = sums[k * TWIN_TILE + x];
-            if (rows.count < TWIN_TILE)
-                between(&rows, column, y, &own);
-            twin_encode(t, &own, rgb + 3 * ((y0 + y) * t->width + x0 + x));
-        }
+        for (int k = 0; k < rows.count; k++)
+            column[k] = sums[k * TWIN_TILE + i % TWIN_TILE];
+        out[i] = sums[i];
+        if (rows.count < TWIN_TILE)
+            between(&rows, column, i / TWIN_TILE, &out[i]);
     }
+}
+
+/* The blur of the hidden background at a corner of tiles: the mean of the four around, without
+ * those a quarter of the largest blur in front of the deepest. */
+static double corner_blur(const struct twin *t, int x, int y)
+{
+    const int last_x = (t->width - 1) / TWIN_TILE, last_y = (t->height - 1) / TWIN_TILE;
+    double blur[4], deepest = -INFINITY, sum = 0;
+    int count = 0;
+
+    for (int k = 0; k < 4; k++) {
+        const int tx = (int)fmin(fmax(x - 1 + k % 2, 0), last_x);
+        const int ty = (int)fmin(fmax(y - 1 + k / 2, 0), last_y);
+
+        blur[k] = t->background_blur[twin_at(t, tx * TWIN_TILE + TWIN_TILE / 2,
+                                             ty * TWIN_TILE + TWIN_TILE / 2)];
+        deepest = fmax(deepest, blur[k]);
+    }
+    for (int k = 0; k < 4; k++)
+        if (deepest - blur[k] <= t->K / 4) {
+            sum += blur[k];
+            count++;
+        }
+    return sum / count;
+}
+
+/* Adds the means of one corner with its weights, bilinear. */
+static void add_corner(struct twin_sum *total, const struct twin_sum *sum, int corner)
+{
+    for (int i = 0; i < TWIN_TILE * TWIN_TILE; i++) {
+        const double right = (i % TWIN_TILE + 0.5) / TWIN_TILE;
+        const double below = (i / TWIN_TILE + 0.5) / TWIN_TILE;
+        const double weight = (corner % 2 ? right : 1 - right) * (corner / 2 ? below : 1 - below);
+
+        for (int c = 0; c < 3; c++)
+            total[i].light[c] += weight * sum[i].light[c] / sum[i].weight;
+        total[i].weight += weight;
+    }
+}
+
+static void sweep_tile(const struct twin *t, const struct twin_cells *cells,
+                       const struct twin_plan *plan, const struct sets *sets, int tx, int ty,
+                       uint8_t *rgb)
+{
+    const int x0 = tx * TWIN_TILE, y0 = ty * TWIN_TILE;
+    struct twin_sum sums[TWIN_TILE * TWIN_TILE], total[TWIN_TILE * TWIN_TILE] = {{{0}, 0}};
+    double blur[4], least = INFINITY, most = -INFINITY;
+
+    for (int k = 0; k < 4; k++) {
+        blur[k] = corner_blur(t, tx + k % 2, ty + k / 2);
+        least = fmin(least, blur[k]);
+        most = fmax(most, blur[k]);
+    }
+    if (most - least <= 1)
+        sweep_for(t, cells, plan, sets, x0, y0, (least + most) / 2, total);
+    for (int k = 0; k < 4 && most - least > 1; k++) {
+        sweep_for(t, cells, plan, sets, x0, y0, blur[k], sums);
+        add_corner(total, sums, k);
+    }
+    for (int y = 0; y < TWIN_TILE && y0 + y < t->height; y++)
+        for (int x = 0; x < TWIN_TILE && x0 + x < t->width; x++)
+            twin_encode(t, &total[y * TWIN_TILE + x], rgb + 3 * ((y0 + y) * t->width + x0 + x));
 }
 
 void twin_sweep(struct twin *t, uint8_t *rgb)

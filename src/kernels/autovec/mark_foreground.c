@@ -4,13 +4,11 @@
 #include "kernels/lanes.h"
 
 void RF_VEC(rf_mark_foreground)(int16_t *restrict background_blur, const int16_t *restrict blur,
-                                const uint16_t *restrict dilated, int unit, int n)
+                                const uint16_t *restrict dilated, int n)
 {
-    const uint16_t half = (uint16_t)(128 >> unit);
-
     for (int x = 0; x < n; x++) {
         const uint16_t s = (uint16_t)((uint16_t)blur[x] ^ 0x8000);
-        const uint16_t foreground = (uint16_t)(rf_subs16(dilated[x], s) > half ? 0xffff : 0);
+        const uint16_t foreground = (uint16_t)(dilated[x] > s ? 0xffff : 0);
 
         background_blur[x] = (int16_t)((foreground & 0x8000) | (~foreground & (uint16_t)blur[x]));
     }

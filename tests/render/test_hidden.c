@@ -1,0 +1,117 @@
+/* test_hidden.c: what rays see of the hidden background beside the edge of a subject: nothing of
+ * the subject itself, and no borders of tiles. */
+#include "pictures.h"
+
+enum { WIDTH = 192, HEIGHT = 160, TILE = 16, MIDDLE = WIDTH / 2 };
+
+static struct refocus_renderer *prepare(const struct picture *p, float blur)
+{
+    struct refocus_renderer_params limits =
+        refocus_renderer_params_default(p->width, p->height, blur);
+    const struct refocus_image photo = picture_image(p);
+    const struct refocus_disparity map = picture_disparity(p);
+    struct refocus_renderer *renderer;
+
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+    assert_int_equal(refocus_prepare(renderer, &photo, &map), REFOCUS_OK);
+    return renderer;
+}
+
+static void render(struct refocus_renderer *renderer, float focus, float blur, int rays,
+                   uint8_t *rgb)
+{
+    const struct refocus_image out =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, WIDTH, HEIGHT, 3 * WIDTH);
+    struct refocus_render_params params = refocus_render_params_default(focus, blur);
+
+    params.rays = rays;
+    assert_int_equal(refocus_render(renderer, &params, &out), REFOCUS_OK);
+}
+
+/* A white subject in focus before a black wall: the wall stays black, however little its blur is.
+ * Its edge is vertical, or a diagonal. */
+static void stays_dark(void **state)
+{
+    static const int rays[] = {16, 64, 128, REFOCUS_RAYS_FULL};
+    uint8_t *rgb = malloc(3 * WIDTH * HEIGHT);
+
+    (void)state;
+    assert_non_null(rgb);
+    for (int diagonal = 0; diagonal < 2; diagonal++) {
+        struct picture p = picture_flat(WIDTH, HEIGHT, (const uint8_t[]){0, 0, 0}, 0);
+        struct refocus_renderer *renderer;
+
+        for (int i = 0; i < WIDTH * HEIGHT; i++)
+            if (i % WIDTH + (diagonal ? i / WIDTH - HEIGHT / 2 : 0) > MIDDLE) {
+                memset(p.rgb + 3 * i, 255, 3);
+                p.disparity[i] = 65535;
+            }
+        renderer = prepare(&p, 4);
+        for (int step = 0; step < 4 * 32; step++) {
+            const float blur = 0.25f + (float)(step / 4) * 0.05f;
+            int brightest = 0;
+
+            render(renderer, 1, blur, rays[step % 4], rgb);
+            for (int i = 0; i < WIDTH * HEIGHT; i++)
+                if (p.disparity[i] == 0 && rgb[3 * i] > brightest)
+                    brightest = rgb[3 * i];
+            if (brightest > 0)
+                fail_msg("%s edge, K = %g, %d rays: %d", diagonal ? "diagonal" : "vertical",
+                         (double)blur, rays[step % 4], brightest);
+        }
+        refocus_renderer_destroy(&renderer);
+        picture_free(&p);
+    }
+    free(rgb);
+}
+
+/* The largest step between columns `at` - 1 and `at` + 16 k behind the bar, beyond what the slopes
+ * on both sides make of it; in half codes. */
+static int largest_step(const uint8_t *rgb, int at)
+{
+    int most = 0;
+
+    for (int y = HEIGHT / 2 - TILE; y < HEIGHT / 2 + TILE; y++)
+        for (int x = 2 * TILE + at; x < WIDTH - 2 * TILE; x += TILE) {
+            const uint8_t *p = rgb + 3 * (y * WIDTH + x);
+            const int step = abs(2 * (p[0] - p[-3]) - (p[-3] - p[-6]) - (p[3] - p[0]));
+
+            most = step > most ? step : most;
+        }
+    return most;
+}
+
+/* A dark bar before a striped wall, of which one half is in focus: what rays see of the wall behind
+ * the blurred bar changes about as smoothly from tile to tile as within tiles. */
+static void has_no_seams(void **state)
+{
+    struct picture p = picture_flat(WIDTH, HEIGHT, (const uint8_t[]){0, 0, 0}, 0);
+    struct refocus_renderer *renderer;
+    uint8_t *rgb = malloc(3 * WIDTH * HEIGHT);
+    int within = 0;
+
+    (void)state;
+    assert_non_null(rgb);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const bool bar = abs(i / WIDTH - HEIGHT / 2) < TILE;
+
+        memset(p.rgb + 3 * i, bar ? 20 : i / WIDTH / 6 % 2 ? 60 : 220, 3);
+        p.disparity[i] = (uint16_t)(bar ? 65535 : i % WIDTH < MIDDLE - TILE / 2 ? 0 : 30000);
+    }
+    renderer = prepare(&p, 40);
+    render(renderer, 0, 40, 64, rgb);
+    for (int i = 1; i < TILE - 1; i++)
+        within = largest_step(rgb, i) > within ? largest_step(rgb, i) : within;
+    assert_in_range(largest_step(rgb, 0), 0, 2 * within);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+    free(rgb);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(stays_dark),
+                                       cmocka_unit_test(has_no_seams)};
+
+    return cmocka_run_group_tests_name("hidden", tests, NULL, NULL);
+}
