@@ -13,13 +13,15 @@
 #ifndef RF_CORNERS_H
 #define RF_CORNERS_H
 
+#include <stdbool.h>
+
 #include "gather/frame.h"
 
-enum { RF_CORNERS = 4 };
-
+/* The corners of a tile, rows first; those that hardly differ across or down are one. */
 struct rf_corners {
-    int count;            /* 1: they hardly differ, and one blur is enough */
-    int blur[RF_CORNERS]; /* rows first, as blurs are stored */
+    bool across, down; /* whether they differ */
+    int count;         /* 1, 2 or 4 */
+    int blur[4];       /* as blurs are stored */
 };
 
 void rf_find_corners(struct rf_corners *corners, const struct rf_frame *f, int tx, int ty);
@@ -30,8 +32,9 @@ struct rf_corner_layout {
     int across, down;
 };
 
-/* Adds the means for one corner to a sum, in which each corner replaces or continues the last. */
-void rf_add_corner(uint32_t *sum, const uint16_t *mean, int corner, struct rf_corner_layout layout);
+/* Adds the means for corner k to a sum, which the first of them begins. */
+void rf_add_corner(uint32_t *sum, const uint16_t *mean, const struct rf_corners *corners, int k,
+                   struct rf_corner_layout layout);
 
 /* Replaces means by those that were added up for all corners. */
 void rf_corner_means(uint16_t *mean, const uint32_t *sum, struct rf_corner_layout layout);

@@ -344,7 +344,7 @@ static void sweep_corners(const struct rf_frame *f, const struct rf_tile_plan *p
         else
             sweep_sums(f, plan, rays, corners->blur[k], tx, ty, share, mean, from, to);
         for (int c = from; c < to && corners->count > 1; c++)
-            rf_add_corner(share->corners[c], mean[c], k, pixels);
+            rf_add_corner(share->corners[c], mean[c], corners, k, pixels);
     }
     for (int c = from; c < to && corners->count > 1; c++)
         rf_corner_means(mean[c], share->corners[c], pixels);

@@ -328,8 +328,8 @@ static void sweep_corners(struct tile *tile, int tx, int ty, struct share *share
         else
             sweep_sums(tile, share, means);
         if (corners.count > 1) {
-            rf_add_corner(share->corners[0], means->luma, k, pixels);
-            rf_add_corner(share->corners[1], means->chroma, k, chroma);
+            rf_add_corner(share->corners[0], means->luma, &corners, k, pixels);
+            rf_add_corner(share->corners[1], means->chroma, &corners, k, chroma);
         }
     }
     if (corners.count > 1) {

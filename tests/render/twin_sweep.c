@@ -263,6 +263,12 @@ static double corner_blur(const struct twin *t, int x, int y)
     return sum / count;
 }
 
+/* Whether two blurs differ by more than a pixel and an eighth of the lesser. */
+static bool differ(double a, double b)
+{
+    return fabs(a - b) > 1 + fmin(fabs(a), fabs(b)) / 8;
+}
+
 /* Adds the means of one corner with its weights, bilinear. */
 static void add_corner(struct twin_sum *total, const struct twin_sum *sum, int corner)
 {
@@ -283,16 +289,20 @@ static void sweep_tile(const struct twin *t, const struct twin_cells *cells,
 {
     const int x0 = tx * TWIN_TILE, y0 = ty * TWIN_TILE;
     struct twin_sum sums[TWIN_TILE * TWIN_TILE], total[TWIN_TILE * TWIN_TILE] = {{{0}, 0}};
-    double blur[4], least = INFINITY, most = -INFINITY;
+    bool across, down;
+    double blur[4];
 
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; k++)
         blur[k] = corner_blur(t, tx + k % 2, ty + k / 2);
-        least = fmin(least, blur[k]);
-        most = fmax(most, blur[k]);
-    }
-    if (most - least <= 1)
-        sweep_for(t, cells, plan, sets, x0, y0, (least + most) / 2, total);
-    for (int k = 0; k < 4 && most - least > 1; k++) {
+    across = differ(blur[0], blur[1]) || differ(blur[2], blur[3]);
+    down = differ(blur[0], blur[2]) || differ(blur[1], blur[3]);
+    for (int i = 0; i < 2 && !across; i++)
+        blur[2 * i] = blur[2 * i + 1] = (blur[2 * i] + blur[2 * i + 1]) / 2;
+    for (int i = 0; i < 2 && !down; i++)
+        blur[i] = blur[i + 2] = (blur[i] + blur[i + 2]) / 2;
+    if (!across && !down)
+        sweep_for(t, cells, plan, sets, x0, y0, blur[0], total);
+    for (int k = 0; k < 4 && (across || down); k++) {
         sweep_for(t, cells, plan, sets, x0, y0, blur[k], sums);
         add_corner(total, sums, k);
     }
