@@ -59,9 +59,8 @@ static void encode(const struct rf_frame *f, struct rf_rect rect, const uint16_t
             out[y * f->out->stride[0] + x * o.bytes + o.a] = alpha[y * f->alpha.stride + x];
 }
 
-/* Writes means to a picture of any kind: those of 8 bits at most RF_MEAN_MAX. */
-static void encode_any(const struct rf_frame *f, struct rf_rect rect, const uint16_t *const mean[3],
-                       int pitch)
+void rf_encode_rows(const struct rf_frame *f, struct rf_rect rect, const uint16_t *const mean[3],
+                    int pitch)
 {
     if (f->deep_out->on)
         rf_encode_deep(f, rect, mean, NULL, pitch, 1);
@@ -76,13 +75,8 @@ static void encode_tile(const struct rf_frame *f, struct rf_rect rect,
 {
     const int at = rect.y0 % RF_TILE * RF_TILE + rect.x0 % RF_TILE;
 
-    encode_any(f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at},
-               RF_TILE);
-}
-
-void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3])
-{
-    encode_any(f, (struct rf_rect){x0, y, x0 + n, y + 1}, mean, 0);
+    rf_encode_rows(f, rect, (const uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at},
+                   RF_TILE);
 }
 
 void rf_encode_means(const struct rf_frame *f, struct rf_rect rect,

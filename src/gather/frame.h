@@ -188,8 +188,10 @@ struct rf_fine_means;
 void rf_encode_fine(const struct rf_frame *f, struct rf_rect rect,
                     uint16_t mean[3][RF_TILE * RF_TILE], struct rf_fine_means *fine);
 
-/* Writes n Q14 means, at most RF_MEAN_MAX, to row y from column x0 on. */
-void rf_encode_row(const struct rf_frame *f, int x0, int y, int n, const uint16_t *const mean[3]);
+/* Writes Q14 means, `pitch` from row to row, to a picture of any kind: those of 8 bits at most
+ * RF_MEAN_MAX. In one of 4:2:0 both rows that share samples of chroma are written at once. */
+void rf_encode_rows(const struct rf_frame *f, struct rf_rect rect, const uint16_t *const mean[3],
+                    int pitch);
 
 /* Copies the pixels of a tile that is sharp: they come out as they went in. */
 void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect);

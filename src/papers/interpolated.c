@@ -12,7 +12,10 @@
 #include <assert.h>
 #include <math.h>
 
-enum { SECOND = 1 << 15 };
+enum {
+    SECOND = 1 << 15,
+    ROWS = 2, /* rows of a work item: two of a P010 picture share samples of chroma */
+};
 
 struct work {
     struct rf_frame *f;
@@ -156,27 +159,45 @@ static void interpolate(uint16_t *restrict mean, const uint16_t *restrict light,
     }
 }
 
-static void write_row(void *context, int item, int worker)
+/* Computes the means of row y of the region. Works in four rows of scratch. */
+static void mean_row(const struct work *work, int y, int16_t *scratch, uint16_t *const mean[3])
 {
-    const struct work *work = context;
     const struct rf_frame *f = work->f;
-    const int y = f->region.y0 + item, x0 = f->region.x0, n = f->region.x1 - x0;
+    const int x0 = f->region.x0, n = f->region.x1 - x0;
     const size_t length = (size_t)work->making.row_length;
-    int16_t *row = (int16_t *)(void *)rf_target_scratch(&work->making, worker);
-    int16_t *middle = row + length, *last = middle + length;
-    uint16_t *share = (uint16_t *)(last + length), *means = share + length;
-    const uint16_t *d = f->disparity.at + y * f->view->stride + x0, *mean[3];
+    int16_t *row = scratch, *middle = row + length, *last = middle + length;
+    uint16_t *share = (uint16_t *)(last + length);
+    const uint16_t *d = f->disparity.at + y * f->view->stride + x0;
 
     for (int x = 0; x < n; x++)
         share[x] = work->share[(d[x] * (RF_BLURRINESS_SIZE - 1u) + 32767) >> 16];
     for (int c = 0; c < 3; c++) {
         enlarged_row(&work->target[0], c, y, row + 1, middle);
         enlarged_row(&work->target[1], c, y, row + 1, last);
-        interpolate(means + (size_t)c * length, f->light.channel[c] + y * f->view->stride + x0,
-                    middle + x0, last + x0, share, n);
-        mean[c] = means + (size_t)c * length;
+        interpolate(mean[c], f->light.channel[c] + y * f->view->stride + x0, middle + x0, last + x0,
+                    share, n);
     }
-    rf_encode_row(f, x0, y, n, mean);
+}
+
+static_assert((4 + 3 * ROWS) * sizeof(int16_t) <= RF_TARGET_ROWS * sizeof(float),
+              "scratch of a thread holds the means of all rows of an item");
+static void write_rows(void *context, int item, int worker)
+{
+    const struct work *work = context;
+    const struct rf_frame *f = work->f;
+    const int y0 = f->region.y0 + ROWS * item, y1 = rf_smaller(y0 + ROWS, f->region.y1);
+    const size_t length = (size_t)work->making.row_length;
+    int16_t *scratch = (int16_t *)(void *)rf_target_scratch(&work->making, worker);
+    uint16_t *first = (uint16_t *)(scratch + 4 * length);
+    uint16_t *mean[3] = {first, first + ROWS * length, first + 2 * ROWS * length};
+
+    for (int y = y0; y < y1; y++) {
+        const size_t at = (size_t)(y - y0) * length;
+
+        mean_row(work, y, scratch, (uint16_t *const[3]){mean[0] + at, mean[1] + at, mean[2] + at});
+    }
+    rf_encode_rows(f, (struct rf_rect){f->region.x0, y0, f->region.x1, y1},
+                   (const uint16_t *const[3]){mean[0], mean[1], mean[2]}, (int)length);
 }
 
 /* Turns the table into shares of the way from one target to the next. */
@@ -212,7 +233,7 @@ static void render_frame(struct rf_frame *f)
     rf_target_make(&work->making, &work->target[0], middle);
     if (!rf_cancelled(f->exec))
         rf_target_make(&work->making, &work->target[1], last);
-    rf_pool_run(f->exec->pool, write_row, work, f->region.y1 - f->region.y0);
+    rf_pool_run(f->exec->pool, write_rows, work, (f->region.y1 - f->region.y0 + ROWS - 1) / ROWS);
 }
 
 const struct rf_method rf_interpolated_method = {.frame = render_frame, .work_bytes = work_bytes};
