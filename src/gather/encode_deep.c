@@ -40,9 +40,10 @@ static bool is_in_focus(const struct rf_frame *f, int x, int y)
 static bool light_of(const struct rf_frame *f, const struct means *m, int x, int y, float light[3])
 {
     const struct rf_deep *in = f->deep;
+    const struct rf_light_q12 hit = rf_hit_light(f);
     const ptrdiff_t at = (y - m->rect.y0) * m->pitch + x - m->rect.x0;
     const bool same = in->on && (is_own(&f->light, m, at, x, y) ||
-                                 (is_in_focus(f, x, y) && is_own(&f->smooth, m, at, x, y)));
+                                 (is_in_focus(f, x, y) && is_own(&hit, m, at, x, y)));
 
     if (same)
         rf_deep_light(in, f->view->x0 + x, f->view->y0 + y, light);

@@ -122,6 +122,12 @@ static inline struct rf_light_q12 rf_searched_light(const struct rf_frame *f)
     return f->yuv->on || rf_searches_subtracted(f) ? f->smooth : f->light;
 }
 
+/* The light that rays see where they hit: no other method than the sweep takes pre-filtered one. */
+static inline struct rf_light_q12 rf_hit_light(const struct rf_frame *f)
+{
+    return rf_is_sweep(f) ? f->smooth : rf_searched_light(f);
+}
+
 /* Whether rays skip the test of the deepest surface in reach and see the background layer there:
  * kernels->sort_rays. */
 static inline bool rf_skips_deepest_test(const struct rf_frame *f)

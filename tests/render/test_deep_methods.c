@@ -56,8 +56,41 @@ static void chroma(void **state)
     free(photo.memory);
 }
 
+/* The search makes the same of a photo whatever the renderer showed before, also where that was
+ * just what the search makes of it. */
+static void search_again(void **state)
+{
+    static uint16_t disparity[SIDE * SIDE];
+    const struct refocus_disparity map = refocus_disparity16(disparity, SIDE, SIDE, 2 * SIDE);
+    struct deep photo = deep_make(REFOCUS_FORMAT_RGB16, SIDE, SIDE);
+    struct deep first = deep_make(REFOCUS_FORMAT_RGB16, SIDE, SIDE);
+    struct deep again = deep_make(REFOCUS_FORMAT_RGB16, SIDE, SIDE);
+    struct refocus_renderer *renderer = renderer_of_all(1);
+    uint32_t seed = 5;
+
+    (void)state;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const float grey = (float)((seed = seed * 1664525 + 1013904223) >> 16) / 65535;
+
+        disparity[i] = i % SIDE < SIDE / 2 ? 65535 : 30000;
+        for (int c = 0; c < 3; c++)
+            deep_put(&photo, i % SIDE, i / SIDE, c, grey);
+    }
+    assert_int_equal(refocus_prepare(renderer, &photo.image, &map), REFOCUS_OK);
+    render(renderer, REFOCUS_METHOD_SEARCH, 0.45f, 8, &first.image);
+    assert_int_equal(refocus_prepare(renderer, &first.image, &map), REFOCUS_OK);
+    render(renderer, REFOCUS_METHOD_SWEEP, 0.45f, 1, &again.image);
+    assert_int_equal(refocus_prepare(renderer, &photo.image, &map), REFOCUS_OK);
+    render(renderer, REFOCUS_METHOD_SEARCH, 0.45f, 8, &again.image);
+    assert_memory_equal(again.memory, first.memory, first.size);
+    refocus_renderer_destroy(&renderer);
+    free(photo.memory);
+    free(first.memory);
+    free(again.memory);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(chroma)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(chroma), cmocka_unit_test(search_again)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
