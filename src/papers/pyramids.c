@@ -6,6 +6,13 @@
 
 enum { CHANNELS = RF_PYRAMID_CHANNELS, LEVELS = RF_PYRAMID_LEVELS };
 
+/* Sample x of level i is at x 2^i of the picture, and the last one of each level where the picture
+ * ends, or beyond: 97 and 96 pixels have 49 samples in level 1, 25 in level 2. */
+static int half_of(int length)
+{
+    return length / 2 + 1;
+}
+
 static void size_levels(struct rf_pyramids *work, int width, int height)
 {
     for (work->levels = 0; work->levels < LEVELS; work->levels++) {
@@ -13,8 +20,8 @@ static void size_levels(struct rf_pyramids *work, int width, int height)
             work->pyramid[side][work->levels].width = width;
             work->pyramid[side][work->levels].height = height;
         }
-        width = (width + 1) / 2;
-        height = (height + 1) / 2;
+        width = half_of(width);
+        height = half_of(height);
     }
 }
 
@@ -32,7 +39,7 @@ void rf_pyramids_lay_out(struct rf_pyramids *work, const struct rf_limits *limit
             }
     for (int c = 0; c < CHANNELS; c++)
         work->half[c] = rf_arena_take(
-            arena, (uint64_t)((limits->width + 1) / 2) * (uint64_t)limits->height, sizeof(float));
+            arena, (uint64_t)half_of(limits->width) * (uint64_t)limits->height, sizeof(float));
 }
 
 /* Writes a row of level 0: pixels before the focus in one pyramid, pixels behind it in the other.

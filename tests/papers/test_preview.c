@@ -103,8 +103,53 @@ static void volume(void **state)
     picture_free(&p);
 }
 
+/* Renders a photo all of which is behind the focus, blurred by a radius. */
+static void render_far(const struct picture *far, float blur, float angle, uint8_t *out)
+{
+    struct refocus_renderer *renderer = prepared(far, blur, 1);
+    struct refocus_settings params = refocus_settings_default(1, blur);
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, out, far->width, far->height, 3 * far->width);
+
+    params.render.method = REFOCUS_METHOD_FOVEATED;
+    params.foveated.angle = angle;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
+    refocus_renderer_destroy(&renderer);
+}
+
+/* The fast technique treats all borders alike: a photo turned upside down becomes the picture
+ * upside down, to within what the places of samples do, whatever the size. */
+static void turned(void **state)
+{
+    enum { MOST = 97 };
+    static const float blurs[] = {5, 20, 60};
+    static const uint8_t black[3];
+    static uint8_t out[3 * MOST * MOST], back[3 * MOST * MOST];
+
+    (void)state;
+    for (int k = 0; k < 12; k++) {
+        const int side = MOST - k / 3, last = side * side - 1;
+        struct picture p = picture_flat(side, side, black, 0);
+        struct picture other = picture_flat(side, side, black, 0);
+
+        for (int i = 0; i < 3 * side * side; i++) {
+            const int x = i / 3 % side, y = i / 3 / side;
+
+            p.rgb[i] = (uint8_t)(128 + 100 * sin(x * 0.11 + i % 3) * cos(y * 0.07));
+            other.rgb[3 * (last - i / 3) + i % 3] = p.rgb[i];
+        }
+        render_far(&p, blurs[k % 3], 0, out);
+        render_far(&other, blurs[k % 3], 0, back);
+        for (int i = 0; i < 3 * side * side; i++)
+            assert_in_range(out[i] + 20 - back[3 * (last - i / 3) + i % 3], 0, 40);
+        picture_free(&p);
+        picture_free(&other);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(table), cmocka_unit_test(volume)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(table), cmocka_unit_test(volume),
+                                       cmocka_unit_test(turned)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
