@@ -1,12 +1,11 @@
 /* foveated.c: exact where one looks, fast elsewhere, Mulder & van Liere 2000.
  *
  * The centre of attention volume is a cone about the line of sight, cut at two depths.
- * In it the "high resolution" technique works: circles of confusion of diameter 1, 3,
- * 5, ... are spread as uniform discs, all samples whose circle holds a pixel, front to
- * back: the borders of the discs before the focus from the outermost in, the middle,
- * then those behind it from the innermost out. Alpha saturates, so nothing gets too
- * bright, and the alpha that is missing at the end comes from the picture (hypo-intensity
- * correction).
+ * In it the "high resolution" technique works: circles of confusion, of the diameter of 1, 3,
+ * 5, ... that is nearest to theirs, are spread as uniform discs, all samples whose circle holds a
+ * pixel, front to back: the borders of the discs before the focus from the outermost in, the
+ * middle, then those behind it from the innermost out. Alpha saturates, so nothing gets too bright,
+ * and the alpha that is missing at the end comes from the picture (hypo-intensity correction).
  *
  * Outside, two Gaussian pyramids are read, see pyramids.h.
  *
@@ -70,10 +69,11 @@ static uint64_t work_bytes(const struct rf_limits *limits)
     return arena.used;
 }
 
-/* The border b of the disc that a signed blur has: its diameter is 2 b + 1. */
+/* The border b of the disc that a signed blur has: its diameter 2 b + 1 is the odd number nearest
+ * to 2 r. Radii of 3.0 to 3.9 have discs of diameter 7, those below 1 are sharp. */
 static int border_of(int s)
 {
-    return ((s < 0 ? -s : s) + 128) >> 8;
+    return (s < 0 ? -s : s) >> 8;
 }
 
 /* A pixel (x, y) lies in border b if its middle is in the disc of diameter 2 b + 1 and in no
@@ -124,7 +124,7 @@ static void blend_border(const struct work *work, ptrdiff_t p, int b, int sign, 
         const ptrdiff_t q = p + work->offset[i].y * work->f->view->stride + work->offset[i].x;
         const int s = work->f->blur.at[q] * sign;
 
-        if (s >= 128 && border_of(s) >= b)
+        if (s > 0 && border_of(s) >= b)
             blend(work->f, q, work->alpha[border_of(s)], sums);
     }
 }

@@ -147,9 +147,34 @@ static void turned(void **state)
     }
 }
 
+/* The exact technique spreads a point of light over the pixels whose middles are in a disc of an
+ * odd diameter, that which is nearest to the circle of confusion's. */
+static void diameters(void **state)
+{
+    enum { SIDE = 41, MIDDLE = SIDE / 2 };
+    static const uint8_t black[3];
+    static uint8_t out[3 * SIDE * SIDE];
+
+    (void)state;
+    for (float r = 0.25f; r < 12; r += 0.25f) {
+        struct picture p = picture_flat(SIDE, SIDE, black, 0);
+        int widest = 0;
+
+        memset(p.rgb + 3 * (MIDDLE * SIDE + MIDDLE), 255, 3);
+        render_far(&p, r, 165, out);
+        while (out[3 * (MIDDLE * SIDE + MIDDLE + widest + 1)])
+            widest++;
+        assert_true(fabsf((float)(2 * widest + 1) - 2 * r) <= 1);
+        for (int i = 0; i < SIDE * SIDE; i++)
+            assert_int_equal(out[3 * i] > 0,
+                             hypot(i % SIDE - MIDDLE, i / SIDE - MIDDLE) < widest + 0.5);
+        picture_free(&p);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(table), cmocka_unit_test(volume),
-                                       cmocka_unit_test(turned)};
+                                       cmocka_unit_test(turned), cmocka_unit_test(diameters)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
