@@ -38,7 +38,7 @@ struct rf_cat_eye_here {
 };
 
 /* Makes the aperture at (x, y) from the middle of a picture. `corner` is the squared distance from
- * there to a corner, where d is `amount`, Q16. */
+ * there to a corner, where d is `amount`, Q16; (x, y) is no farther. */
 void rf_cat_eye_at(const struct rf_cat_eye *eye, int64_t x, int64_t y, int64_t corner, int amount,
                    struct rf_cat_eye_here *here);
 

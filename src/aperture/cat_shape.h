@@ -41,7 +41,7 @@ struct rf_cat_shape_here {
 };
 
 /* Makes the cut shape at (x, y) from the middle of a picture, not both 0. `corner` is the squared
- * distance from there to a corner, where d is `amount`, Q16, below 1. */
+ * distance from there to a corner, where d is `amount`, Q16, below 1; (x, y) is no farther. */
 void rf_cat_shape_at(const struct rf_cat_shape *shape, int64_t x, int64_t y, int64_t corner,
                      int amount, struct rf_cat_shape_here *here);
 

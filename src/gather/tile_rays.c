@@ -24,13 +24,16 @@ void rf_tile_rays_make(struct rf_tile_rays *rays, const struct rf_frame *f,
         /* Twice the distances of the tile from the middle of the photo. */
         const int64_t x = 2 * f->view->x0 + (2 * tx + 1) * RF_TILE - w;
         const int64_t y = 2 * f->view->y0 + (2 * ty + 1) * RF_TILE - h;
+        const int64_t square = x * x + y * y, last = w * w + h * h;
+        /* The middle of a tile that ends beyond the photo may lie beyond its corner. */
+        const int64_t corner = square > last ? square : last;
         const int amount = (int)floorf(f->params->cat_eye * 65536 + 0.5f);
 
-        rf_cat_eye_at(f->cat_eye, x, y, w * w + h * h, amount, &rays->eye);
+        rf_cat_eye_at(f->cat_eye, x, y, corner, amount, &rays->eye);
         rays->has_eye = !rays->eye.is_round;
         rays->shape = f->cat_shape->is_there ? f->cat_shape : NULL;
         if (rays->has_eye && rays->shape)
-            rf_cat_shape_at(rays->shape, x, y, w * w + h * h, amount, &rays->cut);
+            rf_cat_shape_at(rays->shape, x, y, corner, amount, &rays->cut);
     }
 }
 

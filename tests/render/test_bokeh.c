@@ -175,6 +175,41 @@ static void cat_eye(void **state)
     about("light of a cat's eye", disc.all, 25, 0.04);
 }
 
+/* An aperture loses no more than its amount where the middle of the last tile lies beyond the
+ * corner: of a width of 1 pixel and a height of 4.4 that is left, no pixel keeps a half. */
+static void cat_eye_in_the_corner(void **state)
+{
+    enum { SIDE = 36, AT = SIDE - 3 };
+    static const uint8_t black[3];
+    static uint8_t codes[3 * SIDE * SIDE];
+    struct picture p = picture_flat(SIDE, SIDE, black, 0);
+    struct refocus_renderer *renderer;
+    const struct refocus_image small =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, codes, SIDE, SIDE, 3 * SIDE);
+
+    (void)state;
+    memset(p.rgb + 3 * (AT * SIDE + AT), 255, 3);
+    renderer = prepared(&p, 5, 1);
+    for (int blades = 0; blades <= 6; blades += 6) {
+        struct refocus_settings params = refocus_settings_default(1, 5);
+        struct refocus_aperture *aperture = NULL;
+
+        if (blades)
+            assert_int_equal(refocus_aperture_create_polygon(&aperture, blades, 0), 0);
+        params.render.aperture = aperture;
+        params.render.blend = REFOCUS_BLEND_STORED;
+        params.render.rays = 512;
+        params.render.prefilter = 0;
+        params.highlights.gain = 1;
+        params.look.cat_eye = 0.9f;
+        assert_int_equal(refocus_render_settings(renderer, &params, &small), REFOCUS_OK);
+        assert_in_range(codes[3 * (AT * SIDE + AT)], 20, 127);
+        refocus_aperture_destroy(&aperture);
+    }
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
 static void fringes(void **state)
 {
     struct refocus_settings params = twelve();
@@ -421,14 +456,19 @@ static void refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hearts),      cmocka_unit_test(sides),
-        cmocka_unit_test(squeezed),    cmocka_unit_test(cat_eye),
-        cmocka_unit_test(fringes),     cmocka_unit_test(stops),
-        cmocka_unit_test(star),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(hearts),
+                                       cmocka_unit_test(sides),
+                                       cmocka_unit_test(squeezed),
+                                       cmocka_unit_test(cat_eye),
+                                       cmocka_unit_test(cat_eye_in_the_corner),
+                                       cmocka_unit_test(fringes),
+                                       cmocka_unit_test(stops),
+                                       cmocka_unit_test(star),
 
-        cmocka_unit_test(regions),     cmocka_unit_test(strips_and_sequences),
-        cmocka_unit_test(changed_map), cmocka_unit_test(refused)};
+                                       cmocka_unit_test(regions),
+                                       cmocka_unit_test(strips_and_sequences),
+                                       cmocka_unit_test(changed_map),
+                                       cmocka_unit_test(refused)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
