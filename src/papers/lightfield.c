@@ -3,8 +3,8 @@
  * Each ray (u, v) of the aperture is a camera. The picture is warped forward to it: pixel q
  * goes to p = q - (u, v) s(q), which is eq. 4 read backwards; where several go to one place
  * the nearest stays. Places that nothing went to are holes: they get the colour of the
- * farther of the two ends of the hole in their row. Each view is added up at once, so
- * no view is stored: O(N) memory, as the paper notes.
+ * farther of the two ends of the hole in their row, or the mean of both where they are as
+ * far. Each view is added up at once, so no view is stored: O(N) memory, as the paper notes.
  *
  * The picture is done in bands of rows, all views of a band by one thread. A view is stored
  * as the blur s of the pixel that was seen, which also tells its place, p + (u, v) s.
@@ -74,40 +74,67 @@ static void warp(const struct rf_frame *f, const struct refocus_ray *ray, int y0
     }
 }
 
-static void add(const struct rf_frame *f, const struct refocus_ray *ray, ptrdiff_t q, int at,
-                struct band *band)
+/* The pixel of the photo that a place p of a row of the view shows, which is no hole. */
+static ptrdiff_t shown_at(const struct rf_frame *f, const struct refocus_ray *ray, int y,
+                          const int16_t *seen, int p)
 {
-    const uint64_t w = (uint64_t)rf_weight_of(f, f->light.channel, q) * ray->weight;
+    return (y + rf_offset(ray->v, seen[p])) * f->view->stride + p + rf_offset(ray->u, seen[p]);
+}
+
+/* Adds a part of the ray's weight, of which there are two. */
+static void add(const struct rf_frame *f, const struct refocus_ray *ray, int parts, ptrdiff_t q,
+                ptrdiff_t at, struct band *band)
+{
+    const uint64_t w =
+        (uint64_t)rf_weight_of(f, f->light.channel, q) * ray->weight * (unsigned)parts;
 
     band->weight[at] += w;
     for (int c = 0; c < 3; c++)
         band->light[c][at] += w * f->light.channel[c][q];
 }
 
+/* Fills the hole x0 .. x1 - 1 of a row. */
+static void add_hole(const struct rf_frame *f, const struct refocus_ray *ray, int y, int row,
+                     int x0, int x1, struct band *band)
+{
+    const ptrdiff_t first = (ptrdiff_t)row * f->view->width;
+    const int16_t *seen = band->seen + first;
+    const bool has_left = x0 > 0, has_right = x1 < f->view->width;
+    int left = x0 - 1, right = x1;
+
+    if (!has_left && !has_right) { /* nothing came to this row at all */
+        for (int x = x0; x < x1; x++)
+            add(f, ray, 2, y * f->view->stride + x, first + x, band);
+        return;
+    }
+    if (!has_left || (has_right && seen[right] > seen[left]))
+        left = right;
+    if (!has_right || (has_left && seen[left] > seen[right]))
+        right = left;
+    for (int x = x0; x < x1; x++) {
+        add(f, ray, 1, shown_at(f, ray, y, seen, left), first + x, band);
+        add(f, ray, 1, shown_at(f, ray, y, seen, right), first + x, band);
+    }
+}
+
 /* Adds a row of a view to the sums, with its holes filled. */
 static void add_row(const struct rf_frame *f, const struct refocus_ray *ray, int y, int row,
                     struct band *band)
 {
-    const int16_t *seen = band->seen + row * f->view->width;
+    const ptrdiff_t first = (ptrdiff_t)row * f->view->width;
+    const int16_t *seen = band->seen + first;
 
     for (int x = 0; x < f->view->width;) {
-        int end = x, from = x;
+        int end = x;
 
         while (end < f->view->width && seen[end] == HOLE)
             end++;
-        if (end > x) { /* x .. end - 1 is a hole */
-            from = x > 0 && (end == f->view->width || seen[x - 1] >= seen[end]) ? x - 1 : end;
-            if (x == 0 && end == f->view->width)
-                from = -1; /* nothing came to this row at all */
+        if (end > x) {
+            add_hole(f, ray, y, row, x, end, band);
+            x = end;
         } else {
-            end = x + 1;
-        }
-        for (; x < end; x++) {
-            const int p = from < 0 ? x : seen[x] == HOLE ? from : x;
-            const int s = from < 0 ? 0 : seen[p];
-
-            add(f, ray, (y + rf_offset(ray->v, s)) * f->view->stride + p + rf_offset(ray->u, s),
-                row * f->view->width + x, band);
+            add(f, ray, 2, shown_at(f, ray, y, seen, x), first + x, band);
+            x++;
         }
     }
 }

@@ -175,10 +175,38 @@ static void pyramids_fall_off(void **state)
     picture_free(&p);
 }
 
+/* The light field takes what is hidden from both sides alike, where both are as far: a pole before
+ * a wall that is red to its left and blue to its right leaves as much of either. */
+static void both_sides(void **state)
+{
+    static const uint8_t black[3];
+    static uint8_t out[3 * W * H];
+    struct picture p = picture_flat(W, H, black, 0);
+    struct refocus_renderer *renderer;
+    double red = 0, blue = 0;
+
+    (void)state;
+    for (int i = 0; i < W * H; i++) {
+        if (abs(2 * (i % W) - (W - 1)) < 5) /* four pixels */
+            p.disparity[i] = 65535;
+        else
+            p.rgb[3 * i + (i % W < W / 2 ? 0 : 2)] = 255;
+    }
+    renderer = prepared(&p, K, 1);
+    render(renderer, REFOCUS_METHOD_LIGHTFIELD, out);
+    for (int i = 0; i < W * H; i++) {
+        red += out[3 * i];
+        blue += out[3 * i + 2];
+    }
+    assert_true(fabs(red - blue) < 0.001 * red);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_plane), cmocka_unit_test(triangle),
-                                       cmocka_unit_test(falls_off),
-                                       cmocka_unit_test(pyramids_fall_off)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_plane), cmocka_unit_test(triangle), cmocka_unit_test(falls_off),
+        cmocka_unit_test(pyramids_fall_off), cmocka_unit_test(both_sides)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
