@@ -13,9 +13,12 @@ extern "C" {
 
 /** The edges of a map of disparities. */
 enum refocus_depth_edges {
-    REFOCUS_DEPTH_EDGES_AS_GIVEN = 0, /**< every edge where the map has it. 8-bit maps of the
-                                           photo's size are smoothed over steps of one code, by
-                                           less than a code */
+    REFOCUS_DEPTH_EDGES_AS_GIVEN = 0, /**< every edge where the map has it. Maps of the photo's
+                                           size that use 32 to 320 codes, as those of 8 bits do and
+                                           those of 16 that were made of 8, are smoothed over steps
+                                           from one of them to the next, by less than a step; not
+                                           where a tenth of these are wider than 1/64, or codes have
+                                           fewer than 64 pixels each */
     REFOCUS_DEPTH_EDGES_AUTO = 1,     /**< refocus_depth_edges() of depth_edges.h: where the map is
                                            soft, coarse or beside the photo, its edges go to the
                                            photo's. A renderer has to be made for it:
