@@ -16,6 +16,7 @@
 
 #include <string.h>
 
+#include "highlights/light_pyramid.h"
 #include "support/compare.h"
 
 enum { SIDE = 128 /* cells along the longer side, at most */ };
@@ -86,30 +87,6 @@ static void add_up(const struct rf_highlights *highlights, const struct cells *c
     }
 }
 
-/* Smooths a line of cells by 1 2 1; its ends repeat. */
-static void smooth_line(float *at, int count, int step)
-{
-    float before = at[0];
-
-    for (int i = 0; i < count; i++) {
-        const float own = at[(ptrdiff_t)i * step];
-        const float after = at[(ptrdiff_t)rf_smaller(i + 1, count - 1) * step];
-
-        at[(ptrdiff_t)i * step] = (before + 2 * own + after) * 0.25f;
-        before = own;
-    }
-}
-
-static void smooth(const struct cells *cells)
-{
-    for (int times = 0; times < 2; times++) {
-        for (int y = 0; y < cells->down; y++)
-            smooth_line(cells->at + (ptrdiff_t)y * cells->across, cells->across, 1);
-        for (int x = 0; x < cells->across; x++)
-            smooth_line(cells->at + x, cells->down, cells->across);
-    }
-}
-
 /* Replaces the sums by how many times as much light there should be; remembers how much that is. */
 static void follow(const struct cells *cells, float *last, float keep)
 {
@@ -157,7 +134,8 @@ void rf_steady_highlights(struct rf_highlights *highlights, struct rf_last_light
     const size_t bytes = (size_t)cells.across * (size_t)cells.down * sizeof *scratch;
 
     add_up(highlights, &cells);
-    smooth(&cells);
+    for (int times = 0; times < 2; times++)
+        rf_pyramid_smooth(cells.at, cells.across, cells.down);
     if (memcmp(&last->of, frame, sizeof *frame) != 0) {
         last->of = *frame;
         last->frames = 1;
