@@ -3,6 +3,7 @@
 
 #include "aperture/aperture.h"
 #include "kernels/kernels.h"
+#include "support/places.h"
 
 #include <assert.h>
 #include <limits.h>
@@ -40,39 +41,13 @@ static bool are_equal(const struct rf_ray_set *set)
 }
 
 /* Orders rays by weight, so that there are few runs of equal weight, then down and across. */
-static bool comes_before(const struct refocus_ray *a, const struct refocus_ray *b)
+static bool comes_after(const void *a, const void *b)
 {
-    if (a->weight != b->weight)
-        return a->weight < b->weight;
-    return a->v != b->v ? a->v < b->v : a->u < b->u;
-}
+    const struct refocus_ray *p = a, *q = b;
 
-static void sift_down(struct refocus_ray *ray, int root, int count)
-{
-    const struct refocus_ray moved = ray[root];
-
-    for (int child; (child = 2 * root + 1) < count; root = child) {
-        if (child + 1 < count && comes_before(&ray[child], &ray[child + 1]))
-            child++;
-        if (!comes_before(&moved, &ray[child]))
-            break;
-        ray[root] = ray[child];
-    }
-    ray[root] = moved;
-}
-
-/* Sorts by a heap, which works in place. */
-static void sort_rays(struct refocus_ray *ray, int count)
-{
-    for (int root = count / 2 - 1; root >= 0; root--)
-        sift_down(ray, root, count);
-    for (int end = count - 1; end > 0; end--) {
-        const struct refocus_ray last = ray[end];
-
-        ray[end] = ray[0];
-        ray[0] = last;
-        sift_down(ray, 0, end);
-    }
+    if (p->weight != q->weight)
+        return p->weight > q->weight;
+    return p->v != q->v ? p->v > q->v : p->u > q->u;
 }
 
 /* Makes the rays that chroma shares the first ones of each chunk. In sets that lie on spirals or
@@ -126,7 +101,7 @@ static void make_full_set(struct rf_ray_sets *sets, const struct refocus_apertur
 
     set->ray = set->before = sets->memory;
     set->count = rf_aperture_full_rays(aperture, max_blur_radius, RF_FULL_RAYS, sets->memory, run);
-    sort_rays(set->ray, set->count);
+    rf_sort(set->ray, (uint32_t)set->count, sizeof *set->ray, comes_after);
     set->total_weight = total_weight(set);
     set->equal = are_equal(set);
     set->u = set->v = NULL;

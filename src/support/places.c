@@ -32,7 +32,7 @@ static uint8_t *at(void *list, uint32_t i, size_t size)
 }
 
 /* Lets entry i of a heap of n sink to where it belongs. */
-static void sink(void *list, uint32_t i, uint32_t n, size_t size)
+static void sink(void *list, uint32_t i, uint32_t n, size_t size, rf_after_fn *is_after)
 {
     uint8_t own[MOST_SIZE];
 
@@ -46,10 +46,10 @@ static void sink(void *list, uint32_t i, uint32_t n, size_t size)
     memcpy(at(list, i, size), own, size);
 }
 
-static void make_heap(void *list, uint32_t n, size_t size)
+static void make_heap(void *list, uint32_t n, size_t size, rf_after_fn *is_after)
 {
     for (uint32_t i = n / 2; i > 0; i--)
-        sink(list, i - 1, n, size);
+        sink(list, i - 1, n, size, is_after);
 }
 
 void rf_add_place(void *list, uint32_t *count, uint32_t capacity, const void *entry, size_t size)
@@ -57,16 +57,21 @@ void rf_add_place(void *list, uint32_t *count, uint32_t capacity, const void *en
     if (*count < capacity) {
         memcpy(at(list, (*count)++, size), entry, size);
         if (*count == capacity)
-            make_heap(list, *count, size);
+            make_heap(list, *count, size, is_after);
     } else if (capacity && is_after(list, entry)) {
         memcpy(list, entry, size);
-        sink(list, 0, capacity, size);
+        sink(list, 0, capacity, size, is_after);
     }
 }
 
 void rf_sort_places(void *list, uint32_t count, size_t size)
 {
-    make_heap(list, count, size);
+    rf_sort(list, count, size, is_after);
+}
+
+void rf_sort(void *list, uint32_t count, size_t size, rf_after_fn *is_after)
+{
+    make_heap(list, count, size, is_after);
     for (uint32_t left = count; left > 1;) {
         uint8_t last[MOST_SIZE];
 
@@ -74,6 +79,6 @@ void rf_sort_places(void *list, uint32_t count, size_t size)
         left--;
         memcpy(list, at(list, left, size), size);
         memcpy(at(list, left, size), last, size);
-        sink(list, 0, left, size);
+        sink(list, 0, left, size, is_after);
     }
 }

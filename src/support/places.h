@@ -7,6 +7,7 @@
 #ifndef RF_PLACES_H
 #define RF_PLACES_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -16,5 +17,9 @@ void rf_add_place(void *list, uint32_t *count, uint32_t capacity, const void *en
 
 /* Sorts the entries row by row. */
 void rf_sort_places(void *list, uint32_t count, size_t size);
+
+/* Sorts entries of any type, of up to 64 bytes, by whether one comes after another. */
+typedef bool rf_after_fn(const void *a, const void *b);
+void rf_sort(void *list, uint32_t count, size_t size, rf_after_fn *is_after);
 
 #endif
