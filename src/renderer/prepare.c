@@ -331,30 +331,14 @@ static int prepare(struct refocus_renderer *r, const struct rf_log *log,
     return REFOCUS_OK;
 }
 
-int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *photo,
-                    const struct refocus_disparity *disparity)
+static int prepare_given(const char *function, struct refocus_renderer *r,
+                         const struct refocus_scene *given)
 {
-    const struct refocus_scene scene = refocus_scene_default(photo, disparity);
-    struct rf_log log = {.function = "refocus_prepare"};
-    int status;
-
-    if (!r)
-        return REFOCUS_ERR_ARGUMENT;
-    log.to = r->log;
-    status = rf_enter(r, &log);
-    return status ? status : rf_leave(r, prepare(r, &log, &scene));
-}
-
-int refocus_prepare_scene(struct refocus_renderer *r, const struct refocus_scene *given)
-{
+    struct rf_log log = {.function = function};
     struct refocus_scene scene;
-    struct rf_log log = {.function = "refocus_prepare_scene"};
-    int status;
+    int status = rf_enter(r, &log);
 
-    if (!r)
-        return REFOCUS_ERR_ARGUMENT;
-    log.to = r->log;
-    if ((status = rf_enter(r, &log)))
+    if (status)
         return status;
     r->prepared = false;
     status = rf_read_struct(&log, "scene", &scene, sizeof scene,
@@ -362,16 +346,26 @@ int refocus_prepare_scene(struct refocus_renderer *r, const struct refocus_scene
     return rf_leave(r, status ? status : prepare(r, &log, &scene));
 }
 
+int refocus_prepare(struct refocus_renderer *r, const struct refocus_image *photo,
+                    const struct refocus_disparity *disparity)
+{
+    const struct refocus_scene scene = refocus_scene_default(photo, disparity);
+
+    return prepare_given("refocus_prepare", r, &scene);
+}
+
+int refocus_prepare_scene(struct refocus_renderer *r, const struct refocus_scene *given)
+{
+    return prepare_given("refocus_prepare_scene", r, given);
+}
+
 int refocus_get_depth_edges(const struct refocus_renderer *r,
                             struct refocus_depth_edges_report *report)
 {
     struct refocus_renderer *const own = (struct refocus_renderer *)(uintptr_t)r; /* to enter it */
-    const struct rf_log silent = {.function = "refocus_get_depth_edges"};
-    int status;
+    const int status = report ? rf_enter(own, NULL) : REFOCUS_ERR_ARGUMENT;
 
-    if (!r || !report)
-        return REFOCUS_ERR_ARGUMENT;
-    if ((status = rf_enter(own, &silent)))
+    if (status)
         return status;
     if (!r->prepared)
         return rf_leave(own, REFOCUS_ERR_STATE);

@@ -303,11 +303,7 @@ int refocus_render(struct refocus_renderer *r, const struct refocus_render_param
                    const struct refocus_image *out)
 {
     struct rf_log log = {.function = "refocus_render"};
-    int status;
+    const int status = rf_enter(r, &log);
 
-    if (!r)
-        return REFOCUS_ERR_ARGUMENT;
-    log.to = r->log;
-    status = rf_enter(r, &log);
     return status ? status : rf_leave(r, render(r, &log, params, out));
 }

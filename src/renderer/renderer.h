@@ -220,13 +220,19 @@ static inline uint64_t rf_scratch_size(int max_width, float max_blur_radius)
     return 2 * ((uint64_t)max_width + 2 * (uint64_t)margin);
 }
 
-/* Begins a call: REFOCUS_OK, or REFOCUS_ERR_BUSY where another one runs, in another thread or in a
- * callback of which this one is made. */
-static inline int rf_enter(struct refocus_renderer *r, const struct rf_log *log)
+/* Begins a call: REFOCUS_OK, REFOCUS_ERR_ARGUMENT where r is NULL, or REFOCUS_ERR_BUSY where
+ * another one runs, in another thread or in a callback of which this one is made. What goes wrong
+ * in the call is told to the renderer's log; log is NULL in a call that tells nothing. */
+static inline int rf_enter(struct refocus_renderer *r, struct rf_log *log)
 {
-    if (atomic_flag_test_and_set_explicit(&r->entered, memory_order_acquire))
-        return rf_refuse(log, REFOCUS_ERR_BUSY, "another call uses this renderer");
-    return REFOCUS_OK;
+    if (!r)
+        return REFOCUS_ERR_ARGUMENT;
+    if (log)
+        log->to = r->log;
+    if (!atomic_flag_test_and_set_explicit(&r->entered, memory_order_acquire))
+        return REFOCUS_OK;
+    return log ? rf_refuse(log, REFOCUS_ERR_BUSY, "another call uses this renderer")
+               : REFOCUS_ERR_BUSY;
 }
 
 /* Ends it with a status. */

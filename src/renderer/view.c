@@ -93,11 +93,7 @@ static int get_view(const struct refocus_renderer *r, const struct rf_log *log, 
 int refocus_get_view(struct refocus_renderer *r, uint32_t view, uint16_t *out, ptrdiff_t stride)
 {
     struct rf_log log = {.function = "refocus_get_view"};
-    int status;
+    const int status = rf_enter(r, &log);
 
-    if (!r)
-        return REFOCUS_ERR_ARGUMENT;
-    log.to = r->log;
-    status = rf_enter(r, &log);
     return status ? status : rf_leave(r, get_view(r, &log, view, out, stride));
 }
