@@ -147,18 +147,11 @@ struct rf_sums {
     uint64_t weight[RF_TILE * RF_TILE];
 };
 
-/* The weight of the pixel at `at` of planes of light: eq. 5 of its brightest channel, or 1. */
-static inline uint32_t rf_weight_of(const struct rf_frame *f, uint16_t *const light[3],
-                                    ptrdiff_t at)
+/* The weight of the pixel at `at` of the photo's own light: eq. 5 of its brightest channel, or 1.
+ */
+static inline uint32_t rf_weight_of(const struct rf_frame *f, ptrdiff_t at)
 {
-    uint16_t most = light[0][at];
-
-    if (!f->weighted)
-        return 1;
-    most = light[1][at] > most ? light[1][at] : most;
-    most = light[2][at] > most ? light[2][at] : most;
-    most = most > RF_LIGHT_MAX ? RF_LIGHT_MAX : most; /* highlights lie above */
-    return f->light_weight[most];
+    return f->weighted ? f->light_weight[rf_brightest_at(&f->light, at)] : 1;
 }
 
 /* The offset of a ray in whole pixels, of blurs without a unit: u s, Q15 times Q7.8, rounded half

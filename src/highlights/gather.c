@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "highlights/clipped.h"
+#include "highlights/ramp.h"
 #include "highlights/in_window.h"
 #include "highlights/known.h"
 #include "tiles/ranges.h"

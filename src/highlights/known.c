@@ -5,7 +5,6 @@
 #include <limits.h>
 #include <string.h>
 
-#include "highlights/clipped.h"
 #include "support/compare.h"
 
 enum { LEAST = RF_LIGHT_MAX / 32 }; /* light above white that counts, Q12 */

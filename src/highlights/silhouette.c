@@ -6,7 +6,6 @@
 #include <stdlib.h>
 
 #include "focus/focus.h"
-#include "highlights/clipped.h"
 #include "kernels/kernels.h"
 #include "support/places.h"
 #include "tiles/ranges.h"

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "aperture/aperture.h"
-#include "highlights/clipped.h"
 #include "highlights/in_window.h"
 #include "highlights/known.h"
 #include "highlights/sprite.h"

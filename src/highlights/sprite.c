@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "aperture/aperture.h"
-#include "highlights/clipped.h"
+#include "highlights/ramp.h"
 #include "highlights/known.h"
 #include "kernels/kernels.h"
 #include "support/compare.h"

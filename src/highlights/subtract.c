@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "highlights/clipped.h"
+#include "highlights/ramp.h"
 #include "highlights/in_window.h"
 #include "image/format.h"
 #include "support/compare.h"

@@ -19,6 +19,15 @@ struct rf_light_q12 {
     ptrdiff_t stride;
 };
 
+/* The brightest channel of the pixel that lies at `at` of its planes. */
+static inline int rf_brightest_at(const struct rf_light_q12 *light, ptrdiff_t at)
+{
+    int most = light->channel[0][at];
+
+    most = light->channel[1][at] > most ? light->channel[1][at] : most;
+    return light->channel[2][at] > most ? light->channel[2][at] : most;
+}
+
 /*
  * Signed radius of the circle of confusion s = K (df - d), Q7.8 of 2^unit pixels: negative before
  * the focus. Padded. The unit, 0 to RF_MAX_UNIT, goes by the K of the frame: 0 up to 127 pixels.

@@ -21,7 +21,7 @@ static void gather(const struct rf_frame *f, int x, int y, struct rf_sums *sums)
     for (int n = 0; n < set->count; n++) {
         const struct refocus_ray *ray = &set->ray[n];
         const ptrdiff_t q = p + rf_offset(ray->v, s) * f->view->stride + rf_offset(ray->u, s);
-        const uint64_t w = (uint64_t)rf_weight_of(f, f->light.channel, q) * ray->weight;
+        const uint64_t w = (uint64_t)rf_weight_of(f, q) * ray->weight;
 
         weight += w;
         for (int c = 0; c < 3; c++)

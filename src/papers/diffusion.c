@@ -162,7 +162,7 @@ static void cut_out_row(void *context, int item, int worker)
         const float radius = ring == 0              ? work->radius[at]
                              : ring <= layer->reach ? work->weight[at]
                                                     : 0;
-        const double w = ring == 0 ? rf_weight_of(f, f->light.channel, p) : 0;
+        const double w = ring == 0 ? rf_weight_of(f, p) : 0;
 
         work->weight[at] = conductance(work, radius);
         for (int c = 0; c < 3; c++)
@@ -286,7 +286,7 @@ static void write_row(void *context, int item, int worker)
         const ptrdiff_t at = y * work->stride + x, p = y * f->view->stride + x;
         /* Where almost nothing was composited, the picture itself counts. */
         const double own = work->below[4][at] < 0.05 ? 0.05 - work->below[4][at] : 0;
-        const double w = own * rf_weight_of(f, f->light.channel, p);
+        const double w = own * rf_weight_of(f, p);
         double light[3];
 
         for (int c = 0; c < 3; c++)

@@ -109,7 +109,7 @@ static void blend(const struct rf_frame *f, ptrdiff_t q, uint32_t alpha, struct 
 {
     const uint32_t room = ONE - sums->alpha;
     const uint32_t a = alpha < room ? alpha : room;
-    const uint64_t w = (uint64_t)a * rf_weight_of(f, f->light.channel, q);
+    const uint64_t w = (uint64_t)a * rf_weight_of(f, q);
 
     sums->alpha += a;
     sums->weight += w;

@@ -85,8 +85,7 @@ static ptrdiff_t shown_at(const struct rf_frame *f, const struct refocus_ray *ra
 static void add(const struct rf_frame *f, const struct refocus_ray *ray, int parts, ptrdiff_t q,
                 ptrdiff_t at, struct band *band)
 {
-    const uint64_t w =
-        (uint64_t)rf_weight_of(f, f->light.channel, q) * ray->weight * (unsigned)parts;
+    const uint64_t w = (uint64_t)rf_weight_of(f, q) * ray->weight * (unsigned)parts;
 
     band->weight[at] += w;
     for (int c = 0; c < 3; c++)

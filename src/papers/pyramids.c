@@ -52,7 +52,7 @@ static void first_level_row(void *context, int y, int worker)
     for (int x = 0; x < work->f->view->width; x++) {
         const ptrdiff_t p = y * work->f->view->stride + x;
         const size_t at = (size_t)y * (size_t)work->f->view->width + (size_t)x;
-        const double w = rf_weight_of(work->f, work->f->light.channel, p);
+        const double w = rf_weight_of(work->f, p);
 
         for (int side = 0; side < 2; side++) {
             const struct rf_pyramid_level *level = &work->pyramid[side][0];
@@ -213,7 +213,7 @@ void rf_pyramids_show(const struct rf_pyramids *work, int x, int y, double light
     const struct rf_frame *f = work->f;
     const ptrdiff_t p = y * f->view->stride + x;
     const int s = f->blur.at[p];
-    const double w = rf_weight_of(f, f->light.channel, p);
+    const double w = rf_weight_of(f, p);
     double front[CHANNELS] = {0}, back[CHANNELS] = {0}, rest, part;
 
     sample_side(work, 0, x, y, s, front);

@@ -130,7 +130,7 @@ static void make_attenuation(struct work *work, double ratio)
 static uint32_t weight_of(const struct work *work, int x, int y)
 {
     const struct rf_frame *f = work->f;
-    const uint32_t w = rf_weight_of(f, f->light.channel, y * f->view->stride + x);
+    const uint32_t w = rf_weight_of(f, y * f->view->stride + x);
     const uint32_t z = work->attenuation[f->disparity.at[y * f->view->stride + x] >> 8];
 
     if (!f->weighted)

@@ -98,7 +98,7 @@ static void reduce_weighted(const struct rf_target_work *work, int y,
             const ptrdiff_t at = rf_clamp(y * side + i / side, 0, work->f->view->height - 1) *
                                      work->f->view->stride +
                                  rf_clamp(x * side + i % side, 0, work->f->view->width - 1);
-            const double w = rf_weight_of(work->f, work->f->light.channel, at);
+            const double w = rf_weight_of(work->f, at);
 
             sum[3] += w;
             for (int c = 0; c < 3; c++)

@@ -5,6 +5,7 @@
 
 #include "colour/transfer.h"
 #include "kernels/kernels.h"
+#include "support/compare.h"
 
 /* The part of the planes, borders too, that goes with a row of tiles. */
 static struct rf_rect around_tiles(const struct rf_viewport *view, int ty)
@@ -17,13 +18,9 @@ static struct rf_rect around_tiles(const struct rf_viewport *view, int ty)
     };
 }
 
-static int brightest(uint16_t *const light[3], ptrdiff_t at)
+static int brightest(const struct rf_light_q12 *light, ptrdiff_t at)
 {
-    int most = light[0][at];
-
-    most = light[1][at] > most ? light[1][at] : most;
-    most = light[2][at] > most ? light[2][at] : most;
-    return most > RF_LIGHT_MAX ? RF_LIGHT_MAX : most; /* highlights lie above */
+    return rf_smaller(rf_brightest_at(light, at), RF_LIGHT_MAX); /* highlights lie above */
 }
 
 static void weigh_row(const struct rf_weights *pass, int y, int x0, int x1)
@@ -35,9 +32,9 @@ static void weigh_row(const struct rf_weights *pass, int y, int x0, int x1)
     uint16_t *far = pass->background_weight.at + y * pass->background_weight.stride;
 
     for (int x = x0; x < x1; x++)
-        near[x] = of_light[brightest(smooth.channel, row + x)];
+        near[x] = of_light[brightest(&smooth, row + x)];
     for (int x = x0; pass->has_background && x < x1; x++)
-        far[x] = of_light[brightest(background.channel, row + x)];
+        far[x] = of_light[brightest(&background, row + x)];
 }
 
 /* Weighs luminance. Most pixels of the background layer are those of the picture, and so have their
