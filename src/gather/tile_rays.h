@@ -34,12 +34,6 @@ void rf_use_green_rays(struct rf_tile_rays *rays, float fringe);
 void rf_tile_rays_get(const struct rf_tile_rays *rays, int n, int count,
                       struct rf_ray_sides *sides);
 
-/* The rays for a signed blur, which is below 0 before the focus. */
-static inline const struct refocus_ray *rf_side_of(const struct rf_ray_sides *sides, int blur)
-{
-    return blur < 0 ? sides->before : sides->behind;
-}
-
 /* The signed blur by which rays of the channel look. */
 static inline int rf_scaled_blur(const struct rf_tile_rays *rays, int blur)
 {
