@@ -317,6 +317,54 @@ static uint64_t blocks_of(int across, int down)
            (uint64_t)rf_blocks_across((down + RF_TILE - 1) / RF_TILE);
 }
 
+/* Tiles of the largest window. */
+static uint64_t tiles_of(int across, int down)
+{
+    return (uint64_t)((across + RF_TILE - 1) / RF_TILE) *
+           (uint64_t)((down + RF_TILE - 1) / RF_TILE);
+}
+
+/* Lays out what shares the memory of the pyramid. Returns where the largest of it ends. */
+static uint64_t lay_out_pyramid(struct refocus_renderer *r, const struct rf_arena *arena,
+                                int across, int down, int pad)
+{
+    struct rf_arena pyramid = *arena, foreground = *arena, sources = *arena;
+    uint64_t most;
+
+    rf_pyramid_shape(&r->pyramid, across, down);
+    for (int i = 1; i <= r->pyramid.levels; i++)
+        lay_out_level(&pyramid, &r->pyramid.level[i]);
+    /* The pyramid is no longer needed when weights begin: this holds the foreground cells, and then
+     * the weights. */
+    r->foreground.stride = rf_pitch_for(across, pad);
+    r->foreground.most = rf_arena_take(
+        &foreground, (uint64_t)r->foreground.stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
+    if (r->foreground.most)
+        r->foreground.most += pad * (r->foreground.stride + 1);
+    if (r->has_thin) /* the pyramid begins after the sources are drawn */
+        r->coverage.source = rf_arena_take(&sources, RF_COVERAGE_SOURCES * tiles_of(across, down),
+                                           rf_coverage_source_bytes());
+    most = pyramid.used > foreground.used ? pyramid.used : foreground.used;
+    return most > sources.used ? most : sources.used;
+}
+
+/* Lays out what is known of each tile of the largest window. */
+static void lay_out_tiles(struct refocus_renderer *r, const struct refocus_renderer_params *params,
+                          struct rf_arena *arena, int across, int down, int pad)
+{
+    r->range.stride = rf_range_width(across, pad);
+    r->range.at =
+        rf_arena_take(arena, (uint64_t)r->range.stride * (uint64_t)rf_range_width(down, pad),
+                      sizeof *r->range.at);
+    if (r->range.at)
+        r->range.at += rf_range_border(pad) * (r->range.stride + 1);
+    r->stars.star = rf_arena_take(arena, RF_MOST_STARS, sizeof *r->stars.star);
+    r->grain = rf_arena_take(arena, 1, sizeof *r->grain);
+    r->bins = rf_arena_take(arena, tiles_of(across, down), sizeof *r->bins);
+    if (rf_unit_of(params->max_blur_radius))
+        r->blocks = rf_arena_take(arena, blocks_of(across, down), sizeof *r->blocks);
+}
+
 /* Sets the pointers of r; with arena->base == NULL it only counts the bytes. */
 static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_params *params,
                     struct rf_arena *arena)
@@ -325,37 +373,17 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     const int w = params->max_width, h = params->max_height;
     /* The size of the largest window. */
     const int across = w < side ? w : side, down = h < side ? h : side;
-    const uint64_t tiles =
-        (uint64_t)((across + RF_TILE - 1) / RF_TILE) * (uint64_t)((down + RF_TILE - 1) / RF_TILE);
     const int threads = rf_thread_count(params->threads),
               pad = rf_padding_for(params->max_blur_radius);
-    uint64_t before, after, prepared = 0;
+    uint64_t after, prepared = 0;
 
     r->most_edges = params->depth_edges;
     if (params->in_place)
         prepared = lay_out_blocks(r, params, arena);
     else
         prepared = lay_out_whole(r, params, arena);
-    before = arena->used;
-    rf_pyramid_shape(&r->pyramid, across, down);
-    for (int i = 1; i <= r->pyramid.levels; i++)
-        lay_out_level(arena, &r->pyramid.level[i]);
-    after = arena->used;
-    arena->used = before; /* the pyramid is no longer needed when weights begin */
-    /* This holds the foreground cells, and then the weights. */
-    r->foreground.stride = rf_pitch_for(across, pad);
-    r->foreground.most = rf_arena_take(
-        arena, (uint64_t)r->foreground.stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
-    if (r->foreground.most)
-        r->foreground.most += pad * (r->foreground.stride + 1);
-    after = arena->used > after ? arena->used : after;
     r->has_thin = params->thin && !params->in_place;
-    if (r->has_thin) { /* the pyramid begins after the sources are drawn */
-        arena->used = before;
-        r->coverage.source =
-            rf_arena_take(arena, RF_COVERAGE_SOURCES * tiles, rf_coverage_source_bytes());
-        after = arena->used > after ? arena->used : after;
-    }
+    after = lay_out_pyramid(r, arena, across, down, pad);
     arena->used = prepared > after ? prepared : after;
     if (r->has_thin) {
         lay_out_coverage(arena, &r->coverage, w, h);
@@ -366,17 +394,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     r->has_behind = params->behind && !params->in_place;
     if (r->has_behind)
         lay_out_behind(arena, &r->photo.behind, w, h);
-    r->range.stride = rf_range_width(across, pad);
-    r->range.at =
-        rf_arena_take(arena, (uint64_t)r->range.stride * (uint64_t)rf_range_width(down, pad),
-                      sizeof *r->range.at);
-    if (r->range.at)
-        r->range.at += rf_range_border(pad) * (r->range.stride + 1);
-    r->stars.star = rf_arena_take(arena, RF_MOST_STARS, sizeof *r->stars.star);
-    r->grain = rf_arena_take(arena, 1, sizeof *r->grain);
-    r->bins = rf_arena_take(arena, tiles, sizeof *r->bins);
-    if (rf_unit_of(params->max_blur_radius))
-        r->blocks = rf_arena_take(arena, blocks_of(across, down), sizeof *r->blocks);
+    lay_out_tiles(r, params, arena, across, down, pad);
     r->ray_sets.memory = rf_arena_take(arena, params->in_place ? few_rays(params) : RF_FULL_RAYS,
                                        sizeof *r->ray_sets.memory);
     r->exec.scratch =
