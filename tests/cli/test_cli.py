@@ -356,7 +356,7 @@ class Limits(Case):
                               ('--invalid', 'zero'), ('--upsample', 'core')):
             self.fails(2, option + ': --strokes alone paint over nothing; give --depth, or leave '
                        'it out', *depth, '--strokes', 's.json', option, value)
-        for option, value in (('--input-size', '64,64'), ('--input-mean', '1,2,3'),
+        for option, value in (('--input-size', '64,64'), ('--input-mean', '123.675,116.28,103.53'),
                               ('--input-scale', '1'), ('--far-is-large', None)):
             self.fails(2, option + ': it goes with --estimate; give that too', *depth, '--depth',
                        'depth.pgm', option, *([value] if value else []))

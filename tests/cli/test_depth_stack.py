@@ -207,6 +207,8 @@ class DepthOfAStack(Case):
         self.assertEqual(self.reports(*self.stack('', '--range', '1,2', '--keep', 'two'))
                          ['positions'], [1, 1.5, 2])
         self.assertEqual(len(os.listdir('two')), 4)
+        self.assertEqual(self.reports(*self.stack('', '--range', '0.75,1.25', '--dry-run'))
+                         ['positions'], [0.75, 1, 1.25])
 
     def test_lenses_that_do_not_do_as_they_are_told(self):
         out = ('-o', 'x.pgm')

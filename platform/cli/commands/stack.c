@@ -62,6 +62,7 @@ static const struct option options[] = {
      .least = -1e9,
      .greatest = 1e9,
      .count = 2,
+     .decimals = true,
      .brief = "the first and the last of them; default: all",
      .help = "the first and the last of them, in dioptres (1 / metres) of libcamera, without unit "
              "of V4L2; default: the whole range of the lens"},

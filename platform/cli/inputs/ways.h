@@ -67,6 +67,7 @@ const char *ways_order_summary(uint32_t index);
          .least = -1000,                                                                           \
          .greatest = 1000,                                                                         \
          .count = 3,                                                                               \
+         .decimals = true,                                                                         \
          .help = "codes that the network takes as 0; default: those of --network",                 \
          .needs = "--estimate"},                                                                   \
         {.kind = OPTION_NUMBER,                                                                    \

@@ -107,6 +107,11 @@ static bool in_range(const struct option *option, double value)
            value <= option->greatest;
 }
 
+static bool is_whole(const struct option *option)
+{
+    return option->kind == OPTION_INTEGER || (option->kind == OPTION_NUMBERS && !option->decimals);
+}
+
 /* A decimal number at *text, which moves behind it. No hexadecimal, no blanks. */
 static bool read_number(const char **text, double *value)
 {
@@ -154,7 +159,7 @@ static int parse_numbers(const struct option *option, const char *name, const ch
             return wrong_number(option, name, text);
         at += i > 0;
         if (!read_number(&at, &value) || !in_range(option, value) ||
-            (option->kind != OPTION_NUMBER && value != floor(value)))
+            (is_whole(option) && value != floor(value)))
             return wrong_number(option, name, text);
         values[i] = value;
     }

@@ -36,6 +36,7 @@ static const struct option options[] = {
      .least = 0,
      .greatest = 99,
      .count = 4,
+     .decimals = true,
      .help = "several"},
     {.kind = OPTION_INTEGER,
      .name = "--whole",
