@@ -1,6 +1,7 @@
 /* stereo.cpp: depth is computed from two pictures by OpenCV's semi-global matching, both ways. */
 #include "guard.hpp"
 #include "module.hpp"
+#include "stereo_exposure.hpp"
 #include "stereo_order.hpp"
 #include "stereo_rectify.hpp"
 
@@ -198,6 +199,7 @@ pair load(const refocus_image *first, const refocus_image *second, const cv::Siz
             cv::resize(p.grey[i], p.grey[i], size, 0, 0, cv::INTER_AREA);
         cv::resize(refocus_cv::view(image[i]), p.photo[i], size, 0, 0, cv::INTER_AREA);
     }
+    refocus_cv::match_exposures(p.grey[0], p.grey[1]);
     return p;
 }
 

@@ -100,6 +100,8 @@ static inline struct refocus_stereo_report refocus_stereo_report_default(void)
  * Pictures need not be rectified to the pixel: a shift, a turn and another scale of the second one,
  * by a fiftieth at the most, are told by patches of the first one, and undone.
  *
+ * Exposures may differ: the darker picture is matched with the histogram of the brighter one.
+ *
  * Beside a nearer surface each picture shows a stripe of what is behind that the other one does
  * not: the left picture on its left. Pairs in the other order have their stripes on the wrong side,
  * and stripes have the colour of what is behind.

@@ -196,6 +196,24 @@ static uint8_t sines_at(double x, double y, int near)
     return (uint8_t)(sum < 0 ? 0 : sum > 255 ? 255 : sum);
 }
 
+/* A pair of cameras of which the second one is lower, turned about its axis and of another focal
+ * length. */
+static void make_sines(uint8_t *left, uint8_t *right, const double apart[3])
+{
+    const double down = apart[0], turn = apart[1], grow = apart[2];
+
+    for (int i = 0; i < W * H; i++) {
+        const double u = i % W - (W - 1) / 2.0, v = i / W - (H - 1) / 2.0 - down;
+        const double size = (1 + grow) * (1 + grow) + turn * turn;
+        const double x = ((1 + grow) * u + turn * v) / size + (W - 1) / 2.0;
+        const double y = ((1 + grow) * v - turn * u) / size + (H - 1) / 2.0;
+        const int near = x + NEAR >= 120 && x + NEAR < 220 && y >= 60 && y < 150;
+
+        memset(left + 3 * i, sines_at(i % W, i / W, disparity_at(i % W, i / W) == NEAR), 3);
+        memset(right + 3 * i, sines_at(x + (near ? NEAR : FAR), y, near), 3);
+    }
+}
+
 /* Cameras that are turned about their axes and of other focal lengths. */
 static void stereo_unrectified(void **state)
 {
@@ -210,21 +228,31 @@ static void stereo_unrectified(void **state)
     (void)state;
     for (size_t n = 0; n < sizeof apart / sizeof *apart; n++) {
         const double down = apart[n][0], turn = apart[n][1], grow = apart[n][2];
-        for (int i = 0; i < W * H; i++) {
-            const double u = i % W - (W - 1) / 2.0, v = i / W - (H - 1) / 2.0 - down;
-            const double size = (1 + grow) * (1 + grow) + turn * turn;
-            const double x = ((1 + grow) * u + turn * v) / size + (W - 1) / 2.0;
-            const double y = ((1 + grow) * v - turn * u) / size + (H - 1) / 2.0;
-            const int near = x + NEAR >= 120 && x + NEAR < 220 && y >= 60 && y < 150;
-
-            memset(left + 3 * i, sines_at(i % W, i / W, disparity_at(i % W, i / W) == NEAR), 3);
-            memset(right + 3 * i, sines_at(x + (near ? NEAR : FAR), y, near), 3);
-        }
+        make_sines(left, right, apart[n]);
         assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &report, &reason), REFOCUS_OK);
         assert_true(fabs((double)report.vertical_offset - down) < 0.15);
         assert_true(fabs((double)report.turn - turn) < 0.001);
         assert_true(fabs((double)report.grow - grow) < 0.001);
         assert_true(n || (report.vertical_offset == 0 && report.turn == 0 && report.grow == 0));
+        check_disparities(d, 96);
+    }
+}
+
+/* The second picture has so much of the codes of the first one. */
+static void stereo_exposures(void **state)
+{
+    static const double gain[] = {0.4, 0.7, 1.4}, apart[3] = {0, 0, 0};
+    static uint8_t left[3 * W * H], right[3 * W * H];
+    static float d[W * H];
+    const struct refocus_image a = picture(left), b = picture(right);
+    const struct refocus_stereo_params params = refocus_stereo_params_default();
+
+    (void)state;
+    for (size_t n = 0; n < sizeof gain / sizeof *gain; n++) {
+        make_sines(left, right, apart);
+        for (int i = 0; i < 3 * W * H; i++)
+            right[i] = (uint8_t)fmin(255, gain[n] * right[i]);
+        assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, NULL, NULL), REFOCUS_OK);
         check_disparities(d, 96);
     }
 }
@@ -295,9 +323,13 @@ static void reports_of_any_size(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stereo),         cmocka_unit_test(stereo_far_chance),
-        cmocka_unit_test(stereo_order),   cmocka_unit_test(stereo_unrectified),
-        cmocka_unit_test(stereo_refuses), cmocka_unit_test(reports_of_any_size),
+        cmocka_unit_test(stereo),
+        cmocka_unit_test(stereo_exposures),
+        cmocka_unit_test(stereo_far_chance),
+        cmocka_unit_test(stereo_order),
+        cmocka_unit_test(stereo_unrectified),
+        cmocka_unit_test(stereo_refuses),
+        cmocka_unit_test(reports_of_any_size),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
