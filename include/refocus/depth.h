@@ -112,6 +112,8 @@ static inline struct refocus_depth_report refocus_depth_report_default(void)
  * Samples without a value, and strays, are filled from the nearest samples that have one, from
  * the farther side where two surfaces meet. At the border of the map surfaces go on to it, but for
  * what is near and no wider than the unmeasured strip there, as a pole: what is behind that does.
+ * In a sparse map, most of whose samples with a value have less than half of their neighbours, the
+ * nearest sample counts alone, up to two mean distances of samples.
  * A map of one single depth becomes all 0.
  *
  * @param map        see struct refocus_depth_map

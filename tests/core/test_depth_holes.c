@@ -151,6 +151,73 @@ static void lines_without_samples(void **nothing)
     }
 }
 
+/* A near square before a far surface, beside a strip of its far side that has no sample; of all
+ * others so many percent have a value, by chance. */
+static void fill_sparse(uint32_t percent, int strip)
+{
+    uint32_t random = 1;
+
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            const int is_near = x >= BEGIN && x < END && y >= BEGIN && y < END;
+
+            random = random * 1664525u + 1013904223u;
+            map[y][x] = is_near ? 60000 : FAR;
+            state[y][x] = (x >= BEGIN - strip && x < BEGIN) || (random >> 16) % 100 >= percent
+                              ? RF_SAMPLE_UNKNOWN
+                              : RF_SAMPLE_KNOWN;
+        }
+    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
+}
+
+/* The samples of sparse maps, as of a laser scanner, are taken for what is around them, near or
+ * far, but holes are still farther. Gaps end two distances of samples off: 9.4 pixels with 5
+ * percent.
+ */
+static void gaps_are_no_holes(void **nothing)
+{
+    enum { EDGE = 6, STRIP = 24 };
+
+    (void)nothing;
+    for (uint32_t percent = 5; percent <= 40; percent += 5) {
+        int near = 0;
+
+        fill_sparse(percent, 0);
+        for (int y = 0; y < SIDE; y++)
+            for (int x = 0; x < SIDE; x++) {
+                const int within =
+                    x >= BEGIN + EDGE && x < END - EDGE && y >= BEGIN + EDGE && y < END - EDGE;
+                const int beyond =
+                    x < BEGIN - EDGE || x >= END + EDGE || y < BEGIN - EDGE || y >= END + EDGE;
+
+                if (within)
+                    assert_int_equal(map[y][x], 60000);
+                else if (beyond)
+                    assert_int_equal(map[y][x], FAR);
+            }
+        fill_sparse(percent, STRIP);
+        for (int y = BEGIN + EDGE; y < END - EDGE; y++)
+            for (int x = BEGIN - STRIP; x < BEGIN - 10; x++)
+                near += map[y][x] != FAR;
+        assert_in_range(near, 0, (END - BEGIN) * STRIP / 100); /* rows that begin in the strip */
+    }
+}
+
+/* A map that is dense where it has any samples, a fifth of it, is no sparse one. */
+static void parts_are_dense(void **nothing)
+{
+    (void)nothing;
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            map[y][x] = x < 54 ? FAR : 62000;
+            state[y][x] = x < 30 || (x >= 54 && x < 70) ? RF_SAMPLE_KNOWN : RF_SAMPLE_UNKNOWN;
+        }
+    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 30; x < 54; x++)
+            assert_int_equal(map[y][x], FAR);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -159,6 +226,8 @@ int main(void)
         cmocka_unit_test(surfaces_go_on_to_the_border),
         cmocka_unit_test(dents_follow_what_is_above),
         cmocka_unit_test(lines_without_samples),
+        cmocka_unit_test(gaps_are_no_holes),
+        cmocka_unit_test(parts_are_dense),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
