@@ -3,6 +3,7 @@
 Usage: test_depth_stack.py REFOCUS [unittest arguments]"""
 import json
 import os
+import shutil
 import struct
 import subprocess
 import time
@@ -438,6 +439,19 @@ class DepthOfAStack(Case):
                    '0.ppm', 'other.ppm', '-o', 'x.pgm')
         for name in 'other.ppm', 'x.pgm':
             os.remove(name)
+
+    def test_depth_and_photo_are_two_files(self):
+        why = ': two results would be written to it; give each its own name'
+        out = ('-o', 'both.pfm', '--photo')
+        os.mkdir('links')
+        os.symlink('../both.pfm', 'links/link.pfm')
+        for there in False, True:
+            for name in 'both.pfm', './both.pfm', 'links/link.pfm', os.path.abspath('both.pfm'):
+                self.fails(2, name + why, *self.command, *out, name)
+                self.fails(2, name + why, *self.stack('', *out, name))
+            pictures.pfm('both.pfm', W, H, lambda x, y: 1)
+        os.remove('both.pfm')
+        shutil.rmtree('links')
 
     def test_what_is_no_stack(self):
         out = ('-o', 'x.pgm')

@@ -366,6 +366,8 @@ static int check_stack(const struct settings *settings, const char *const *files
                                 "frames of --in-focus differ in their apertures; leave it out");
     if (status == EXIT_DONE && settings->stack.photo)
         status = output_check(settings->stack.photo, OUTPUT_PICTURE, NULL, files, count);
+    if (status == EXIT_DONE && settings->stack.photo)
+        status = output_check_two(settings->stack.photo, settings->output);
     if (status == EXIT_DONE)
         status = output_check(settings->output, settings->view ? OUTPUT_PICTURE : OUTPUT_DEPTH,
                               settings->view ? NULL : photo_endings, files, count);

@@ -243,7 +243,9 @@ static int check(const struct settings *settings)
     if (status == EXIT_DONE && settings->stack.photo && !settings->output)
         return report_failure(EXIT_WRONG, "--photo", "it goes with -o; give that too");
     if (status == EXIT_DONE && settings->stack.photo)
-        status = output_check(settings->stack.photo, OUTPUT_PICTURE, NULL, &settings->output, 1);
+        status = output_check(settings->stack.photo, OUTPUT_PICTURE, NULL, NULL, 0);
+    if (status == EXIT_DONE && settings->stack.photo)
+        status = output_check_two(settings->stack.photo, settings->output);
     return status;
 }
 

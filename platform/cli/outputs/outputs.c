@@ -74,18 +74,29 @@ static int check_ending(const char *path, unsigned kinds, const char *const *oth
     return report_failure(EXIT_WRONG, path, "no such format is written; end the name in %s", words);
 }
 
-/* path is the file itself, not a symbolic link to it; name is the user's word for it. */
-static int check_folder_of(const char *path, const char *name)
+enum { LONGEST_FOLDER = 4096 };
+
+/* The folder of a path that is no symbolic link; false: its name is too long. */
+static bool folder_of(const char *path, char folder[LONGEST_FOLDER])
 {
-    char folder[4096];
     const char *slash = strrchr(path, '/');
     const int length = slash ? (int)(slash - path) : 0;
 
-    if (slash && length >= (int)sizeof folder)
+    if (length >= LONGEST_FOLDER)
+        return false;
+    snprintf(folder, LONGEST_FOLDER, "%.*s", slash ? (length ? length : 1) : 1, slash ? path : ".");
+    return true;
+}
+
+/* path is the file itself, not a symbolic link to it; name is the user's word for it. */
+static int check_folder_of(const char *path, const char *name)
+{
+    char folder[LONGEST_FOLDER];
+
+    if (!folder_of(path, folder))
         return report_failure(EXIT_FAILED, name,
                               "the name is too long; give a shorter "
                               "one");
-    snprintf(folder, sizeof folder, "%.*s", slash ? (length ? length : 1) : 1, slash ? path : ".");
     if (access(folder, W_OK | X_OK) != 0)
         return report_failure(EXIT_FAILED, name,
                               "the folder %s cannot be written to (%s); give another "
@@ -131,6 +142,38 @@ int output_check(const char *path, unsigned kinds, const char *const *others,
                                   "it is an input too and would be lost; give another "
                                   "name");
     return check_folder(path);
+}
+
+static const char *last_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+
+    return slash ? slash + 1 : path;
+}
+
+/* Whether two files, of which none may be there yet, have one name in one folder. */
+static bool is_one_place(const char *path, const char *other)
+{
+    char folder[LONGEST_FOLDER], other_folder[LONGEST_FOLDER];
+    struct stat at, other_at;
+
+    return strcmp(last_name(path), last_name(other)) == 0 && folder_of(path, folder) &&
+           folder_of(other, other_folder) && stat(folder, &at) == 0 &&
+           stat(other_folder, &other_at) == 0 && at.st_dev == other_at.st_dev &&
+           at.st_ino == other_at.st_ino;
+}
+
+int output_check_two(const char *path, const char *other)
+{
+    char *place = refocus_file_place(path), *other_place = refocus_file_place(other);
+    const bool one = place && other_place && is_one_place(place, other_place);
+
+    free(place);
+    free(other_place);
+    if (one)
+        return report_failure(EXIT_WRONG, path,
+                              "two results would be written to it; give each its own name");
+    return EXIT_DONE;
 }
 
 static int written(int status, const char *path, const struct refocus_reason *reason)

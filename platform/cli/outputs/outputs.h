@@ -27,6 +27,8 @@ enum { OUTPUT_PICTURE = 1, OUTPUT_DEPTH = 2 };
  * none of the inputs, some of which may be NULL. */
 int output_check(const char *path, unsigned kinds, const char *const *others,
                  const char *const *inputs, int input_count);
+/* Check that the output at a path is not that at the other one. */
+int output_check_two(const char *path, const char *other);
 /* Whether a name ends so, in capitals or not, with something before it. */
 bool output_ends_in(const char *path, const char *ending);
 bool output_is_jpeg(const char *path); /* NULL is not */
