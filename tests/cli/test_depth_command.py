@@ -69,12 +69,15 @@ class DepthAndInfo(Case):
 
     def test_distances_without_a_unit(self):
         """They are taken for disparities, as ever, and a line says so."""
-        told = ('its samples from 500 to 2000 are taken for disparities, bright = near; if they '
-                'are distances, give --depth-unit mm, or 5000/m, else disparity')
+        told = ('its samples from 500 to 2000, and zeros, are taken for disparities, bright = near; '
+                'if they are distances, give --depth-unit mm, or 5000/m, else disparity; if zeros '
+                'have no value, --invalid zero')
         paths = ('render', 'photo.ppm', '--depth', 'mm.pgm', '-o', 'a.ppm'), (
             'depth', 'mm.pgm', '-o', 'a.png')
         for arguments in paths:
             self.warns('mm.pgm: ' + told, *arguments)
+            self.warns('mm.pgm: ' + told.replace(', and zeros,', '').split(';')[0] + ';' +
+                       told.split(';')[1], *arguments, '--invalid', 'zero')
             for unit in 'mm', 'disparity', 'inverse', '5000/m':
                 self.succeeds(*arguments, '--depth-unit', unit)
         self.assertIn('doubtful      %s\n' % told, self.succeeds('info', 'mm.pgm'))

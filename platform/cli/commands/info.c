@@ -25,7 +25,7 @@ struct findings {
     struct refocus_depth_edges_report edges; /* struct_size 0: there is no photo, or no depth */
     struct depth_of_field field;
     bool unit_is_doubtful;
-    char unit_line[REFOCUS_INFO_LENGTH]; /* says so */
+    char unit_line[UNIT_LINE]; /* says so */
 };
 
 static const struct option options[] = {
@@ -329,8 +329,7 @@ static int measure_depth(struct input *input, const struct settings *settings,
 
     if (status != EXIT_DONE)
         return status;
-    found->unit_is_doubtful =
-        unit_is_doubtful(input->photo, false, found->unit_line, sizeof found->unit_line);
+    found->unit_is_doubtful = unit_is_doubtful(input->photo, false, found->unit_line);
     input->disparity = samples <= SIZE_MAX / 2 ? malloc((size_t)samples * 2) : NULL;
     status = input->disparity ? refocus_depth_repair(map, &params, input->disparity,
                                                      (ptrdiff_t)map->width * 2, report)

@@ -95,6 +95,7 @@ static int report_no_depth(const char *photo, const struct refocus_photo *read)
 static int read_side(struct input *input, const char *file, const struct depth_settings *settings)
 {
     struct refocus_reason reason = {""};
+    uint32_t flags;
     int status;
 
     input->depth_name = file;
@@ -106,6 +107,8 @@ static int read_side(struct input *input, const char *file, const struct depth_s
     if (status != REFOCUS_OK)
         return report_failure(input_exit_code(status), file, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
+    input_find_codes(settings->invalid, &flags);
+    input->side->depth->flags |= flags;
     input->depth_from = input->side;
     return EXIT_DONE;
 }
@@ -113,9 +116,9 @@ static int read_side(struct input *input, const char *file, const struct depth_s
 /* The depth file has been read, and how it lies is known. */
 static void tell_doubt(const struct input *input, const struct depth_settings *settings)
 {
-    char line[REFOCUS_INFO_LENGTH];
+    char line[UNIT_LINE];
 
-    if (!settings->unit && unit_is_doubtful(input->side, input->orientation > 1, line, sizeof line))
+    if (!settings->unit && unit_is_doubtful(input->side, input->orientation > 1, line))
         report_warning(input->depth_name, "%s", line);
 }
 

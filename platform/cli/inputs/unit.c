@@ -33,9 +33,10 @@ static double sample_at(const struct refocus_depth_map *map, int32_t x, int32_t 
 }
 
 /* Whether 16-bit samples lie within the range of distances. */
-static bool are_distances(const struct refocus_depth_map *map, char *line, size_t size)
+static bool are_distances(const struct refocus_depth_map *map, char line[UNIT_LINE])
 {
     double least = UINT16_MAX, most = 0;
+    bool zeros = false;
 
     if (map->sample != REFOCUS_SAMPLE_U16)
         return false;
@@ -47,18 +48,22 @@ static bool are_distances(const struct refocus_depth_map *map, char *line, size_
                 least = sample;
             if (sample > most)
                 most = sample;
+            zeros |= sample == 0;
         }
     }
-    snprintf(line, size,
-             "its samples from %.0f to %.0f are taken for disparities, bright = near; if they are "
-             "distances, give --depth-unit mm, or 5000/m, else disparity",
-             least, most);
+    zeros = zeros && !(map->flags & REFOCUS_DEPTH_ZERO_IS_UNKNOWN);
+    snprintf(
+        line, UNIT_LINE,
+        "its samples from %.0f to %.0f%s are taken for disparities, bright = near; if they are "
+        "distances, give --depth-unit mm, or 5000/m, else disparity%s",
+        least, most, zeros ? ", and zeros," : "",
+        zeros ? "; if zeros have no value, --invalid zero" : "");
     return least >= LEAST && most <= MOST && 2 * most > 3 * least;
 }
 
 /* Whether the lower half has less of the samples that differ from their mirror images in the upper
  * half, LESS of OF_LESS of them. */
-static bool are_upside_down(const struct refocus_depth_map *map, char *line, size_t size)
+static bool are_upside_down(const struct refocus_depth_map *map, char line[UNIT_LINE])
 {
     const int32_t half = map->height / 2;
     int64_t less = 0, differ = 0;
@@ -74,7 +79,7 @@ static bool are_upside_down(const struct refocus_depth_map *map, char *line, siz
             }
         }
     }
-    snprintf(line, size,
+    snprintf(line, UNIT_LINE,
              "as disparities, %s = near, its lower half is the farther one; if that is wrong, give "
              "--depth-unit inverse, mm, m or 5000/m, else disparity",
              map->sample == REFOCUS_SAMPLE_F32 ? "greater" : "bright");
@@ -82,11 +87,11 @@ static bool are_upside_down(const struct refocus_depth_map *map, char *line, siz
            OF_LESS * less >= LESS * differ;
 }
 
-bool unit_is_doubtful(const struct refocus_photo *photo, bool turned, char *line, size_t size)
+bool unit_is_doubtful(const struct refocus_photo *photo, bool turned, char line[UNIT_LINE])
 {
     const struct refocus_depth_map *const map = photo->depth;
 
     return photo->info->depth_source == REFOCUS_DEPTH_SOURCE_FILE &&
            map->meaning == REFOCUS_DEPTH_DISPARITY &&
-           (are_distances(map, line, size) || (!turned && are_upside_down(map, line, size)));
+           (are_distances(map, line) || (!turned && are_upside_down(map, line)));
 }

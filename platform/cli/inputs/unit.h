@@ -5,8 +5,11 @@
 #include <stdbool.h>
 #include <refocus/platform/file.h>
 
-/* Writes a line where samples that are taken for disparities, as no unit is known, look like
- * distances or the inverse. Of a map that will be turned, upper and lower half are not known. */
-bool unit_is_doubtful(const struct refocus_photo *photo, bool turned, char *line, size_t size);
+enum { UNIT_LINE = 240 };
+
+/* Writes a line of up to UNIT_LINE bytes where samples that are taken for disparities, as no unit
+ * is known, look like distances or the inverse. Of a map that will be turned, upper and lower half
+ * are not known. */
+bool unit_is_doubtful(const struct refocus_photo *photo, bool turned, char line[UNIT_LINE]);
 
 #endif
