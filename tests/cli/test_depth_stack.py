@@ -440,6 +440,18 @@ class DepthOfAStack(Case):
         for name in 'other.ppm', 'x.pgm':
             os.remove(name)
 
+    def test_a_frame_comes_from_standard_input(self):
+        """It is read for its EXIF first, and then for its pixels."""
+        self.succeeds(*self.command, '-o', 'd.pgm')
+        for k, frame in enumerate(self.frames):
+            names = [*self.frames[:k], '-', *self.frames[k + 1:]]
+            with open(frame, 'rb') as file:
+                done = subprocess.run([case.REFOCUS, 'depth', '--focal-stack', *names, '--align',
+                                       'none', '-o', 'x.pgm'], stdin=file, stdout=subprocess.PIPE,
+                                      stderr=subprocess.PIPE, timeout=300)
+            self.assertEqual((done.returncode, done.stderr), (0, b''))
+            self.same(pictures.read_pnm('x.pgm'), pictures.read_pnm('d.pgm'))
+
     def test_depth_and_photo_are_two_files(self):
         why = ': two results would be written to it; give each its own name'
         out = ('-o', 'both.pfm', '--photo')

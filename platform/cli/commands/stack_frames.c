@@ -94,7 +94,7 @@ static void read_exif(const struct stack_frames *frames, struct said *said)
     for (int k = 0; k < frames->count; k++) {
         struct refocus_reason ignored;
         struct refocus_photo *photo = NULL;
-        const bool read = standard_photo(&photo, frames->file[k], &ignored) == REFOCUS_OK;
+        const bool read = standard_look(&photo, frames->file[k], &ignored) == REFOCUS_OK;
 
         said->distance[k] = read ? photo->info->subject_distance : 0;
         said->f_number[k] = read ? photo->info->f_number : 0;

@@ -68,14 +68,16 @@ static int take(struct refocus_reason *reason)
     }
 }
 
-static void let_go(void)
+/* Other files may be read after standard input was looked at: its bytes stay then. */
+static void let_go(const char *name)
 {
+    if (!standard_is(name))
+        return;
     free(taken.data);
     taken.data = NULL;
 }
 
-/* Read a photo; the bytes of standard input stay. */
-static int read_photo(struct refocus_photo **photo, const char *name, struct refocus_reason *reason)
+int standard_look(struct refocus_photo **photo, const char *name, struct refocus_reason *reason)
 {
     int status;
 
@@ -90,9 +92,9 @@ static int read_photo(struct refocus_photo **photo, const char *name, struct ref
 
 int standard_photo(struct refocus_photo **photo, const char *name, struct refocus_reason *reason)
 {
-    const int status = read_photo(photo, name, reason);
+    const int status = standard_look(photo, name, reason);
 
-    let_go();
+    let_go(name);
     return status;
 }
 
@@ -108,7 +110,7 @@ int standard_photo_or_map(struct refocus_photo **photo, const char *name,
                           struct refocus_reason *reason)
 {
     struct refocus_photo *map = NULL;
-    int status = read_photo(photo, name, reason);
+    int status = standard_look(photo, name, reason);
 
     if (status == REFOCUS_OK ? !(*photo)->depth->samples
                              : status == REFOCUS_ERR_FORMAT || status == REFOCUS_ERR_UNSUPPORTED)
@@ -117,7 +119,7 @@ int standard_photo_or_map(struct refocus_photo **photo, const char *name,
             *photo = map;
             status = REFOCUS_OK;
         }
-    let_go();
+    let_go(name);
     return status;
 }
 

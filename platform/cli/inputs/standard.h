@@ -10,6 +10,9 @@ bool standard_is(const char *name);
 /* Read a photo from a file, or from standard input, which is read once: as refocus_photo_read(). */
 int standard_photo(struct refocus_photo **photo, const char *name, struct refocus_reason *reason);
 
+/* Read a photo that is read once more: the bytes of standard input stay. */
+int standard_look(struct refocus_photo **photo, const char *name, struct refocus_reason *reason);
+
 /* Read a photo, or a depth map that is none; a grey picture without depth may be both. */
 int standard_photo_or_map(struct refocus_photo **photo, const char *name,
                           struct refocus_reason *reason);
