@@ -486,6 +486,8 @@ class DepthOfAStack(Case):
                    '--reference', '4')
         self.fails(2, '--full: it is not for depth of a focus stack; leave it out', *self.command,
                    *out, '--full')
+        self.fails(2, '32.ppm: a focus stack has 32 frames at the most; leave out every other one',
+                   'depth', *out, '--focal-stack', *[f'{k}.ppm' for k in range(33)])
         for text, why in (('1,2', '2 positions for 3 frames; give one for each'),
                           ('1,2,1', '1 is there twice; give each frame its own'),
                           ('1,2,-1', '-1 is no focus in dioptres; give numbers from 0 to 1e6'),

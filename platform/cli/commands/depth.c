@@ -489,5 +489,6 @@ const struct command depth_command = {
     .options = options,
     .files_least = 1,
     .files_most = REFOCUS_STACK_MOST_FRAMES,
+    .too_many = "a focus stack has 32 frames at the most; leave out every other one",
     .run = run,
 };

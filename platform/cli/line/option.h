@@ -70,6 +70,7 @@ struct command {
     const char *notes;            /* paragraphs after the options, or NULL */
     const struct option *options; /* ended by a row whose help is NULL */
     int files_least, files_most;  /* number of file names that the command takes */
+    const char *too_many;         /* says what to do about more of them; NULL: give its usage */
     int (*run)(int argc, char **argv);
 };
 

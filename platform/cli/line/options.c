@@ -142,6 +142,8 @@ int options_parse(const struct command *command, int argc, char **argv, void *se
                 return status;
             continue;
         }
+        if (count == command->files_most && command->too_many)
+            return report_failure(EXIT_WRONG, argv[i], "%s", command->too_many);
         if (count == command->files_most)
             return report_failure(EXIT_WRONG, argv[i], "one file too many; give refocus %s %s",
                                   command->name, command->usage);
