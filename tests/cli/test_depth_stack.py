@@ -484,8 +484,10 @@ class DepthOfAStack(Case):
                    'depth', *self.frames, *out)
         self.fails(2, '--reference: there are 3 frames; give 1 to 3', *self.command, *out,
                    '--reference', '4')
-        self.fails(2, '--full: it is not for depth of a focus stack; leave it out', *self.command,
-                   *out, '--full')
+        for option in (['--full'], ['--orient-depth', '90'], ['--invalid', 'zero'],
+                       ['--speckle', '9']):
+            self.fails(2, option[0] + ': it is not for depth of a focus stack; leave it out',
+                       *self.command, *out, *option)
         self.fails(2, '32.ppm: a focus stack has 32 frames at the most; leave out every other one',
                    'depth', *out, '--focal-stack', *[f'{k}.ppm' for k in range(33)])
         for text, why in (('1,2', '2 positions for 3 frames; give one for each'),

@@ -342,7 +342,8 @@ static int check_stack(const struct settings *settings, const char *const *files
                        char **argv)
 {
     static const char *const of_others[] = {
-        "--full", "--upsample", "--depth-edges", "--strokes", "--match", "--pair-order", NULL};
+        "--full",       "--upsample",     "--depth-edges", "--strokes", "--match",
+        "--pair-order", "--orient-depth", "--invalid",     "--speckle", NULL};
     static const char *const of_focus[] = {"--positions", "--reference", "--order", NULL};
     int count = 0, status = EXIT_DONE;
 
