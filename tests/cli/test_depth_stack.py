@@ -306,20 +306,24 @@ class DepthOfAStack(Case):
         self.assertEqual(run.stderr.decode().splitlines()[0], 'refocus: stack: depth is not of a '
                          'focus stack; begin with --depth stack:')
 
+    def with_distance(self, photo, name, metres):
+        """A JPEG of it whose EXIF tells that subject distance, a fraction."""
+        if self.run_it('render', photo, '--depth', 'depth.pgm', '--blur', '0', '--jpeg-quality',
+                       '100', '-o', 'j.jpg').returncode:
+            self.skipTest('a build without JPEG')
+        tiff = struct.pack('<2sHIHHHIIIHHHIIIII', b'II', 42, 8, 1, 0x8769, 4, 1, 26, 0,
+                           1, 0x9206, 5, 1, 44, 0, *metres)
+        jpeg = pictures.read_bytes('j.jpg')
+        with open(name, 'wb') as file:
+            file.write(jpeg[:2] + b'\xff\xe1' + struct.pack('>H', len(tiff) + 8) +
+                       b'Exif\0\0' + tiff + jpeg[2:])
+
     def test_exif_says_where_the_lens_was(self):
         """The farthest of them is infinity, the greatest numerator."""
         names = []
         for k, metres in enumerate(((0xffffffff, 1), (4, 1), (2, 1))):
-            if self.run_it('render', f'{k}.ppm', '--depth', 'depth.pgm', '--blur', '0', '-o',
-                           'j.jpg').returncode:
-                self.skipTest('a build without JPEG')
-            tiff = struct.pack('<2sHIHHHIIIHHHIIIII', b'II', 42, 8, 1, 0x8769, 4, 1, 26, 0,
-                               1, 0x9206, 5, 1, 44, 0, *metres)
-            jpeg = pictures.read_bytes('j.jpg')
             names.append(f'exif-{k}.jpg')
-            with open(names[-1], 'wb') as file:
-                file.write(jpeg[:2] + b'\xff\xe1' + struct.pack('>H', len(tiff) + 8) +
-                           b'Exif\0\0' + tiff + jpeg[2:])
+            self.with_distance(f'{k}.ppm', names[-1], metres)
         self.assertEqual([self.reports('info', name)['subject_distance'] for name in names],
                          ['infinity', 4, 2])
         report = self.reports('depth', '--focal-stack', *names[::-1], '--align', 'none', '-o', 'x.pgm')
@@ -419,17 +423,37 @@ class DepthOfAStack(Case):
         self.warns(f'{five[2]}: frames do not follow each other in focus; give the farthest first, '
                    '--positions, or --order found', 'depth', '--focal-stack', *five, '--align',
                    'none', '-o', 'x.pgm')
-        report = self.warns(f'{five[2]}: frames are taken in the order 3 1 4 5 2; whether it begins '
+        report = self.warns(f'{five[3]}: frames are taken in the order 3 1 4 5 2; whether it begins '
                             'with the farthest is not seen: give --positions if it does not',
                             'depth', '--focal-stack', *five, '--align', 'none', '-o', 'y.pgm',
                             '--order', 'found')
         self.assertTrue(report['evidence'][0].endswith('in the geometry of frame 4'))
+        self.assertEqual((report['file'], report['stack']['reference']), (five[3], 4))
+        self.assertEqual(report['stack']['order'], [3, 1, 4, 5, 2])
+        self.assertEqual([report['stack'][name] for name in ('moved', 'moving', 'blur')], [0] * 3)
+        self.assertIs(report['stack']['by_rows'], True)
+        self.assertLess(abs(report['stack']['direction']), 0.04)
+        self.assertLess(report['stack']['disorder'], 0.5)
+        for share in 'measured', 'alike', 'order_margin':
+            self.assertTrue(0.05 < report['stack'][share] <= 1, share)
         self.reports('depth', '--focal-stack', *(f'five-{k}.ppm' for k in (4, 3, 2, 1, 0)),
                      '--align', 'none', '-o', 'x.pgm')
         self.same(pictures.read_bytes('x.pgm'), pictures.read_bytes('y.pgm'), 'order')
         os.remove('y.pgm')
         self.reports('depth', '--focal-stack', *five, '--align', 'none', '-o', 'x.pgm',
                      '--positions', '3,0,4,2,1')
+        os.remove('x.pgm')
+
+    def test_the_photo_is_of_the_frame_in_the_middle(self):
+        """Its file says what the result says, also where the order is found."""
+        names = ['0.ppm', '2.ppm', 'middle.jpg']
+        self.with_distance('1.ppm', names[2], (3, 1))
+        result = self.run_it('depth', '--focal-stack', *names, '--order', 'found', '--align',
+                             'none', '-o', 'x.pgm', '--photo', 'x.jpg', '--json')
+        report = json.loads(result.stdout)
+        self.assertEqual((report['stack']['reference'], report['file']), (3, names[2]))
+        self.assertEqual(self.reports('info', 'x.jpg')['subject_distance'], 3)
+        os.remove('x.jpg')
         os.remove('x.pgm')
 
     def test_says_when_frames_show_other_places(self):

@@ -141,17 +141,37 @@ static json_t *with_evidence(json_t *json, const struct refocus_photo_info *info
     return json;
 }
 
+/* The findings of a focus stack, in the words of struct refocus_stack_result; null: it is none.
+ */
+static json_t *stack_json(const struct refocus_stack_result *stack)
+{
+    json_t *order;
+
+    if (stack->struct_size == 0)
+        return json_null();
+    order = json_array();
+    for (int i = 0; order && i < REFOCUS_STACK_MOST_FRAMES && stack->order[i]; i++)
+        json_array_append_new(order, json_integer(stack->order[i]));
+    return json_pack("{s:i, s:o, s:f, s:f, s:b, s:f, s:f, s:f, s:f, s:f, s:f}", "reference",
+                     (int)stack->reference, "order", order, "order_margin",
+                     (double)stack->order_margin, "direction", (double)stack->direction, "by_rows",
+                     stack->by_rows != 0, "measured", (double)stack->measured, "moved",
+                     (double)stack->moved, "moving", (double)stack->moving, "alike",
+                     (double)stack->alike, "disorder", (double)stack->disorder, "blur",
+                     (double)stack->blur);
+}
+
 static int print_report(const struct settings *settings, const struct input *input)
 {
     const struct refocus_depth_map *map = input->depth_from->depth;
     const struct refocus_depth_report *report = &input->report;
 
     if (settings->json) {
-        json_t *json =
-            json_pack("{s:o, s:o, s:i, s:i, s:o, s:o}", "file", report_text_json(input->photo_name),
-                      "output", report_text_json(settings->output), "width", input->width, "height",
-                      input->height, "depth", report_depth_json(input->depth_from, report), "edges",
-                      edges_json(&input->edges));
+        json_t *json = json_pack(
+            "{s:o, s:o, s:i, s:i, s:o, s:o, s:o}", "file", report_text_json(input->photo_name),
+            "output", report_text_json(settings->output), "width", input->width, "height",
+            input->height, "depth", report_depth_json(input->depth_from, report), "edges",
+            edges_json(&input->edges), "stack", stack_json(&input->stack));
         return report_print_json(with_evidence(json, &input->made_info));
     }
     printf("size     %dx%d\n", input->width, input->height);

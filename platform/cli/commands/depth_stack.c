@@ -264,6 +264,8 @@ static int finish(struct input *input, struct refocus_stack *stack,
     report_progress("comparing", 0.6);
     if (refocus_stack_finish(stack, &result))
         return report_failure(EXIT_FAILED, input->photo_name, "the stack cannot be finished");
+    input->stack = result;
+    input->photo_name = name_of(frames, result.reference - 1);
     status = frames->kind == REFOCUS_STACK_FOCUS ? stack_judge(&result, input->photo_name)
                                                  : judge_apertures(&result, input->photo_name);
     if (status != EXIT_DONE)
@@ -345,6 +347,8 @@ int input_read_stack(struct input *input, const char *const *files,
     status = add_all(stack, &frames, input);
     if (status == EXIT_DONE)
         status = finish(input, stack, &frames, how->order);
+    if (status == EXIT_DONE)
+        status = stack_frames_settle(&frames, input);
     refocus_stack_destroy(&stack);
     return status;
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <jansson.h>
+#include "inputs/inputs.h"
 #include "inputs/standard.h"
 #include "line/options.h"
 #include "line/report.h"
@@ -204,4 +205,25 @@ int stack_frames_reference(const struct stack_frames *frames)
             return k;
     }
     return wanted;
+}
+
+int stack_frames_settle(const struct stack_frames *frames, struct input *input)
+{
+    const int k = input->stack.reference - 1;
+    struct refocus_photo *const photo = input->photo;
+    struct input other;
+    int status;
+
+    if (k == frames->reference || standard_is(frames->file[k]))
+        return EXIT_DONE;
+    status = input_read_photo(&other, frames->file[k], "a photo");
+    for (int y = 0; status == EXIT_DONE && y < input->height; y++)
+        memcpy(other.photo->image->plane[0] + y * other.photo->image->stride[0],
+               photo->image->plane[0] + y * photo->image->stride[0], 3 * (size_t)input->width);
+    if (status == EXIT_DONE) {
+        input->photo = other.photo;
+        other.photo = photo;
+    }
+    input_free(&other);
+    return status;
 }

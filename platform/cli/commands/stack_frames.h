@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <refocus/stack.h>
+#include "inputs/input.h"
 
 /* Choices of --in-focus. */
 enum in_focus {
@@ -32,5 +33,9 @@ int stack_frames_read(struct stack_frames *frames, const char *text, int in_focu
 /* The frame that the photo is like, if none is asked for: that in the middle of the focus, as the
  * library counts, or that of the smallest aperture. */
 int stack_frames_reference(const struct stack_frames *frames);
+
+/* Take what the file says whose geometry the result has, where that is another one than the photo
+ * was read from. Returns an exit code and prints why. */
+int stack_frames_settle(const struct stack_frames *frames, struct input *input);
 
 #endif

@@ -76,6 +76,7 @@ struct input {
     double most_blur;               /* pixels that may be rendered; 0: all that the library can */
     struct refocus_depth_report report;
     struct refocus_depth_edges_report edges; /* by depth --full; struct_size 0: as given */
+    struct refocus_stack_result stack;       /* findings; struct_size 0: it is no stack */
 };
 
 #endif
