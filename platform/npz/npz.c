@@ -21,20 +21,26 @@ static bool is_depth(const char *name)
     return strncasecmp(name, "depth", 5) == 0 || strncasecmp(name, "disp", 4) == 0;
 }
 
-/* The number of the array in the archive; -1: there is none. */
-static zip_int64_t choose(zip_t *archive)
+/* The number of the array in the archive; -1: there is none. *others: how many more there are, if
+ * nothing but its place makes it the one. */
+static zip_int64_t choose(zip_t *archive, int *others)
 {
     const zip_int64_t count = zip_get_num_entries(archive, 0);
     zip_int64_t first = -1;
+
+    *others = 0;
 
     for (zip_int64_t i = 0; i < count; i++) {
         const char *const name = zip_get_name(archive, (zip_uint64_t)i, 0);
 
         if (is_array(name) && is_depth(name)) {
+            *others = 0;
             return i;
         }
         if (is_array(name) && first < 0) {
             first = i;
+        } else if (is_array(name)) {
+            ++*others;
         }
     }
     return first;
@@ -45,7 +51,7 @@ static bool pull_entry(void *from, uint8_t *bytes, size_t count)
     return zip_fread(from, bytes, count) == (zip_int64_t)count;
 }
 
-static int read_entry(struct rf_read *read, zip_t *archive, zip_int64_t index)
+static int read_entry(struct rf_read *read, zip_t *archive, zip_int64_t index, int others)
 {
     zip_file_t *entry;
     zip_stat_t facts;
@@ -70,7 +76,10 @@ static int read_entry(struct rf_read *read, zip_t *archive, zip_int64_t index)
                          zip_file_strerror(entry));
     }
     zip_fclose(entry);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK && others > 0) {
+        rf_note(read->info, "NPZ: the array '%s', the first one; %d more, none is called depth",
+                name, others);
+    } else if (status == REFOCUS_OK) {
         rf_note(read->info, "NPZ: the array '%s'", name);
     }
     return status;
@@ -78,9 +87,10 @@ static int read_entry(struct rf_read *read, zip_t *archive, zip_int64_t index)
 
 static int read_archive(struct rf_read *read, zip_t *archive)
 {
-    const zip_int64_t index = choose(archive);
+    int others;
+    const zip_int64_t index = choose(archive, &others);
 
-    return index >= 0 ? read_entry(read, archive, index)
+    return index >= 0 ? read_entry(read, archive, index, others)
                       : rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
                                 "it is a ZIP archive without an array of NumPy (.npy) in it");
 }

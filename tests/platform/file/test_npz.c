@@ -28,9 +28,11 @@ static bool notes(const struct refocus_photo *photo, const char *line)
 /* An archive may hold several: the one called depth is taken, else the first. */
 static void an_array_is_chosen(void **state)
 {
-    static const char *const names[][2] = {{"stored", "NPZ: the array 'arr_0'"},
-                                           {"deflated", "NPZ: the array 'disparity'"},
-                                           {"several", "NPZ: the array 'Depth'"}};
+    static const char *const names[][2] = {
+        {"stored", "NPZ: the array 'arr_0'"},
+        {"deflated", "NPZ: the array 'disparity'"},
+        {"several", "NPZ: the array 'Depth'"},
+        {"unnamed", "NPZ: the array 'a', the first one; 2 more, none is called depth"}};
 
     (void)state;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
