@@ -273,6 +273,9 @@ static void stereo_refuses(void **state)
     }
     assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, NULL, &reason), REFOCUS_ERR_NO_DEPTH);
     assert_non_null(strstr(reason.text, "match"));
+    make_pair(left, right, W / 30);
+    assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, NULL, &reason), REFOCUS_ERR_NO_DEPTH);
+    assert_non_null(strstr(reason.text, "rows may lie a fiftieth of the width apart"));
     assert_int_equal(refocus_cv_stereo(&a, &a, &params, d, NULL, &reason), REFOCUS_ERR_NO_DEPTH);
     assert_non_null(strstr(reason.text, "one shift"));
     b.width--;
