@@ -71,6 +71,22 @@ static GstBuffer *peek_depth(GstRefocus *element, GstAggregatorPad *pad)
     return next;
 }
 
+/* Hold a map; false: it says nothing, and the one before it stays. */
+static bool hold(GstRefocus *element, GstBuffer *map, GstClockTime time)
+{
+    int status;
+
+    GST_OBJECT_LOCK(element);
+    status =
+        rf_gst_depths_hold(&element->depths, &element->settings, map, &element->depth_info, time);
+    GST_OBJECT_UNLOCK(element);
+    if (status == REFOCUS_ERR_NO_DEPTH)
+        warn(element, "a depth map is left out: it is 0 everywhere, which is no distance");
+    else if (status != REFOCUS_OK)
+        warn(element, "a depth map is left out: its buffer is no picture of its caps");
+    return status == REFOCUS_OK;
+}
+
 /* Take the maps of the pad up to the one that is nearest to the frame: OK when that is held,
  * NEED_DATA when it may still come. */
 static GstFlowReturn pair(GstRefocus *element, GstAggregatorPad *pad, GstClockTime frame,
@@ -87,8 +103,7 @@ static GstFlowReturn pair(GstRefocus *element, GstAggregatorPad *pad, GstClockTi
             return GST_FLOW_OK;
         }
         gst_aggregator_pad_drop_buffer(pad);
-        if (!is_gap(next) && !rf_gst_depths_hold(depths, next, &element->depth_info, time)) {
-            warn(element, "a depth map is left out: its buffer is no picture of its caps");
+        if (!is_gap(next) && !hold(element, next, time)) {
             gst_buffer_unref(next);
             continue;
         }

@@ -56,24 +56,53 @@ int rf_gst_depths_read(struct rf_gst_depths *depths, const struct rf_gst_setting
     return status;
 }
 
-bool rf_gst_depths_hold(struct rf_gst_depths *depths, GstBuffer *buffer, const GstVideoInfo *info,
-                        GstClockTime time)
+static bool is_disparity(const char *unit)
+{
+    return !unit || strcmp(unit, "disparity") == 0;
+}
+
+static bool is_distance(const char *unit)
+{
+    struct refocus_depth_map map = refocus_depth_map_default();
+
+    return !is_disparity(unit) && refocus_depth_set_unit(&map, unit) == REFOCUS_OK &&
+           map.meaning == REFOCUS_DEPTH_DISTANCE;
+}
+
+/* Whether a map of distances has a sample other than 0, which is no value. */
+static bool has_reading(const GstVideoFrame *frame)
+{
+    const size_t row = (size_t)GST_VIDEO_FRAME_COMP_WIDTH(frame, 0) *
+                       (size_t)GST_VIDEO_FRAME_COMP_PSTRIDE(frame, 0);
+
+    for (int y = 0; y < GST_VIDEO_FRAME_HEIGHT(frame); y++) {
+        const uint8_t *const bytes = (const uint8_t *)GST_VIDEO_FRAME_PLANE_DATA(frame, 0) +
+                                     (ptrdiff_t)y * GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0);
+
+        for (size_t i = 0; i < row; i++)
+            if (bytes[i])
+                return true;
+    }
+    return false;
+}
+
+int rf_gst_depths_hold(struct rf_gst_depths *depths, const struct rf_gst_settings *settings,
+                       GstBuffer *buffer, const GstVideoInfo *info, GstClockTime time)
 {
     GstVideoFrame frame;
 
     if (!rf_gst_frame_map(&frame, info, buffer, GST_MAP_READ))
-        return false;
+        return REFOCUS_ERR_FORMAT;
+    if (is_distance(settings->depth_unit) && !has_reading(&frame)) {
+        gst_video_frame_unmap(&frame);
+        return REFOCUS_ERR_NO_DEPTH;
+    }
     let_go(depths);
     depths->frame = frame;
     depths->mapped = depths->known = depths->fresh = true;
     depths->still = false;
     depths->time = time;
-    return true;
-}
-
-static bool is_disparity(const char *unit)
-{
-    return !unit || strcmp(unit, "disparity") == 0;
+    return REFOCUS_OK;
 }
 
 /* The samples where they lie if they are disparities, else disparities made of them. */

@@ -30,9 +30,10 @@ struct rf_gst_depths {
 int rf_gst_depths_read(struct rf_gst_depths *depths, const struct rf_gst_settings *settings,
                        struct refocus_reason *reason);
 
-/* Hold the map of a buffer, by reference, until the next one. False: it cannot be read. */
-bool rf_gst_depths_hold(struct rf_gst_depths *depths, GstBuffer *buffer, const GstVideoInfo *info,
-                        GstClockTime time);
+/* Hold the map of a buffer, by reference, until the next one. FORMAT: its buffer is no picture of
+ * its caps; NO_DEPTH: it is of distances and has not one reading. Then the map before it stays. */
+int rf_gst_depths_hold(struct rf_gst_depths *depths, const struct rf_gst_settings *settings,
+                       GstBuffer *buffer, const GstVideoInfo *info, GstClockTime time);
 
 /* The map as disparities, for a frame of this picture: depths->disparity and depths->range. */
 int rf_gst_depths_use(struct rf_gst_depths *depths, const struct rf_gst_settings *settings,

@@ -13,6 +13,7 @@
 #define SIZE    "width=64,height=48,framerate=25/1"
 #define NV12    "video/x-raw,format=NV12," SIZE
 #define DEPTH   "video/x-raw,format=GRAY8," SIZE
+#define MM      "video/x-raw,format=GRAY16_LE," SIZE
 #define SMALL   "video/x-raw,format=GRAY8,width=16,height=12,framerate=25/1"
 #define UNTIMED "video/x-raw,format=NV12,width=64,height=48,framerate=0/1"
 
@@ -259,6 +260,34 @@ static void damaged_map(void **state)
     finish(&bench);
 }
 
+/* A depth camera whose lens is covered: the map before it serves on, and the next one counts. */
+static void map_without_readings(void **state)
+{
+    static const int samples[] = {0, 1, 0, 2}; /* no value, 257 mm, no value, 514 mm */
+    struct bench bench;
+
+    (void)state;
+    bench_open(&bench, NV12, MM);
+    g_object_set(bench.element, "depth-unit", "mm", "near", 0.257, "far", 0.514, "focus", 1.0,
+                 "blur", 8.0, "threads", 1, NULL);
+    assert_int_equal(gst_harness_push(bench.video, frame_make(NV12, 3, 0)), GST_FLOW_OK);
+    for (int i = 0; i < 4; i++) {
+        if (i == 3)
+            assert_int_equal(gst_harness_push(bench.video, frame_make(NV12, 3, ms(80))),
+                             GST_FLOW_OK);
+        assert_int_equal(gst_harness_push(bench.depth, frame_flat(MM, samples[i], ms(40 * i))),
+                         GST_FLOW_OK);
+    }
+    end_depth(&bench);
+    for (int i = 0; i < 2; i++)
+        gst_buffer_unref(gst_harness_pull(bench.video));
+    goes_on(&bench, 110, false);
+    for (int i = 0; i < 2; i++)
+        gst_message_unref(gst_bus_pop_filtered(bench.bus, GST_MESSAGE_WARNING));
+    assert_null(gst_bus_pop_filtered(bench.bus, GST_MESSAGE_WARNING));
+    finish(&bench);
+}
+
 static void damaged_first_map(void **state)
 {
     struct bench bench;
@@ -355,16 +384,17 @@ static void stopped_while_waiting(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(short_frame),        cmocka_unit_test(empty_frame),
-        cmocka_unit_test(rows_beyond_memory), cmocka_unit_test(chroma_beyond_memory),
-        cmocka_unit_test(rows_too_narrow),    cmocka_unit_test(another_size_than_said),
-        cmocka_unit_test(odd_strides),        cmocka_unit_test(long_frame),
-        cmocka_unit_test(corrupt_frame),      cmocka_unit_test(dropped_frames),
-        cmocka_unit_test(times_out_of_order), cmocka_unit_test(frames_without_times),
-        cmocka_unit_test(unknown_rate),       cmocka_unit_test(damaged_map),
-        cmocka_unit_test(damaged_first_map),  cmocka_unit_test(maps_without_times),
-        cmocka_unit_test(maps_back_in_time),  cmocka_unit_test(maps_of_another_size),
-        cmocka_unit_test(depth_camera_gone),  cmocka_unit_test(stopped_while_waiting),
+        cmocka_unit_test(short_frame),           cmocka_unit_test(empty_frame),
+        cmocka_unit_test(rows_beyond_memory),    cmocka_unit_test(chroma_beyond_memory),
+        cmocka_unit_test(rows_too_narrow),       cmocka_unit_test(another_size_than_said),
+        cmocka_unit_test(odd_strides),           cmocka_unit_test(long_frame),
+        cmocka_unit_test(corrupt_frame),         cmocka_unit_test(dropped_frames),
+        cmocka_unit_test(times_out_of_order),    cmocka_unit_test(frames_without_times),
+        cmocka_unit_test(unknown_rate),          cmocka_unit_test(damaged_map),
+        cmocka_unit_test(damaged_first_map),     cmocka_unit_test(map_without_readings),
+        cmocka_unit_test(maps_without_times),    cmocka_unit_test(maps_back_in_time),
+        cmocka_unit_test(maps_of_another_size),  cmocka_unit_test(depth_camera_gone),
+        cmocka_unit_test(stopped_while_waiting),
     };
 
     gst_init(NULL, NULL);
