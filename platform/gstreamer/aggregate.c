@@ -1,4 +1,5 @@
 /* aggregate.c: each frame gets its depth by time, is refocused, and goes on. */
+#include <string.h>
 #include "element.h"
 
 static GstClockTime running_time(GstAggregatorPad *pad, GstBuffer *buffer)
@@ -187,6 +188,34 @@ static GstBuffer *new_frame(GstRefocus *element, GstBuffer *frame)
     return out;
 }
 
+static int render_by(GstRefocus *element, const struct rf_gst_settings *settings, GstClockTime time,
+                     const struct refocus_image *photo, const struct refocus_image *picture,
+                     struct refocus_reason *reason)
+{
+    int status = rf_gst_depths_use(&element->depths, settings, photo, reason);
+
+    if (status == REFOCUS_OK)
+        status = rf_gst_shot_take(&element->shot, settings, &element->depths, time, photo, picture,
+                                  reason);
+    if (status != REFOCUS_OK && reason->text[0] == '\0')
+        g_snprintf(reason->text, sizeof reason->text, "%s", refocus_strerror(status));
+    return status;
+}
+
+/* Properties that change while frames come are no unit: `near` is set before `far`. By what cannot
+ * be rendered, the settings of the last frame hold. */
+static int render_by_last(GstRefocus *element, GstClockTime time, const struct refocus_image *photo,
+                          const struct refocus_image *picture, struct refocus_reason *reason)
+{
+    if (strcmp(reason->text, element->refused.text) != 0) {
+        GST_ELEMENT_WARNING(element, LIBRARY, SETTINGS,
+                            ("%s; frames are rendered by the settings before", reason->text),
+                            (NULL));
+        element->refused = *reason;
+    }
+    return render_by(element, &element->used, time, photo, picture, reason);
+}
+
 /* The library's part: pictures in the memory of both buffers. */
 static int render(GstRefocus *element, GstClockTime time, GstVideoFrame *in, GstVideoFrame *out,
                   struct refocus_reason *reason)
@@ -195,20 +224,21 @@ static int render(GstRefocus *element, GstClockTime time, GstVideoFrame *in, Gst
     struct refocus_image photo, picture;
     int status;
 
+    if (!rf_gst_picture(in, &element->chroma_in, &photo) ||
+        !rf_gst_picture(out, &element->chroma_out, &picture))
+        return REFOCUS_ERR_MEMORY;
     GST_OBJECT_LOCK(element);
     rf_gst_settings_copy(&settings, &element->settings);
     GST_OBJECT_UNLOCK(element);
-    status = rf_gst_picture(in, &element->chroma_in, &photo) &&
-                     rf_gst_picture(out, &element->chroma_out, &picture)
-                 ? REFOCUS_OK
-                 : REFOCUS_ERR_MEMORY;
-    if (status == REFOCUS_OK)
-        status = rf_gst_depths_use(&element->depths, &settings, &photo, reason);
-    if (status == REFOCUS_OK)
-        status = rf_gst_shot_take(&element->shot, &settings, &element->depths, time, &photo,
-                                  &picture, reason);
+    status = render_by(element, &settings, time, &photo, &picture, reason);
+    if (status == REFOCUS_OK) {
+        rf_gst_settings_end(&element->used);
+        element->used = settings;
+        element->refused.text[0] = '\0';
+        return REFOCUS_OK;
+    }
     rf_gst_settings_end(&settings);
-    return status;
+    return element->rendered ? render_by_last(element, time, &photo, &picture, reason) : status;
 }
 
 static GstFlowReturn refocus(GstRefocus *element, GstBuffer *buffer, GstClockTime time)

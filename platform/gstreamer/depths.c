@@ -116,7 +116,6 @@ static int convert(struct rf_gst_depths *depths, const struct rf_gst_settings *s
     const bool bytes = GST_VIDEO_FRAME_FORMAT(&depths->frame) == GST_VIDEO_FORMAT_GRAY8;
     struct refocus_depth_map map = refocus_depth_map_default();
 
-    depths->range = (struct refocus_depth_range){settings->near_m, settings->far_m};
     if (is_disparity(settings->depth_unit)) {
         depths->disparity = bytes ? refocus_disparity8(samples, width, height, stride)
                                   : refocus_disparity16(samples, width, height, stride);
@@ -187,7 +186,11 @@ int rf_gst_depths_use(struct rf_gst_depths *depths, const struct rf_gst_settings
 {
     int status = REFOCUS_OK;
 
-    if (depths->still || !depths->fresh)
+    if (depths->still)
+        return REFOCUS_OK;
+    if (depths->fresh || is_disparity(settings->depth_unit))
+        depths->range = (struct refocus_depth_range){settings->near_m, settings->far_m};
+    if (!depths->fresh)
         return REFOCUS_OK;
     status = convert(depths, settings, reason);
     if (status == REFOCUS_OK && settings->steady > 0)

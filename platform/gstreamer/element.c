@@ -87,6 +87,7 @@ static gboolean start(GstAggregator *aggregator)
     gst_video_info_init(&element->depth_info);
     rf_gst_depths_end(&element->depths);
     element->rendered = element->dropped = 0;
+    element->refused.text[0] = '\0';
     element->flushed = 0;
     element->earliest = GST_CLOCK_TIME_NONE;
     if (!element->settings.depth_location)
@@ -253,6 +254,7 @@ static void finalize(GObject *object)
     GstRefocus *const element = (GstRefocus *)object;
 
     stop(&element->parent);
+    rf_gst_settings_end(&element->used);
     gst_clear_object(&element->depth);
     rf_gst_settings_end(&element->settings);
     G_OBJECT_CLASS(rf_gst_element_parent_class)->finalize(object);

@@ -1,0 +1,153 @@
+/* test_settings.c: properties that change while frames come, one after the other or to what cannot
+ * be: the stream goes on. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <string.h>
+#include "frames.h"
+#include "plugin.h"
+
+#define SIZE "width=64,height=48,framerate=25/1"
+#define NV12 "video/x-raw,format=NV12," SIZE
+#define MAPS "video/x-raw,format=GRAY16_LE," SIZE
+
+/* An element whose maps are in this unit. */
+static void begin(struct bench *bench, const char *unit, double near_m, double far_m)
+{
+    bench_open(bench, NV12, MAPS);
+    g_object_set(bench->element, "depth-unit", unit, "near", near_m, "far", far_m, "focus", 1.0,
+                 "blur", 8.0, "threads", 1, NULL);
+}
+
+/* A frame, the same each time, and a map of 1028. Without a time each frame takes the next map. */
+static void push(struct bench *bench)
+{
+    assert_int_equal(gst_harness_push(bench->depth, frame_flat(MAPS, 4, GST_CLOCK_TIME_NONE)),
+                     GST_FLOW_OK);
+    gst_harness_push(bench->video, frame_make(NV12, 3, 0));
+}
+
+static GstBuffer *next(struct bench *bench)
+{
+    push(bench);
+    return gst_harness_pull(bench->video);
+}
+
+/* Whether the next frame comes out as that one; with a warning on the bus, or with none. */
+static void comes_as(struct bench *bench, GstBuffer *expected, bool warned)
+{
+    GstBuffer *const out = next(bench);
+    GstMessage *message;
+
+    assert_non_null(out);
+    assert_true(frame_same(NV12, out, expected));
+    gst_buffer_unref(out);
+    message = gst_bus_pop_filtered(bench->bus, GST_MESSAGE_WARNING | GST_MESSAGE_ERROR);
+    assert_int_equal(message ? GST_MESSAGE_TYPE(message) : 0, warned ? GST_MESSAGE_WARNING : 0);
+    if (message)
+        gst_message_unref(message);
+}
+
+/* Both are changed while frames come, and one is changed first. */
+static void near_before_far(void **state)
+{
+    GstBuffer *const sharp = frame_make(NV12, 3, 0);
+    GstBuffer *before;
+    struct bench bench;
+
+    (void)state;
+    begin(&bench, "mm", 0.5, 4);
+    before = next(&bench);
+    assert_non_null(before);
+    assert_false(frame_same(NV12, before, sharp));
+    g_object_set(bench.element, "near", 5.0, NULL);
+    comes_as(&bench, before, true);
+    comes_as(&bench, before, false);
+    g_object_set(bench.element, "far", 9.0, NULL);
+    comes_as(&bench, sharp, false); /* all is nearer than 5 m, which is in focus */
+    gst_buffer_unref(sharp);
+    gst_buffer_unref(before);
+    bench_close(&bench);
+}
+
+/* A range that cannot be is not kept with maps that need none, either. */
+static void lens_before_range(void **state)
+{
+    GstBuffer *before, *by_lens, *wider;
+    struct bench bench;
+
+    (void)state;
+    begin(&bench, "disparity", 0, 0);
+    before = next(&bench);
+    assert_non_null(before);
+    g_object_set(bench.element, "f-number", 1.4, NULL);
+    comes_as(&bench, before, true);
+    g_object_set(bench.element, "near", 0.5, NULL);
+    comes_as(&bench, before, false);
+    g_object_set(bench.element, "far", 4.0, NULL);
+    by_lens = next(&bench);
+    assert_false(frame_same(NV12, by_lens, before));
+    g_object_set(bench.element, "near", 5.0, NULL);
+    comes_as(&bench, by_lens, true);
+    g_object_set(bench.element, "far", 9.0, NULL);
+    wider = next(&bench);
+    assert_false(frame_same(NV12, wider, by_lens));
+    gst_buffer_unref(before);
+    gst_buffer_unref(by_lens);
+    gst_buffer_unref(wider);
+    bench_close(&bench);
+}
+
+static void unknown_aperture(void **state)
+{
+    GstBuffer *before;
+    struct bench bench;
+
+    (void)state;
+    begin(&bench, "disparity", 0, 0);
+    before = next(&bench);
+    assert_non_null(before);
+    for (int i = 0; i < 2; i++) {
+        g_object_set(bench.element, "aperture", "polygon", NULL);
+        comes_as(&bench, before, true);
+        g_object_set(bench.element, "aperture", "disc", NULL);
+        comes_as(&bench, before, false);
+    }
+    gst_buffer_unref(before);
+    bench_close(&bench);
+}
+
+/* Before the first frame there is nothing to go on with. */
+static void wrong_from_the_beginning(void **state)
+{
+    struct bench bench;
+    char *words;
+
+    (void)state;
+    begin(&bench, "disparity", 0, 0);
+    g_object_set(bench.element, "aperture", "polygon", NULL);
+    push(&bench);
+    words = bench_error(&bench);
+    assert_non_null(words);
+    assert_non_null(strstr(words, "aperture 'polygon' is not known"));
+    g_free(words);
+    bench_close(&bench);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(near_before_far),
+        cmocka_unit_test(lens_before_range),
+        cmocka_unit_test(unknown_aperture),
+        cmocka_unit_test(wrong_from_the_beginning),
+    };
+
+    gst_init(NULL, NULL);
+    if (!rf_gst_register(NULL))
+        return 1;
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
