@@ -241,6 +241,18 @@ static int render(GstRefocus *element, GstClockTime time, GstVideoFrame *in, Gst
     return element->rendered ? render_by_last(element, time, &photo, &picture, reason) : status;
 }
 
+/* Once, until there is a blur that the method can have. */
+static void tell_limit(GstRefocus *element)
+{
+    if (element->shot.limited && !element->limited)
+        GST_ELEMENT_WARNING(element, LIBRARY, SETTINGS,
+                            ("the blur asked for is more than the method %s can have, %d pixels",
+                             refocus_method_name((uint32_t)element->used.method),
+                             (int)element->shot.made.max_blur_radius),
+                            (NULL));
+    element->limited = element->shot.limited;
+}
+
 static GstFlowReturn refocus(GstRefocus *element, GstBuffer *buffer, GstClockTime time)
 {
     GstBuffer *const result = new_frame(element, buffer);
@@ -268,6 +280,7 @@ static GstFlowReturn refocus(GstRefocus *element, GstBuffer *buffer, GstClockTim
         gst_buffer_unref(result);
         return fail(element, reason.text[0] ? reason.text : refocus_strerror(status));
     }
+    tell_limit(element);
     element->rendered++;
     return gst_aggregator_finish_buffer(&element->parent, result);
 }

@@ -30,6 +30,7 @@ typedef struct rf_gst_element {
     struct rf_gst_chroma chroma_in, chroma_out;
     struct rf_gst_settings used; /* settings of the last frame that could be rendered by its own */
     struct refocus_reason refused; /* words that the bus has about those that could not */
+    bool limited;                  /* the bus knows of a blur that the method cannot have */
     guint64 rendered, dropped;
 } GstRefocus;
 

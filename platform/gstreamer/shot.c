@@ -42,12 +42,17 @@ static int find_focus(const struct rf_gst_settings *settings, const struct rf_gs
     return REFOCUS_OK;
 }
 
+/* The greatest blur of a method. */
+static double most_blur(const struct rf_gst_settings *settings)
+{
+    return refocus_method_traits((uint32_t)settings->method) & REFOCUS_METHOD_ANY_RADIUS
+               ? REFOCUS_MAX_BLUR_RADIUS
+               : REFOCUS_PLAIN_BLUR_RADIUS;
+}
+
 static int find_blur(const struct rf_gst_settings *settings, const struct rf_gst_depths *depths,
                      int32_t width, float *blur, struct refocus_reason *reason)
 {
-    const uint32_t traits = refocus_method_traits((uint32_t)settings->method);
-    const double most =
-        traits & REFOCUS_METHOD_ANY_RADIUS ? REFOCUS_MAX_BLUR_RADIUS : REFOCUS_PLAIN_BLUR_RADIUS;
     const struct refocus_lens lens = {settings->focal_length, settings->f_number,
                                       settings->sensor_width};
     double radius = settings->blur;
@@ -59,7 +64,7 @@ static int find_blur(const struct rf_gst_settings *settings, const struct rf_gst
                         "far, or blur instead");
         radius = refocus_max_blur_radius(&lens, &depths->range, width);
     }
-    *blur = (float)fmin(radius, most);
+    *blur = (float)radius;
     return REFOCUS_OK;
 }
 
@@ -171,6 +176,8 @@ int rf_gst_shot_take(struct rf_gst_shot *shot, const struct rf_gst_settings *set
 
     if (status == REFOCUS_OK)
         status = find_blur(settings, depths, photo->width, &blur, reason);
+    shot->limited = blur > most_blur(settings);
+    blur = (float)fmin(blur, most_blur(settings));
     if (status == REFOCUS_OK)
         status = fit(shot, settings, photo, blur, reason);
     if (status == REFOCUS_OK)

@@ -12,6 +12,7 @@ struct rf_gst_shot {
     unsigned shape_number; /* shape of the aperture; 0: there is none */
     GstClockTime time;     /* running time of the last frame */
     bool begun, cut;       /* there was a frame; the next one does not follow on it */
+    bool limited;          /* the method cannot have the blur that was asked for */
 };
 
 /* The next frame does not follow on the last: their highlights are not compared. */

@@ -101,6 +101,28 @@ static void lens_before_range(void **state)
     bench_close(&bench);
 }
 
+/* The frame is that of the greatest blur, which is told once. */
+static void more_blur_than_the_method_has(void **state)
+{
+    GstBuffer *most;
+    struct bench bench;
+
+    (void)state;
+    begin(&bench, "disparity", 0, 0);
+    gst_util_set_object_arg(G_OBJECT(bench.element), "method", "search");
+    g_object_set(bench.element, "blur", 127.0, NULL);
+    most = next(&bench);
+    for (int i = 0; i < 2; i++) {
+        g_object_set(bench.element, "blur", 200.0, NULL);
+        comes_as(&bench, most, true);
+        comes_as(&bench, most, false);
+        g_object_set(bench.element, "blur", 127.0, NULL);
+        comes_as(&bench, most, false);
+    }
+    gst_buffer_unref(most);
+    bench_close(&bench);
+}
+
 static void unknown_aperture(void **state)
 {
     GstBuffer *before;
@@ -142,6 +164,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(near_before_far),
         cmocka_unit_test(lens_before_range),
+        cmocka_unit_test(more_blur_than_the_method_has),
         cmocka_unit_test(unknown_aperture),
         cmocka_unit_test(wrong_from_the_beginning),
     };
