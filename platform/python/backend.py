@@ -1,7 +1,8 @@
-"""Builds the wheel of the package (PEP 517): the core inside, and no library of the system.
+"""Builds the wheel of the package (PEP 517): the core inside, and picture files beside it whose
+libraries the system has: PNG, JPEG, depth in XMP.
 
     pip install ./platform/python
-    pip wheel ./platform/python -C setup-args=-Djpeg=enabled    (options of meson)
+    pip wheel ./platform/python --config-settings setup-args=-Dheic=enabled    (options of meson)
 """
 import base64
 import hashlib
@@ -18,6 +19,10 @@ import zipfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 TOP = HERE.parent.parent
+#: Features that are taken when their libraries are there.
+FILES = ('jpeg', 'png', 'xmp')
+#: Formats that are modules, which are loaded from a folder of the system and not out of a wheel.
+MODULES = ('tiff', 'openexr', 'webp', 'jxl', 'raw', 'npz')
 KERNELS = ('x86_64', 'amd64', 'aarch64', 'arm64', 'armv7l', 'armv8l')
 
 
@@ -34,14 +39,26 @@ def metadata():
     return project['name'], '\n'.join(lines) + '\n'
 
 
+def options(arguments):
+    """All options of meson, by those that were given; meson takes the last of each."""
+    for name in MODULES:
+        if {f'-D{name}=enabled', f'-D{name}=auto'} & set(arguments):
+            raise ValueError(f'-D{name}: this format is a module, which a wheel does not hold; '
+                             'build librefocus with meson and use its Python package')
+    features = re.findall(r"^option\('(\w+)', type: 'feature'",
+                          (TOP / 'meson_options.txt').read_text(), re.M)
+    kernels = 'enabled' if platform.machine().lower() in KERNELS else 'disabled'
+    return ['--prefix=/usr', '-Dbuildtype=release',
+            *(f'-D{name}=disabled' for name in features if name not in FILES),
+            f'-Dsimd={kernels}', '-Dpython=enabled', '-Ddefault_library=static',
+            '-Dexamples=false', *arguments]
+
+
 def compile_package(folder, arguments):
     """The installed package, from a build in a folder."""
-    kernels = 'enabled' if platform.machine().lower() in KERNELS else 'disabled'
     build = folder / 'build'
     for command in (
-            ['setup', build, TOP, '--prefix=/usr', '-Dbuildtype=release',
-             '-Dauto_features=disabled', f'-Dsimd={kernels}', '-Dpython=enabled',
-             '-Ddefault_library=static', '-Dexamples=false', *arguments],
+            ['setup', build, TOP, *options(arguments)],
             ['compile', '-C', build, 'python-package'],
             ['install', '-C', build, '--no-rebuild', '--tags', 'python-runtime', '--destdir',
              folder / 'installed']):
