@@ -50,6 +50,7 @@ int rf_rows_get(struct rf_buffers *buffers, PyObject *object, int writable, cons
     *rows = (struct rf_rows){.first = b->buf,
                              .stride = b->strides[0],
                              .rows = b->shape[0],
+                             .columns = b->shape[1],
                              .row_bytes = within,
                              .item = b->itemsize,
                              .type = type_of(b->format)};
@@ -58,6 +59,20 @@ int rf_rows_get(struct rf_buffers *buffers, PyObject *object, int writable, cons
         return -1;
     }
     return 0;
+}
+
+int rf_map_rows_get(struct rf_buffers *buffers, PyObject *object, int writable, const char *what,
+                    struct rf_rows *rows)
+{
+    if (rf_rows_get(buffers, object, writable, what, rows) != 0)
+        return -1;
+    if (rows->row_bytes == rows->columns * rows->item)
+        return 0;
+    PyErr_Format(PyExc_ValueError,
+                 "%s: needs one sample for each pixel, not %zd; take one channel, as by "
+                 "numpy.ascontiguousarray(map[:, :, 0])",
+                 what, rows->columns ? rows->row_bytes / rows->item / rows->columns : 0);
+    return -1;
 }
 
 int rf_image_get(struct rf_buffers *buffers, PyObject *tuple, int writable, const char *what,
@@ -115,7 +130,7 @@ int rf_disparity_get(struct rf_buffers *buffers, PyObject *object, const char *w
 {
     struct rf_rows rows;
 
-    if (rf_rows_get(buffers, object, 0, what, &rows) != 0 || check_sides(&rows, what) != 0)
+    if (rf_map_rows_get(buffers, object, 0, what, &rows) != 0 || check_sides(&rows, what) != 0)
         return -1;
     if (rows.type != 'B' && rows.type != 'H') {
         PyErr_Format(PyExc_TypeError,
@@ -133,7 +148,7 @@ int rf_disparity_get(struct rf_buffers *buffers, PyObject *object, const char *w
 static int sized_get(struct rf_buffers *buffers, PyObject *object, int writable, const char *what,
                      char type, int32_t width, int32_t height, struct rf_rows *rows)
 {
-    if (rf_rows_get(buffers, object, writable, what, rows) != 0)
+    if (rf_map_rows_get(buffers, object, writable, what, rows) != 0)
         return -1;
     if (rows->type != type) {
         PyErr_Format(PyExc_TypeError, "%s: has to be %s", what, type == 'H' ? "uint16" : "uint8");

@@ -19,7 +19,7 @@ static PyObject *depth_to_disparity(PyObject *module, PyObject *args)
                           &map.value_near, &map.value_far, &map.metres_per_unit, &map.near_m,
                           &map.far_m, &params.speckle, &confidence))
         return NULL;
-    if (rf_rows_get(&buffers, samples, 0, "depth", &rows) != 0)
+    if (rf_map_rows_get(&buffers, samples, 0, "depth", &rows) != 0)
         goto end;
     map.sample = rows.type == 'B'   ? REFOCUS_SAMPLE_U8
                  : rows.type == 'H' ? REFOCUS_SAMPLE_U16

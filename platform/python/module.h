@@ -21,7 +21,7 @@ struct rf_buffers {
 /* Rows of a buffer: samples of one row follow each other, the rows are stride bytes apart. */
 struct rf_rows {
     char *first;
-    Py_ssize_t stride, rows, row_bytes, item;
+    Py_ssize_t stride, rows, columns, row_bytes, item;
     char type; /* as in the struct module: B, H, e, f, d */
 };
 
@@ -30,6 +30,9 @@ void rf_buffers_release(struct rf_buffers *buffers);
 /* All return 0, or -1 with a Python exception. WHAT names the argument in it. */
 int rf_rows_get(struct rf_buffers *buffers, PyObject *object, int writable, const char *what,
                 struct rf_rows *rows);
+/* A map has one sample for each column. */
+int rf_map_rows_get(struct rf_buffers *buffers, PyObject *object, int writable, const char *what,
+                    struct rf_rows *rows);
 int rf_image_get(struct rf_buffers *buffers, PyObject *tuple, int writable, const char *what,
                  struct refocus_image *image);
 int rf_disparity_get(struct rf_buffers *buffers, PyObject *object, const char *what,

@@ -57,7 +57,7 @@ static PyObject *aperture_create(PyObject *module, PyObject *args)
         rf_struct_get(NULL, dictionary, "aperture_params", &params) != 0)
         return NULL;
     if (mask != Py_None) {
-        if (rf_rows_get(&buffers, mask, 0, "mask", &rows) == 0 && rows.type != 'B')
+        if (rf_map_rows_get(&buffers, mask, 0, "mask", &rows) == 0 && rows.type != 'B')
             PyErr_SetString(PyExc_TypeError, "mask: has to be uint8");
         if (!PyErr_Occurred() &&
             (rows.rows > REFOCUS_MAX_APERTURE_SIDE || rows.row_bytes > REFOCUS_MAX_APERTURE_SIDE))

@@ -247,6 +247,25 @@ class Errors(Case):
         fixed.flags.writeable = False
         self.refused((ValueError, BufferError), '', picture_of, photo, disparity, fixed)
 
+    def test_maps_of_several_channels(self):
+        """What cv2.imread() gives of a grey file is no map three times as wide."""
+        photo, three = self.photo, numpy.repeat(self.disparity[:, :, None], 3, 2)
+        bytes_ = (three >> 8).astype(numpy.uint8)
+        small = numpy.zeros((2, 2, 3), numpy.uint8)
+        for what, function, arguments, named in (
+                ('disparity', refocus.render, (photo, three), {'focus': 0.5, 'blur': 5}),
+                ('disparity', refocus.render, (photo, bytes_), {'focus': 0.5, 'blur': 5}),
+                ('disparity', refocus.upsample, (photo, three), {}),
+                ('disparity', refocus.depth_edges, (photo, three), {}),
+                ('disparity', refocus.focus_at_point, (three, 45, 40), {}),
+                ('samples', refocus.gray16_write, ('out.pgm', three), {}),
+                ('matte', refocus.render, (photo, self.disparity),
+                 {'focus': 0.5, 'blur': 5, 'matte': three}),
+                ('mask', refocus.Aperture, (small,), {})):
+            self.refused(ValueError, f'{what}: needs one sample for each pixel, not 3', function,
+                         *arguments, **named)
+        self.same(picture_of(photo, self.disparity[:, :, None]), self.expected)
+
     def test_the_words_of_the_library(self):
         with refocus.Renderer(WIDTH, HEIGHT, BLUR) as renderer:
             self.refused(refocus.StateError, '', renderer.render, refocus.Settings(),
