@@ -21,4 +21,6 @@ for library in libpng:PNG libturbojpeg:JPEG; do
         exit 1
     }
 done
-"$python" "$source/tests/python/test_python.py" "$work/installed"
+for test in test_python test_calls; do
+    "$python" "$source/tests/python/$test.py" "$work/installed"
+done

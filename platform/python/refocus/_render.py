@@ -186,7 +186,7 @@ QUALITIES = {'preview': (32, 0, Inpaint.SMOOTH), 'standard': (64, 1, Inpaint.SMO
 def render(photo: Image | Buffer, depth: Buffer, *, focus: float | None = None,
            focus_at: tuple[int, int] | None = None, focus_distance: float | None = None,
            blur: float | None = None, f_number: float | None = None,
-           focal_length_mm: float = 26.0, sensor_width_mm: float = 36.0,
+           focal_length_mm: float | None = None, sensor_width_mm: float | None = None,
            near_m: float = 0.0, far_m: float = 0.0, quality: str = 'standard',
            highlights: str | float = 'auto', depth_edges: DepthEdges = DepthEdges.AUTO,
            matte: Buffer | None = None, aperture: Aperture | None = None,
@@ -198,7 +198,10 @@ def render(photo: Image | Buffer, depth: Buffer, *, focus: float | None = None,
     distances and floats. One of `focus` (disparity, 0 farthest to 1), `focus_at` (a pixel, x and
     y) and `focus_distance` (metres) says what is sharp; `blur` (pixels) or `f_number` by how much
     the rest is not. Metres and f-numbers need `near_m` and `far_m`, the distances of disparities
-    1 and 0. Further arguments are those of `Settings`.
+    1 and 0, and an f-number `focal_length_mm`: `sensor_width_mm` is what the width of the photo
+    shows, by default so much that its larger side shows 36 mm. (The command takes the focal length
+    of the file where none is given, `photo.info.focal_length_35mm`, as equal on the diagonal.)
+    Further arguments are those of `Settings`.
     """
     image = as_image(photo, order)
     if quality not in QUALITIES:
@@ -208,11 +211,13 @@ def render(photo: Image | Buffer, depth: Buffer, *, focus: float | None = None,
     if (blur is None) == (f_number is None):
         raise ArgumentError('give blur or f_number')
     if f_number is not None:
-        blur = max_blur_radius(Lens(focal_length_mm=focal_length_mm, f_number=f_number,
-                                    sensor_width_mm=sensor_width_mm),
+        sensor_width = sensor_width_mm or 36.0 * image.width / max(image.width, image.height)
+        blur = max_blur_radius(Lens(focal_length_mm=focal_length_mm or 0.0, f_number=f_number,
+                                    sensor_width_mm=sensor_width),
                                DepthRange(near_m=near_m, far_m=far_m), image.width)
         if math.isnan(blur):
-            raise ArgumentError('f_number needs near_m and far_m, 0 < near_m < far_m, and a lens')
+            raise ArgumentError('f_number needs near_m and far_m, 0 < near_m < far_m, and '
+                                'focal_length_mm')
     if focus_distance is not None:
         focus = disparity_of_depth(DepthRange(near_m=near_m, far_m=far_m), focus_distance)
         if math.isnan(focus):

@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+"""What programs ask of the package refocus in one call, and what they get when they ask wrongly.
+
+usage: test_calls.py FOLDER_OF_THE_PACKAGE [REFOCUS]
+"""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from test_python import COMMAND, Case
+
+import numpy
+import refocus
+
+
+class Render(Case):
+    @unittest.skipUnless(COMMAND, 'no command in this build')
+    def test_the_lens_of_the_command(self):
+        """Also of a photo that stands upright."""
+        lens = {'f_number': 1.4, 'focal_length_mm': 50, 'near_m': 1, 'far_m': 9}
+        options = ['--f-number', '1.4', '--focal-length', '50', '--near', '1', '--far', '9']
+        for photo, disparity, more, named in (
+                (self.photo, self.disparity, [], {}),
+                (self.photo.transpose(1, 0, 2), self.disparity.T, [], {}),
+                (self.photo.transpose(1, 0, 2), self.disparity.T, ['--sensor-width', '20'],
+                 {'sensor_width_mm': 20})):
+            photo, disparity = map(numpy.ascontiguousarray, (photo, disparity))
+            with tempfile.TemporaryDirectory() as folder:
+                photo_file, map_file, out = (os.path.join(folder, name) for name in (
+                    'photo.ppm', 'map.pgm', 'out.ppm'))
+                refocus.image_write(photo_file, photo)
+                refocus.gray16_write(map_file, disparity)
+                subprocess.run([COMMAND, 'render', photo_file, '--depth', map_file, '--focus',
+                                '0.9', *options, *more, '-o', out], check=True)
+                self.same(refocus.photo_read(out).image,
+                          refocus.render(photo, disparity, focus=0.9, **lens, **named))
+        with self.assertRaisesRegex(refocus.ArgumentError, 'focal_length_mm'):
+            refocus.render(self.photo, self.disparity, focus=0.9, f_number=2, near_m=1, far_m=9)
+
+
+if __name__ == '__main__':
+    unittest.main(argv=sys.argv[:1])
