@@ -191,19 +191,20 @@ static PyObject *photo_parts(PyObject *module, PyObject *args)
     return parts;
 }
 
-/* (photo, matte instead of depth, out) */
+/* (photo, matte instead of depth, out, confidence: receives 0 for what was filled) */
 static PyObject *photo_disparity(PyObject *module, PyObject *args)
 {
     struct refocus_depth_report report = refocus_depth_report_default();
+    struct refocus_repair_params params = refocus_repair_params_default();
     const struct refocus_photo *photo;
     const struct refocus_depth_map *map;
     struct rf_buffers buffers = {0};
-    PyObject *capsule, *out;
+    PyObject *capsule, *out, *confidence;
     uint16_t *to;
     ptrdiff_t stride;
     int is_matte, status = REFOCUS_OK;
 
-    if (!PyArg_ParseTuple(args, "OpO", &capsule, &is_matte, &out))
+    if (!PyArg_ParseTuple(args, "OpOO", &capsule, &is_matte, &out, &confidence))
         return NULL;
     photo = PyCapsule_GetPointer(capsule, PHOTO);
     if (!photo)
@@ -211,8 +212,10 @@ static PyObject *photo_disparity(PyObject *module, PyObject *args)
     map = is_matte ? photo->matte : photo->depth;
     if (!map->samples)
         return rf_raise(module, REFOCUS_ERR_NO_DEPTH, NULL);
-    if (rf_map16_get(&buffers, out, "out", map->width, map->height, &to, &stride) == 0) {
-        Py_BEGIN_ALLOW_THREADS status = refocus_depth_to_disparity(map, to, stride, &report);
+    if (rf_map16_get(&buffers, out, "out", map->width, map->height, &to, &stride) == 0 &&
+        rf_bytes_get(&buffers, confidence, 1, "confidence", map->width, map->height,
+                     &params.confidence, &params.confidence_stride) == 0) {
+        Py_BEGIN_ALLOW_THREADS status = refocus_depth_repair(map, &params, to, stride, &report);
         Py_END_ALLOW_THREADS
     }
     rf_buffers_release(&buffers);

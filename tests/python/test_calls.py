@@ -9,7 +9,7 @@ import sys
 import tempfile
 import unittest
 
-from test_python import COMMAND, Case
+from test_python import COMMAND, DATA, Case
 
 import numpy
 import refocus
@@ -38,6 +38,27 @@ class Render(Case):
                           refocus.render(photo, disparity, focus=0.9, **lens, **named))
         with self.assertRaisesRegex(refocus.ArgumentError, 'focal_length_mm'):
             refocus.render(self.photo, self.disparity, focus=0.9, f_number=2, near_m=1, far_m=9)
+
+
+    @unittest.skipUnless(COMMAND, 'no command in this build')
+    def test_depth_with_holes(self):
+        """A sensor's map, whose filled samples count least: the command's picture."""
+        folder = DATA / 'portrait'
+        photo = refocus.photo_read(folder / 'allfocus.png').image
+        depth = refocus.depth_read(folder / 'depth_lowres.png', 'mm')
+        disparity, report = depth.disparity()
+        self.assertGreater(report.unknown, 0)
+        self.assertEqual((depth.confidence == 0).sum(), report.unknown + report.strays)
+        for edges, option in ((refocus.DepthEdges.AUTO, 'auto'),
+                              (refocus.DepthEdges.AS_GIVEN, 'as-given')):
+            with self.subTest(option), tempfile.TemporaryDirectory() as temporary:
+                out = os.path.join(temporary, 'out.ppm')
+                subprocess.run([COMMAND, 'render', folder / 'allfocus.png', '--depth',
+                                folder / 'depth_lowres.png', '--depth-unit', 'mm', '--focus', '0.7',
+                                '--blur', '20', '--depth-edges', option, '-o', out], check=True)
+                self.same(refocus.photo_read(out).image, refocus.render(
+                    photo, disparity, focus=0.7, blur=20, depth_edges=edges,
+                    confidence=depth.confidence))
 
 
 if __name__ == '__main__':

@@ -16,6 +16,8 @@ class Photo:
 
     `image` is an array of uint8 (None of a depth file), `deep` of uint16 or float32 where the file
     has more than 8 bits; both are the library's own memory. `info` says what else the file states.
+    `confidence`, a byte for each sample of its depth, is what the file says, and after disparity()
+    0 for samples that were filled, too; None: all are as measured.
     """
 
     def __init__(self, handle: typing.Any) -> None:
@@ -39,19 +41,27 @@ class Photo:
         return self._depth is not None
 
     def disparity(self) -> tuple[Array, DepthReport]:
-        """Its depth as disparities of 16 bits; `NoDepthError` when it carries none."""
-        return self._map(self._depth, False)
+        """Its depth as disparities of 16 bits; `NoDepthError` when it carries none.
+
+        `confidence` then says which samples are guesses: give it to render() with the map.
+        """
+        sure = None if self._depth is None else numpy.empty(self._depth[::-1], numpy.uint8)
+        out, report = self._map(self._depth, False, sure)
+        if sure is not None and report.unknown + report.specks + report.strays > 0:
+            self.confidence = sure if self.confidence is None else numpy.minimum(
+                sure, self.confidence)
+        return out, report
 
     def matte(self) -> Array:
         """How much of each pixel is subject, 65535 = all; `NoDepthError` when it has no matte."""
-        return self._map(self._matte, True)[0]
+        return self._map(self._matte, True, None)[0]
 
-    def _map(self, size: tuple[int, int] | None,
-             is_matte: bool) -> tuple[Array, DepthReport]:
+    def _map(self, size: tuple[int, int] | None, is_matte: bool,
+             confidence: Array | None) -> tuple[Array, DepthReport]:
         if size is None:
             raise NoDepthError('the file has no ' + ('matte' if is_matte else 'depth'))
         out = numpy.empty(size[::-1], numpy.uint16)
-        report = _core.photo_disparity(self._handle, is_matte, out)
+        report = _core.photo_disparity(self._handle, is_matte, out, confidence)
         return out, made(DepthReport, report)
 
 

@@ -189,13 +189,14 @@ def render(photo: Image | Buffer, depth: Buffer, *, focus: float | None = None,
            focal_length_mm: float | None = None, sensor_width_mm: float | None = None,
            near_m: float = 0.0, far_m: float = 0.0, quality: str = 'standard',
            highlights: str | float = 'auto', depth_edges: DepthEdges = DepthEdges.AUTO,
-           matte: Buffer | None = None, aperture: Aperture | None = None,
-           out: Image | Buffer | None = None, order: str = 'rgb', threads: int = 0,
-           **fields: typing.Any) -> typing.Any:
+           matte: Buffer | None = None, confidence: Buffer | None = None,
+           aperture: Aperture | None = None, out: Image | Buffer | None = None,
+           order: str = 'rgb', threads: int = 0, **fields: typing.Any) -> typing.Any:
     """Refocus a photo, with the defaults of the command `refocus render`, to the same bytes.
 
     `depth` are disparities, uint8 or uint16, bright near; `depth_to_disparity()` makes them of
-    distances and floats. One of `focus` (disparity, 0 farthest to 1), `focus_at` (a pixel, x and
+    distances and floats, and with `Photo.disparity()` the `confidence` that counts where a map is
+    brought to the photo's size: 255 for samples as measured, 0 for guesses. One of `focus` (disparity, 0 farthest to 1), `focus_at` (a pixel, x and
     y) and `focus_distance` (metres) says what is sharp; `blur` (pixels) or `f_number` by how much
     the rest is not. Metres and f-numbers need `near_m` and `far_m`, the distances of disparities
     1 and 0, and an f-number `focal_length_mm`: `sensor_width_mm` is what the width of the photo
@@ -236,7 +237,9 @@ def render(photo: Image | Buffer, depth: Buffer, *, focus: float | None = None,
                   methods=1 << method, thin=int(settings.thin.enabled or matte is not None),
                   textured=int(settings.render.inpaint), depth_edges=int(depth_edges),
                   deep=int(is_deep(image) or (goal is not None and is_deep(goal)))) as renderer:
-        renderer.prepare(image, depth, depth_edges=depth_edges, matte=matte)
+        if memoryview(depth).shape == (image.height, image.width):
+            confidence = None  # a map of the photo's size is taken as it is
+        renderer.prepare(image, depth, depth_edges=depth_edges, matte=matte, confidence=confidence)
         if focus_at is not None:
             focus = _core.focus_at(renderer.get_view(View.DISPARITY), *focus_at, 0)
         assert focus is not None
