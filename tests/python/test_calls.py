@@ -4,9 +4,12 @@
 usage: test_calls.py FOLDER_OF_THE_PACKAGE [REFOCUS]
 """
 import os
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 import unittest
 
 from test_python import COMMAND, DATA, Case
@@ -59,6 +62,35 @@ class Render(Case):
                 self.same(refocus.photo_read(out).image, refocus.render(
                     photo, disparity, focus=0.7, blur=20, depth_edges=edges,
                     confidence=depth.confidence))
+
+
+class Signals(Case):
+    def test_ctrl_c_ends_a_render(self):
+        """Every ray of a large blur would take minutes."""
+        photo = numpy.tile(self.photo, (12, 12, 1))
+        disparity = numpy.tile(self.disparity, (12, 12))
+        began = time.monotonic()
+        threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with self.assertRaises(KeyboardInterrupt):
+            refocus.render(photo, disparity, focus=0.1, blur=100, rays=refocus.RAYS_FULL,
+                           method=refocus.Method.RAYTRACE)
+        self.assertLess(time.monotonic() - began, 20)
+
+    def test_other_handlers_run_meanwhile(self):
+        """A handler that raises nothing lets the picture be finished."""
+        times = []
+        photo = numpy.tile(self.photo, (4, 4, 1))
+        disparity = numpy.tile(self.disparity, (4, 4))
+        before = signal.signal(signal.SIGALRM, lambda *_: times.append(time.monotonic()))
+        try:
+            signal.setitimer(signal.ITIMER_REAL, 0.01)
+            picture = refocus.render(photo, disparity, focus=0.1, blur=10, highlights='off',
+                                     method=refocus.Method.RAYTRACE)
+            ended = time.monotonic()
+        finally:
+            signal.signal(signal.SIGALRM, before)
+        self.assertEqual(picture.shape, photo.shape)
+        self.assertLess(times[0], ended)
 
 
 if __name__ == '__main__':

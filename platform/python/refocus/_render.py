@@ -1,5 +1,6 @@
 """Renderers, their settings, and the picture in one call."""
 import math
+import threading
 import types
 import typing
 
@@ -73,12 +74,43 @@ class Settings:
         return {name: vars(part) for name, part in vars(self).items() if isinstance(part, Struct)}
 
 
+def _interruptibly(handle: typing.Any, function: typing.Callable[..., None],
+                   *arguments: typing.Any) -> None:
+    """Call a function of the renderer in a thread of its own, so that the main thread, which alone
+    handles signals, sees a Ctrl-C at once and not when the library is done."""
+    raised: list[BaseException] = []
+    done = threading.Event()
+
+    def work() -> None:
+        try:
+            function(handle, *arguments)
+        except BaseException as error:
+            raised.append(error)
+        finally:
+            done.set()
+
+    if threading.current_thread() is not threading.main_thread():
+        return function(handle, *arguments)
+    try:
+        threading.Thread(target=work).start()
+    except RuntimeError:  # no thread can be had, as at the end of the interpreter
+        return function(handle, *arguments)
+    try:
+        done.wait()
+    except BaseException:  # a handler of signals raised it
+        while not done.wait(0.05):
+            _core.cancel(handle)
+        raise
+    if raised:
+        raise raised.pop()
+
+
 class Renderer:
     """Create once, prepare a photo, render as often as lens settings change.
 
     The arguments are fields of `RendererParams`. One thread at a time may call into a renderer
     (others get `BusyError`), but `cancel()`, which any may call; Python's lock is released while
-    the library works. Ends with `close()` or at the end of `with`.
+    the library works, and Ctrl-C ends its work. Ends with `close()` or at the end of `with`.
 
         with refocus.Renderer(720, 540, max_blur_radius=20) as renderer:
             renderer.prepare(photo, disparity)
@@ -117,8 +149,8 @@ class Renderer:
         image = as_image(photo, order)
         hidden = None if behind is None else as_image(behind, order)._tuple()
         self._photo = None
-        _core.prepare_scene(self._handle, image._tuple(), disparity, int(depth_edges), matte,
-                            hidden, behind_disparity, confidence)
+        _interruptibly(self._handle, _core.prepare_scene, image._tuple(), disparity,
+                       int(depth_edges), matte, hidden, behind_disparity, confidence)
         # Its form alone: pixels are kept where they are needed, and only there.
         self._photo = Image(image.format, image.width, image.height, (), image.matrix, image.range,
                             image.transfer, image.gamma, image.white)
@@ -141,7 +173,7 @@ class Renderer:
                                       part.region_height or photo.height)
             out = image.array if len(image.planes) == 1 else image
         aperture = settings.aperture._handle if settings.aperture else None
-        _core.render(self._handle, settings._parts(), aperture, image._tuple())
+        _interruptibly(self._handle, _core.render, settings._parts(), aperture, image._tuple())
         return out
 
     def cancel(self) -> None:
