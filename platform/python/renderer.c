@@ -1,6 +1,7 @@
 /* renderer.c: apertures and renderers as capsules, and what is done with them. */
 #include <stdbool.h>
 #include <string.h>
+#include <unistd.h>
 #include "module.h"
 
 #define RENDERER "refocus._core.renderer"
@@ -10,6 +11,7 @@ struct renderer {
     struct refocus_renderer *renderer; /* NULL when it is closed */
     int calls;                         /* calls under way, which run without Python's lock */
     bool keeps;                        /* the library reads photo and map after prepare */
+    pid_t owner;                       /* the process that its threads are in; 0: it has none */
     struct rf_buffers scene, maps;     /* memory that the library may still read */
 };
 
@@ -22,9 +24,18 @@ static void keep_words(void *user, const char *text)
     PyOS_snprintf(last_words, sizeof last_words, "%s", text);
 }
 
+/* A child by fork() has the memory of a renderer, and none of its threads, which would be waited
+ * for without end. */
+static bool is_of_another_process(const struct renderer *r)
+{
+    return r->owner && r->owner != getpid();
+}
+
 static void close_renderer(struct renderer *r)
 {
-    refocus_renderer_destroy(&r->renderer);
+    if (!is_of_another_process(r))
+        refocus_renderer_destroy(&r->renderer);
+    r->renderer = NULL;
     rf_buffers_release(&r->scene);
     rf_buffers_release(&r->maps);
 }
@@ -82,6 +93,14 @@ static PyObject *aperture_create(PyObject *module, PyObject *args)
     return capsule;
 }
 
+static bool has_one_thread(const struct refocus_renderer *renderer)
+{
+    struct refocus_renderer_info info = refocus_renderer_info_default();
+
+    refocus_renderer_get_info(renderer, &info);
+    return info.threads == 1;
+}
+
 static PyObject *renderer_create(PyObject *module, PyObject *dictionary)
 {
     struct refocus_renderer_params params;
@@ -97,8 +116,11 @@ static PyObject *renderer_create(PyObject *module, PyObject *dictionary)
     params.papers = refocus_papers();
     params.log.message = keep_words;
     r->keeps = params.in_place || params.deep;
+    r->owner = getpid();
     last_words[0] = 0;
     Py_BEGIN_ALLOW_THREADS status = refocus_renderer_create(&r->renderer, &params);
+    if (status == REFOCUS_OK && has_one_thread(r->renderer))
+        r->owner = 0;
     Py_END_ALLOW_THREADS capsule =
         status == REFOCUS_OK ? PyCapsule_New(r, RENDERER, end_renderer) : NULL;
     if (!capsule) {
@@ -113,8 +135,10 @@ static struct renderer *begin_call(PyObject *module, PyObject *capsule)
 {
     struct renderer *const r = PyCapsule_GetPointer(capsule, RENDERER);
 
-    if (r && !r->renderer) {
-        rf_raise(module, REFOCUS_ERR_STATE, "the renderer is closed");
+    if (r && (!r->renderer || is_of_another_process(r))) {
+        rf_raise(module, REFOCUS_ERR_STATE,
+                 r->renderer ? "the renderer is of the process before the fork; create one here"
+                             : "the renderer is closed");
         return NULL;
     }
     if (r)
@@ -141,7 +165,7 @@ static PyObject *renderer_destroy(PyObject *module, PyObject *capsule)
     r = PyCapsule_GetPointer(capsule, RENDERER);
     if (!r)
         return NULL;
-    if (r->calls > 0)
+    if (r->calls > 0 && !is_of_another_process(r))
         return rf_raise(module, REFOCUS_ERR_BUSY, "the renderer is used by another thread");
     close_renderer(r);
     Py_RETURN_NONE;

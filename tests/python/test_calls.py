@@ -3,6 +3,7 @@
 
 usage: test_calls.py FOLDER_OF_THE_PACKAGE [REFOCUS]
 """
+import gc
 import os
 import signal
 import subprocess
@@ -12,7 +13,7 @@ import threading
 import time
 import unittest
 
-from test_python import COMMAND, DATA, Case
+from test_python import BLUR, COMMAND, DATA, HEIGHT, WIDTH, Case, picture_of
 
 import numpy
 import refocus
@@ -91,6 +92,58 @@ class Signals(Case):
             signal.signal(signal.SIGALRM, before)
         self.assertEqual(picture.shape, photo.shape)
         self.assertLess(times[0], ended)
+
+
+class Forks(Case):
+    def in_child(self, function):
+        """The exit status of a child by fork() that calls a function; 100: it hangs."""
+        child = os.fork()
+        if child == 0:
+            try:
+                os._exit(function())
+            finally:
+                os._exit(99)
+        for _ in range(200):
+            ended, status = os.waitpid(child, os.WNOHANG)
+            if ended:
+                return os.waitstatus_to_exitcode(status)
+            time.sleep(0.05)
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+        return 100
+
+    def test_a_child_drops_what_it_inherits(self):
+        renderers = [refocus.Renderer(WIDTH, HEIGHT, BLUR, threads=2)]
+        renderers[0].prepare(self.photo, self.disparity)
+        settings = refocus.Settings(0.9, BLUR)
+
+        def refuses():
+            try:
+                renderers[0].render(settings)
+            except refocus.StateError as error:
+                return 0 if 'create one here' in str(error) else 1
+            return 2
+
+        def drops():
+            renderers.clear()
+            gc.collect()
+            return 0
+
+        def closes():
+            renderers[0].close()
+            return int(not numpy.array_equal(picture_of(self.photo, self.disparity),
+                                             self.expected))
+
+        for function in refuses, drops, closes:
+            with self.subTest(function.__name__):
+                self.assertEqual(self.in_child(function), 0)
+        self.same(renderers[0].render(settings), self.expected)
+
+    def test_one_thread_goes_on_in_a_child(self):
+        renderer = refocus.Renderer(WIDTH, HEIGHT, BLUR, threads=1)
+        renderer.prepare(self.photo, self.disparity)
+        self.assertEqual(self.in_child(lambda: int(not numpy.array_equal(
+            renderer.render(refocus.Settings(0.9, BLUR)), self.expected))), 0)
 
 
 if __name__ == '__main__':

@@ -110,7 +110,8 @@ class Renderer:
 
     The arguments are fields of `RendererParams`. One thread at a time may call into a renderer
     (others get `BusyError`), but `cancel()`, which any may call; Python's lock is released while
-    the library works, and Ctrl-C ends its work. Ends with `close()` or at the end of `with`.
+    the library works, and Ctrl-C ends its work. A child by
+    fork() cannot use the renderers of its parent, unless they have `threads=1`. Ends with `close()` or at the end of `with`.
 
         with refocus.Renderer(720, 540, max_blur_radius=20) as renderer:
             renderer.prepare(photo, disparity)
