@@ -3,8 +3,10 @@
 
 usage: test_calls.py FOLDER_OF_THE_PACKAGE [REFOCUS]
 """
+import copy
 import gc
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -12,6 +14,7 @@ import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 
 from test_python import BLUR, COMMAND, DATA, HEIGHT, WIDTH, Case, picture_of
 
@@ -63,6 +66,66 @@ class Render(Case):
                 self.same(refocus.photo_read(out).image, refocus.render(
                     photo, disparity, focus=0.7, blur=20, depth_edges=edges,
                     confidence=depth.confidence))
+
+
+class Parameters(Case):
+    def test_a_refused_prepare_keeps_the_scene(self):
+        renderer = refocus.Renderer(WIDTH, HEIGHT, BLUR)
+        renderer.prepare(self.photo, self.disparity)
+        with unittest.mock.patch.object(refocus._core, 'prepare_scene',
+                                        side_effect=refocus.BusyError('busy')):
+            with self.assertRaises(refocus.BusyError):
+                renderer.prepare(self.photo, self.disparity)
+        self.same(renderer.render(refocus.Settings(0.9, BLUR)), self.expected)
+
+    def test_names_of_settings(self):
+        settings = refocus.Settings(0.9, BLUR)
+        for name, words in (('hilights', 'Settings has no hilights; it has render, '),
+                            ('rays', 'Settings has no rays; .*, and render.rays')):
+            with self.assertRaisesRegex(AttributeError, words):
+                setattr(settings, name, 1)
+        settings.look = {'cat_eye': 0.5}
+        self.assertEqual(settings.look, refocus.LookParams(cat_eye=0.5))
+        settings.look = refocus.LookParams(cat_eye=0.25)
+        self.same(picture_of(self.photo, self.disparity, look={'cat_eye': 0.25}),
+                  self.picture_by(settings))
+        self.assertRaises(TypeError, setattr, settings, 'look', None)
+
+    def picture_by(self, settings):
+        with refocus.Renderer(WIDTH, HEIGHT, BLUR) as renderer:
+            renderer.prepare(self.photo, self.disparity)
+            return renderer.render(settings)
+
+    def test_copies_of_settings(self):
+        settings = refocus.Settings(0.9, BLUR, aperture=refocus.Aperture(blades=5))
+        twin = copy.deepcopy(settings)
+        self.assertIs(twin.aperture, settings.aperture)
+        twin.render.rays = 16
+        self.assertNotEqual(twin.render, settings.render)
+        self.assertFalse(numpy.array_equal(self.picture_by(twin), self.picture_by(settings)))
+        plain = refocus.Settings(0.9, BLUR, rays=16)
+        self.same(self.picture_by(pickle.loads(pickle.dumps(plain))), self.picture_by(plain))
+
+    def test_structs_of_focus_and_highlights(self):
+        band = {'band': [(0.2, 0.2, 0.0)]}
+
+        def picture(**named):
+            return refocus.render(self.photo, self.disparity, blur=BLUR, **named)
+
+        expected = picture(focus_disparity=0.9, focus=refocus.FocusParams(**band))
+        self.assertFalse(numpy.array_equal(expected, picture(focus=0.9)))
+        self.same(picture(focus_disparity=0.9, focus=band), expected)
+        self.same(picture(focus_at=(45, 40), highlights={'gain': 4}, focus=band),
+                  picture(focus_at=(45, 40), highlights=4, focus=refocus.FocusParams(**band)))
+        self.same(picture(focus=0.9, highlights=refocus.HighlightParams()),
+                  picture(focus=0.9, highlights='off'))
+        with self.assertRaisesRegex(refocus.ArgumentError, 'one of focus'):
+            picture(focus=band)
+
+    def test_methods_that_are_none(self):
+        for method in 99, -1, 2 ** 40, 'sweep':
+            with self.assertRaisesRegex(refocus.ArgumentError, 'one of Method'):
+                refocus.render(self.photo, self.disparity, focus=1, blur=3, method=method)
 
 
 class Signals(Case):

@@ -7,7 +7,7 @@ import typing
 import numpy
 
 from . import _core
-from ._errors import ArgumentError, StateError
+from ._errors import ArgumentError, BusyError, StateError
 from ._image import Buffer, Image, as_image, is_deep
 from ._optics import disparity_of_depth, max_blur_radius
 from ._struct import Struct, made
@@ -30,6 +30,12 @@ class Aperture:
         self.params = ApertureParams(**fields)
         self._handle = _core.aperture_create(vars(self.params), mask)
 
+    def __copy__(self) -> 'Aperture':
+        return self
+
+    def __deepcopy__(self, memo: dict[int, typing.Any]) -> 'Aperture':
+        return self
+
 
 class Settings:
     """All parameters of a render: struct refocus_settings.
@@ -38,37 +44,48 @@ class Settings:
 
         settings = refocus.Settings(0.8, 20, rays=128)
         settings.look.cat_eye = 0.5
+        settings.focus = {'band': [(0.2, 0.1, 0.05)]}
 
     Further arguments are fields of `render`, or dictionaries of the fields of a feature.
     """
 
+    render: RenderParams
+    highlights: HighlightParams
+    thin: ThinParams
+    look: LookParams
+    focus: FocusParams
+    field: FieldParams
+    search: SearchParams
+    jittered: JitteredParams
+    scatter: ScatterParams
+    interpolated: InterpolatedParams
+    foveated: FoveatedParams
+    diffusion: DiffusionParams
+    aperture: Aperture | None
+
     def __init__(self, focus_disparity: float = 0.0, max_blur_radius: float = 0.0, *,
                  aperture: Aperture | None = None, **fields: typing.Any) -> None:
-        self.render = RenderParams(focus_disparity=focus_disparity, max_blur_radius=max_blur_radius)
-        self.highlights = HighlightParams()
-        self.thin = ThinParams()
-        self.look = LookParams()
-        self.focus = FocusParams()
-        self.field = FieldParams(disparity=focus_disparity)
-        self.search = SearchParams()
-        self.jittered = JitteredParams()
-        self.scatter = ScatterParams()
-        self.interpolated = InterpolatedParams()
-        self.foveated = FoveatedParams()
-        self.diffusion = DiffusionParams()
-        self.aperture = aperture
+        vars(self).update(
+            render=RenderParams(focus_disparity=focus_disparity, max_blur_radius=max_blur_radius),
+            field=FieldParams(disparity=focus_disparity), aperture=aperture,
+            **{name: kind() for name, kind in self.__annotations__.items()
+               if name not in ('render', 'field', 'aperture')})
         self.set(**fields)
 
     def set(self, **fields: typing.Any) -> None:
         """Set fields of `render`, or features by dictionaries or structs of their own."""
         for name, value in fields.items():
-            part = vars(self).get(name)
-            if not isinstance(part, Struct):
-                setattr(self.render, name, value)
-            elif isinstance(value, type(part)):
-                setattr(self, name, value)
-            else:
-                part.set(**value)
+            setattr(self if name in vars(self) else self.render, name, value)
+
+    def __setattr__(self, name: str, value: typing.Any) -> None:
+        part = vars(self).get(name)
+        if name not in vars(self):
+            raise AttributeError(f'Settings has no {name}; it has {", ".join(vars(self))}'
+                                 + (f', and render.{name}' if hasattr(self.render, name) else ''))
+        if isinstance(part, Struct) and not isinstance(value, type(part)):
+            part.set(**value)
+        else:
+            vars(self)[name] = value
 
     def _parts(self) -> dict[str, dict[str, typing.Any]]:
         return {name: vars(part) for name, part in vars(self).items() if isinstance(part, Struct)}
@@ -149,9 +166,14 @@ class Renderer:
         """
         image = as_image(photo, order)
         hidden = None if behind is None else as_image(behind, order)._tuple()
-        self._photo = None
-        _interruptibly(self._handle, _core.prepare_scene, image._tuple(), disparity,
-                       int(depth_edges), matte, hidden, behind_disparity, confidence)
+        try:
+            _interruptibly(self._handle, _core.prepare_scene, image._tuple(), disparity,
+                           int(depth_edges), matte, hidden, behind_disparity, confidence)
+        except BusyError:
+            raise  # the scene of before is still there
+        except BaseException:
+            self._photo = None
+            raise
         # Its form alone: pixels are kept where they are needed, and only there.
         self._photo = Image(image.format, image.width, image.height, (), image.matrix, image.range,
                             image.transfer, image.gamma, image.white)
@@ -216,12 +238,17 @@ QUALITIES = {'preview': (32, 0, Inpaint.SMOOTH), 'standard': (64, 1, Inpaint.SMO
              'best': (128, 1, Inpaint.TEXTURED)}
 
 
-def render(photo: Image | Buffer, depth: Buffer, *, focus: float | None = None,
+def _is_struct(value: typing.Any) -> bool:
+    return isinstance(value, (Struct, dict))
+
+
+def render(photo: Image | Buffer, depth: Buffer, *,
+           focus: float | FocusParams | dict[str, typing.Any] | None = None,
            focus_at: tuple[int, int] | None = None, focus_distance: float | None = None,
            blur: float | None = None, f_number: float | None = None,
            focal_length_mm: float | None = None, sensor_width_mm: float | None = None,
            near_m: float = 0.0, far_m: float = 0.0, quality: str = 'standard',
-           highlights: str | float = 'auto', depth_edges: DepthEdges = DepthEdges.AUTO,
+           highlights: str | float | HighlightParams | dict[str, typing.Any] = 'auto', depth_edges: DepthEdges = DepthEdges.AUTO,
            matte: Buffer | None = None, confidence: Buffer | None = None,
            aperture: Aperture | None = None, out: Image | Buffer | None = None,
            order: str = 'rgb', threads: int = 0, **fields: typing.Any) -> typing.Any:
@@ -235,12 +262,16 @@ def render(photo: Image | Buffer, depth: Buffer, *, focus: float | None = None,
     1 and 0, and an f-number `focal_length_mm`: `sensor_width_mm` is what the width of the photo
     shows, by default so much that its larger side shows 36 mm. (The command takes the focal length
     of the file where none is given, `photo.info.focal_length_35mm`, as equal on the diagonal.)
-    Further arguments are those of `Settings`.
+    `highlights` is 'auto', 'off' or a gain. Further arguments are those of `Settings`; structs and
+    dictionaries for `focus` and `highlights` are, too: then `focus_disparity` can say what is sharp.
     """
     image = as_image(photo, order)
+    if _is_struct(focus):
+        fields['focus'], focus = focus, None
     if quality not in QUALITIES:
         raise ArgumentError(f'quality is one of {", ".join(QUALITIES)}, not {quality!r}')
-    if sum(given is not None for given in (focus, focus_at, focus_distance)) != 1:
+    said = fields.pop('focus_disparity', None)
+    if sum(given is not None for given in (focus, said, focus_at, focus_distance)) != 1:
         raise ArgumentError('give one of focus, focus_at and focus_distance')
     if (blur is None) == (f_number is None):
         raise ArgumentError('give blur or f_number')
@@ -252,6 +283,8 @@ def render(photo: Image | Buffer, depth: Buffer, *, focus: float | None = None,
         if math.isnan(blur):
             raise ArgumentError('f_number needs near_m and far_m, 0 < near_m < far_m, and '
                                 'focal_length_mm')
+    if said is not None:
+        focus = said
     if focus_distance is not None:
         focus = disparity_of_depth(DepthRange(near_m=near_m, far_m=far_m), focus_distance)
         if math.isnan(focus):
@@ -261,9 +294,12 @@ def render(photo: Image | Buffer, depth: Buffer, *, focus: float | None = None,
     rays, thin, inpaint = QUALITIES[quality]
     settings = Settings(0.0, blur, aperture=aperture, rays=rays, inpaint=inpaint,
                         thin={'enabled': thin},
-                        highlights={'estimate': 1} if highlights == 'auto' else
+                        highlights=highlights if _is_struct(highlights) else
+                        {'estimate': 1} if highlights == 'auto' else
                         {'gain': 1 if highlights == 'off' else highlights})
     settings.set(**fields)
+    if settings.render.method not in iter(Method):
+        raise ArgumentError(f'method is one of Method, not {settings.render.method!r}')
     method = int(settings.render.method)
     goal = None if out is None else as_image(out, order)
     with Renderer(image.width, image.height, blur, threads=threads,
