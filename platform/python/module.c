@@ -11,10 +11,14 @@ PyObject *rf_raise(PyObject *module, int status, const char *words)
     const struct state *const state = PyModule_GetState(module);
     PyObject *const number = PyLong_FromLong(status);
     PyObject *const class = number ? PyDict_GetItem(state->classes, number) : NULL;
+    /* Names of files are bytes of any kind. */
+    PyObject *const text =
+        PyUnicode_DecodeFSDefault(words && *words ? words : refocus_strerror(status));
 
     Py_XDECREF(number);
-    PyErr_SetString(class ? class : PyExc_RuntimeError,
-                    words && *words ? words : refocus_strerror(status));
+    if (text)
+        PyErr_SetObject(class ? class : PyExc_RuntimeError, text);
+    Py_XDECREF(text);
     return NULL;
 }
 

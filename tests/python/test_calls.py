@@ -4,6 +4,7 @@
 usage: test_calls.py FOLDER_OF_THE_PACKAGE [REFOCUS]
 """
 import copy
+import errno
 import gc
 import os
 import pickle
@@ -126,6 +127,42 @@ class Parameters(Case):
         for method in 99, -1, 2 ** 40, 'sweep':
             with self.assertRaisesRegex(refocus.ArgumentError, 'one of Method'):
                 refocus.render(self.photo, self.disparity, focus=1, blur=3, method=method)
+
+
+class Files(Case):
+    def test_what_is_not_there(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for function in refocus.photo_read, refocus.depth_read:
+                with self.assertRaisesRegex(FileNotFoundError, 'missing.ppm: ') as caught:
+                    function(os.path.join(folder, 'missing.ppm'))
+                self.assertEqual(caught.exception.errno, errno.ENOENT)
+                self.assertIsInstance(caught.exception, refocus.IoError)
+                with self.assertRaisesRegex(refocus.IoError, ': ') as caught:
+                    function(folder)
+                self.assertNotIsInstance(caught.exception, FileNotFoundError)
+
+    def test_names_of_any_bytes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(os.fsencode(folder), b'\xff.ppm')
+            with self.assertRaises(refocus.NotFoundError) as caught:
+                refocus.photo_read(path)
+            self.assertTrue(str(caught.exception).startswith(os.fsdecode(path) + ': '))
+            refocus.image_write(path, self.photo)
+            self.same(refocus.photo_read(os.fsdecode(path)).image, self.photo)
+
+    def test_halves(self):
+        halves = (self.photo / 64).astype(numpy.float16)
+        floats = refocus.Image(refocus.Format.RGB_HALF, WIDTH, HEIGHT,
+                               (halves.reshape(HEIGHT, 3 * WIDTH),))
+        endings = ['pfm', 'exr'] if 'OpenEXR' in refocus.file_formats() else ['pfm']
+        with tempfile.TemporaryDirectory() as folder:
+            for ending in endings:
+                path = os.path.join(folder, 'light.' + ending)
+                for picture in halves, floats:
+                    refocus.image_write(path, picture)
+                    self.same(refocus.photo_read(path).deep, halves.astype(numpy.float32))
+            with self.assertRaisesRegex(refocus.UnsupportedError, 'PFM floats'):
+                refocus.image_write(os.path.join(folder, 'light.ppm'), halves)
 
 
 class Signals(Case):

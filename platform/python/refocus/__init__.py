@@ -13,7 +13,8 @@ from . import _core
 from ._depth import depth_edges, depth_to_disparity, upsample
 from ._errors import (
     AccessError, ArgumentError, BusyError, CancelledError, Error, FormatError, IoError,
-    NoDepthError, OutOfMemoryError, SizeError, StateError, ThreadError, UnsupportedError)
+    NoDepthError, NotFoundError, OutOfMemoryError, SizeError, StateError, ThreadError,
+    UnsupportedError)
 from ._files import (
     Photo, depth_read, file_formats, gray16_write, image_write, photo_read, photo_read_memory)
 from ._image import Image, as_image
@@ -31,8 +32,8 @@ RAYS_FULL = -1
 
 __all__ = [
     'AccessError', 'Aperture', 'ArgumentError', 'BusyError', 'CancelledError', 'Error',
-    'FormatError', 'Image', 'IoError', 'NoDepthError', 'OutOfMemoryError', 'Photo', 'RAYS_FULL',
-    'Renderer', 'Settings', 'SizeError', 'StateError', 'ThreadError', 'UnsupportedError',
+    'FormatError', 'Image', 'IoError', 'NoDepthError', 'NotFoundError', 'OutOfMemoryError', 'Photo',
+    'RAYS_FULL', 'Renderer', 'Settings', 'SizeError', 'StateError', 'ThreadError', 'UnsupportedError',
     'as_image', 'depth_edges', 'depth_of_disparity', 'depth_of_field_m', 'depth_read',
     'depth_to_disparity', 'disparity_of_depth', 'f_number_of_blur', 'file_formats',
     'focus_at_point', 'focus_in_rectangle', 'gray16_write', 'hyperfocal_m', 'image_write',

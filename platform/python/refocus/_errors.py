@@ -1,4 +1,5 @@
 """Exceptions: one for each status of the library, each also the built-in one of its kind."""
+import errno
 
 
 class Error(Exception):
@@ -53,6 +54,14 @@ class IoError(Error, OSError):
     """A file could not be opened, read or written."""
 
     status = -8
+
+
+class NotFoundError(IoError, FileNotFoundError):
+    """A file that should be read is not there."""
+
+    def __init__(self, *words: object) -> None:
+        super().__init__(*words)
+        self.errno = errno.ENOENT
 
 
 class FormatError(Error, ValueError):

@@ -1,14 +1,15 @@
 """Photos with their depth from files, and pictures into files."""
+import dataclasses
 import os
 import typing
 
 import numpy
 
 from . import _core
-from ._errors import NoDepthError
+from ._errors import IoError, NoDepthError, NotFoundError
 from ._image import Array, Buffer, Image, as_image
 from ._struct import made
-from ._structs import DepthReport, PhotoInfo
+from ._structs import DepthReport, Format, PhotoInfo
 
 
 class Photo:
@@ -73,9 +74,19 @@ def _array(part: tuple[typing.Any, int, int, int] | None) -> Array | None:
     return numpy.frombuffer(pixels, kind).reshape(height, width, 3)
 
 
+def _read(function: typing.Callable[..., typing.Any], path: str | os.PathLike[str] | bytes,
+          *arguments: typing.Any) -> Photo:
+    try:
+        return Photo(function(os.fsencode(path), *arguments))
+    except IoError as error:
+        if os.path.exists(path):
+            raise
+        raise NotFoundError(*error.args) from None
+
+
 def photo_read(path: str | os.PathLike[str] | bytes, *, second: bool = False) -> Photo:
     """Read a photo; with `second` the other picture of a stereo file."""
-    return Photo(_core.photo_read(os.fsencode(path), second))
+    return _read(_core.photo_read, path, second)
 
 
 def photo_read_memory(data: typing.Any) -> Photo:
@@ -86,16 +97,22 @@ def photo_read_memory(data: typing.Any) -> Photo:
 def depth_read(path: str | os.PathLike[str] | bytes, unit: str | None = None, *,
                near_m: float = 0.0, far_m: float = 0.0) -> Photo:
     """Read a depth file of its own; `unit` as in depth_to_disparity(), None: what it says."""
-    return Photo(_core.depth_read(os.fsencode(path), unit, near_m, far_m))
+    return _read(_core.depth_read, path, unit, near_m, far_m)
 
 
 def image_write(path: str | os.PathLike[str] | bytes, image: Image | Buffer, *, quality: int = 0,
                 keep: Photo | None = None, order: str = 'rgb') -> str:
     """Write a picture whole or not at all; the end of the name says how.
 
+    Halves go into OpenEXR as they are, into PFM as floats.
     With `keep`, metadata of that photo is kept. Returns what had to be left out, in words.
     """
-    return _core.image_write(os.fsencode(path), as_image(image, order)._tuple(), quality,
+    picture = as_image(image, order)
+    if picture.format == Format.RGB_HALF:  # files take floats, and those of halves round back
+        picture = dataclasses.replace(picture, format=Format.RGB_FLOAT, planes=(
+            picture.array.view(numpy.float16).reshape(picture.height, picture.width, 3).astype(
+                numpy.float32),))
+    return _core.image_write(os.fsencode(path), picture._tuple(), quality,
                              keep._handle if keep else None)
 
 
