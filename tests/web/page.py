@@ -62,6 +62,7 @@ class Page(unittest.TestCase):
         b = self.browser
         b.screen(1280, 800)
         self.load()
+        b.run('sessionStorage.clear()')  # what other tests painted
 
     def tearDown(self):
         errors = [line for line in self.browser.errors()

@@ -102,6 +102,36 @@ class Use(Page):
         b.pick('views', 'depth')
         self.assertEqual(difference(depth, b.samples()), 0)
 
+    def test_strokes_outlive_the_page(self):
+        """Painting is not lost by loading anew, by leaving, and by opening another photo."""
+        b = self.browser
+        self.open('flat.jpg')
+        b.drag([(0.5, 0.98), (0.5, 0.3)])
+        b.until(lambda: len(b.all('#strokes li')) == 1, 'ground')
+        b.pick('brushes', 'object')
+        b.drag([(0.45, 0.4), (0.5, 0.45), (0.55, 0.5), (0.5, 0.6)])
+        b.until(lambda: len(b.all('#strokes li')) == 2, 'object')
+        b.click('undo')
+        b.until(lambda: b.all('#strokes .undone'), 'undo')
+        b.pick('views', 'depth')
+        depth = b.samples()
+        for step in 'anew', 'left', 'another':
+            if step == 'anew':
+                b.driver.refresh()
+            elif step == 'left':
+                self.load()
+            else:
+                b.click('open')
+                self.open('deep.jpg')
+                b.click('open')
+            if step != 'anew':  # the link has the photo
+                self.open('flat.jpg')
+            b.until(lambda: len(b.all('#strokes li')) == 1, 'strokes that come again')
+            b.pick('views', 'depth')
+            self.assertEqual(difference(depth, b.samples()), 0)
+        b.click('undo')
+        b.until(lambda: b.find('undo').get_property('disabled'), 'undo of what came again')
+
     def test_tap(self):
         b = self.browser
         before = self.open()

@@ -3,7 +3,7 @@ import { $, announce, announceError, make } from './dom.js';
 import { model, openPhoto, setTab } from './model.js';
 import * as server from './server.js';
 import { fromLink } from './settings.js';
-import { paintAgain, strokesMade } from './painting.js';
+import { strokesMade } from './painting.js';
 import { say } from './words.js';
 
 const AT_ONCE = 2; // small pictures that are asked for at a time
@@ -76,10 +76,10 @@ async function openAgain() {
         await open(source, model.look?.name, model.own);
         return;
     }
-    const strokes = strokesMade(), { tab } = model;
+    const { tab } = model;
     if (await open(source, model.look?.name, model.own)) {
         setTab(tab);
-        await paintAgain(strokes);
+        await strokesMade();
         announce(say('openedAgain', { name: model.photo.name }));
     }
 }

@@ -2,6 +2,7 @@
 // with what it selects, and can be taken back.
 import { $, announce, announceError, make, radios, slider } from './dom.js';
 import { Drafts } from './drafts.js';
+import { keepStrokes, keptStrokes } from './kept.js';
 import { depthChanged, listen, model } from './model.js';
 import { listStrokes, redo, stroke, undo } from './server.js';
 import { setBrush, setBusy, theStage, thePictures } from './viewer.js';
@@ -72,21 +73,23 @@ function send(made) {
     });
 }
 
-export const strokesMade = () => done;
+/** When all strokes so far are made. */
+export const strokesMade = () => queue;
 
-/** Make these strokes again, on a session that is new. */
-export function paintAgain(strokes) {
-    const { photo } = model;
+/** Make the strokes that are kept again, on a session that is new. */
+async function paintAgain(photo) {
+    const strokes = keptStrokes(photo);
 
-    return later(async () => {
-        for (const one of strokes)
-            await thePictures().pauseFor(() => stroke(photo.session, one.what));
-        if (strokes.length === 0 || photo !== model.photo)
+    for (const { what } of strokes) {
+        if (photo !== model.photo)
             return;
-        done = [...strokes];
-        undone = [];
-        depthChanged();
-    });
+        await thePictures().pauseFor(() => stroke(photo.session, what));
+    }
+    if (strokes.length === 0 || photo !== model.photo)
+        return;
+    done = strokes;
+    depthChanged();
+    announce(say('openedAgain', { name: photo.name }));
 }
 
 /** Back or forth by a number of strokes. */
@@ -220,6 +223,8 @@ function readStrokes() {
         return;
     later(async () => {
         const { strokes = [] } = await listStrokes(photo.session);
+        if (strokes.length === 0)
+            await paintAgain(photo);
         if (photo !== model.photo || strokes.length === 0)
             return;
         done = strokes.map((what) => ({ kind: called[what.kind] ?? what.kind, what }));
@@ -265,6 +270,7 @@ export function startPainting() {
         if (cause === 'photo' || cause === 'tab')
             setBrush(model.tab === 'paint' ? brush : null);
         if (cause === 'depth') {
+            keepStrokes(model.photo, done);
             thePictures().forget();
             showList();
             showTool();
