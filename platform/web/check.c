@@ -46,12 +46,35 @@ static bool is_machine(const char *name)
     return strcasecmp(name, "localhost") == 0 || inet_pton(AF_INET, name, address) == 1;
 }
 
-bool rf_check_host(const char *host, int port)
+/* The part of an origin behind its scheme, or NULL. */
+static const char *behind_scheme(const char *origin)
 {
+    static const char *const schemes[] = {"https://", "http://"};
+
+    for (size_t i = 0; origin && i < sizeof schemes / sizeof *schemes; i++)
+        if (strncmp(origin, schemes[i], strlen(schemes[i])) == 0)
+            return origin + strlen(schemes[i]);
+    return NULL;
+}
+
+bool rf_check_public(const char *origin)
+{
+    static const char letters[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-:[]";
+    const char *const host = behind_scheme(origin);
+
+    return host && host[0] && host[strspn(host, letters)] == '\0' && strlen(host) < 256;
+}
+
+bool rf_check_host(const char *host, int port, const char *public)
+{
+    const char *const other = behind_scheme(public);
     const char *const colon = host ? strrchr(host, ':') : NULL;
     char name[64];
     long given;
 
+    if (host && other && strcasecmp(host, other) == 0)
+        return true;
     if (!host || strlen(host) >= sizeof name)
         return false;
     strcpy(name, host);
@@ -62,10 +85,12 @@ bool rf_check_host(const char *host, int port)
     return port == 80 && is_machine(name);
 }
 
-bool rf_check_origin(const char *origin, const char *host)
+bool rf_check_origin(const char *origin, const char *host, const char *public)
 {
     static const char scheme[] = "http://";
 
+    if (origin && public && strcasecmp(origin, public) == 0)
+        return true;
     return !origin || (strncmp(origin, scheme, sizeof scheme - 1) == 0 &&
                        strcasecmp(origin + sizeof scheme - 1, host) == 0);
 }

@@ -10,12 +10,17 @@
  * for a token that is almost right. */
 const char *rf_check_path(const char *path, const char *token);
 
-/* Whether the header Host names this machine by number, or as localhost, with this port. Another
- * name may be one that somebody else's page has led here. */
-bool rf_check_host(const char *host, int port);
+/* Whether it is "https://NAME" or "http://NAME", perhaps with ":PORT", and no more. */
+bool rf_check_public(const char *origin);
 
-/* Whether the header Origin, NULL where there is none, is this server's own by its Host. */
-bool rf_check_origin(const char *origin, const char *host);
+/* Whether the header Host names this machine by number, or as localhost, with this port, or is that
+ * of the server before it, whose origin is `public` (NULL: there is none). Another name may be one
+ * that somebody else's page has led here. */
+bool rf_check_host(const char *host, int port, const char *public);
+
+/* Whether the header Origin, NULL where there is none, is this server's own by its Host, or that of
+ * the server before it. */
+bool rf_check_origin(const char *origin, const char *host, const char *public);
 
 /* Whether it is the name of a file in a folder: no path, not hidden, UTF-8 without control
  * characters, at most 255 bytes. */

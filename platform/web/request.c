@@ -201,17 +201,18 @@ static void check(struct server *server, struct request *request, const char *ur
 {
     const char *const host = header(request, MHD_HTTP_HEADER_HOST);
     const char *const site = header(request, "Sec-Fetch-Site");
+    const char *const origin = server->setup->origin;
     const char *const name = rf_check_path(url, server->token);
     const bool get = strcmp(method, MHD_HTTP_METHOD_GET) == 0;
     const bool post = strcmp(method, MHD_HTTP_METHOD_POST) == 0;
     const struct way *way;
 
-    if (!name || !rf_check_host(host, server->port)) {
+    if (!name || !rf_check_host(host, server->port, origin)) {
         answer_error(request, MHD_HTTP_NOT_FOUND, NULL);
         return;
     }
     /* The page itself may be come to by a link from anywhere. */
-    if (!rf_check_origin(header(request, MHD_HTTP_HEADER_ORIGIN), host) ||
+    if (!rf_check_origin(header(request, MHD_HTTP_HEADER_ORIGIN), host, origin) ||
         (site && name[0] && strcmp(site, "same-origin") != 0 && strcmp(site, "none") != 0)) {
         answer_error(request, MHD_HTTP_FORBIDDEN, NULL);
         return;

@@ -11,6 +11,7 @@
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
+#include "check.h"
 #include "server.h"
 
 enum { TICK_MS = 250, MOST_FILES = 2 + MOST_SESSIONS + MOST_THUMBNAILS };
@@ -146,8 +147,13 @@ static void find_address(const char *elsewhere, char *text, size_t size)
 static void tell_link(const struct server *server)
 {
     const bool v6 = strchr(server->setup->address, ':') != NULL;
-    char address[INET6_ADDRSTRLEN + 32], link[256];
+    char address[INET6_ADDRSTRLEN + 32], link[512];
 
+    if (server->setup->origin) {
+        snprintf(link, sizeof link, "%s/%s/", server->setup->origin, server->token);
+        server->setup->ready(server->setup->of, link);
+        return;
+    }
     snprintf(address, sizeof address, "%s", server->setup->address);
     if (strcmp(address, "0.0.0.0") == 0)
         find_address("192.0.2.1", address, sizeof address);
@@ -232,6 +238,11 @@ int rf_web_run(const struct rf_web_setup *setup, char *reason)
     struct server server = {.setup = setup};
     int result = -1;
 
+    if (setup->origin && !rf_check_public(setup->origin)) {
+        snprintf(reason, 256, "%.100s is no origin such as https://photos.example.org",
+                 setup->origin);
+        return -1;
+    }
     if (!folder_open(&server.folder, setup->path, reason))
         return -1;
     if (!server_random(server.token)) {

@@ -64,6 +64,7 @@ struct rf_web_setup {
     const char *address;               /* numbers of IPv4 or IPv6 */
     int port;                          /* 0: any that is free */
     const char *path;                  /* a photo or a folder, or NULL */
+    const char *origin;                /* "https://NAME" of a server before this one, or NULL */
     bool live;                         /* there are cameras */
     uint64_t most_upload, most_memory; /* bytes: of a photo; of all sessions together */
     int signals;                       /* a file that can be read once the server is to end */

@@ -71,7 +71,7 @@ class Usage(Case):
                     '--focal-length --sensor-width --method --rays --iterations --quality '
                     '--aperture --blend --sigma --highlights --mirror --background --no-thin --fill --threads '
                     '--cpu --json --config --preset --settings --size --fullscreen --seconds --page --font --dpi -h --help --help-all',
-            'serve': '--port --listen --live --depth --depth-unit --near --far --max-upload --session-memory --upsample --depth-edges --max-side --max-pixels '
+            'serve': '--port --listen --origin --live --depth --depth-unit --near --far --max-upload --session-memory --upsample --depth-edges --max-side --max-pixels '
                      '--raw-preview --max-memory --threads --cpu -h --help --help-all',
             'info': '--near --far --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --max-side --max-pixels --raw-preview --max-memory --json -h --help --help-all',

@@ -299,6 +299,32 @@ class Lines(Case):
         for arguments in ('--port', '65536'), ('--port', 'x'), ('--max-upload', '0'), ('a', 'b'):
             self.assertEqual(self.run_it('serve', *arguments).returncode, 2)
 
+    def test_behind_another_server(self):
+        """One that is encrypted passes requests on, with its own name as Host or with this one's."""
+        origin = 'https://photos.example.org'
+        with socket.create_server(('127.0.0.1', 0)) as free:
+            port = free.getsockname()[1]
+        server = Server('--origin', origin, '--port', str(port), command=('serve',))
+        try:
+            self.assertRegex(server.link, '^' + origin + r'/[0-9a-f]{32}/$')
+            server.port = port
+            own = '127.0.0.1:%d' % server.port
+            for host, sender, status in (
+                    ('photos.example.org', origin, 422), (own, origin, 422),
+                    (own, 'http://' + own, 422), ('photos.example.org', None, 422),
+                    ('photos.example.org', 'https://elsewhere', 403),
+                    ('photos.example.org', origin + '.elsewhere', 403),
+                    ('photos.example.org:1', origin, 404), ('elsewhere', origin, 404)):
+                headers = {'Host': host, **({'Origin': sender} if sender else {})}
+                self.assertEqual(server.post('upload?name=a.jpg', b'no photo', **headers).status,
+                                 status, headers)
+        finally:
+            self.assertEqual(server.close(), (0, '', []))
+        for wrong in 'photos.example.org', 'https://', 'https://a/b', 'ftp://a', 'https://a b':
+            result = self.run_it('serve', '--origin', wrong)
+            self.assertEqual(result.returncode, 1)
+            self.assertRegex(result.stderr, '^refocus: serve: .* is no origin such as https://')
+
     def test_leaves_no_files(self):
         os.mkdir('temporary')
         environment = os.environ.get('TMPDIR')

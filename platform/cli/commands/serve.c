@@ -11,7 +11,7 @@
 
 struct settings {
     struct serve_base base;
-    const char *listen;
+    const char *listen, *origin;
     double port, upload, memory; /* NAN: not given */
     bool open;                   /* open the page in a browser */
 };
@@ -36,6 +36,14 @@ static const struct option options[] = {
      .help = "address to listen on, in numbers of IPv4 or IPv6; default 127.0.0.1, this machine "
              "alone. Of another one, what is sent can be read on the way, the link too: use it "
              "within a network that you trust",
+     .elsewhere = true},
+    {.kind = OPTION_TEXT,
+     .name = "--origin",
+     .argument = "URL",
+     .offset = offsetof(struct settings, origin),
+     .help = "where an encrypted server that passes all requests on shows the page, such as "
+             "https://photos.example.org: its name is taken as this one's own, and the link is "
+             "printed with it",
      .elsewhere = true},
     {.kind = OPTION_INTEGER,
      .name = "--max-upload",
@@ -125,6 +133,7 @@ static int serve(struct settings *settings, const char *path)
                 : settings->open       ? 0
                                        : PORT,
         .path = path,
+        .origin = settings->origin,
         .live = base->live.camera != NULL,
         .most_upload = (uint64_t)(isnan(settings->upload) ? MOST_UPLOAD_MIB : settings->upload)
                        << 20,

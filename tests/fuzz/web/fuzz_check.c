@@ -3,6 +3,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include "check.h"
 #include "web.h"
 
@@ -21,11 +22,16 @@ static void check_host(const char *text)
 {
     const char *const colon = strrchr(text, ':');
 
-    if (rf_check_host(text, 8085) && (!colon || atoi(colon + 1) != 8085))
+    if (rf_check_host(text, 8085, NULL) && (!colon || atoi(colon + 1) != 8085))
         abort();
-    if (rf_check_host(text, 8085) && strpbrk(text, "@/ \\"))
+    if (rf_check_host(text, 8085, NULL) && strpbrk(text, "@/ \\"))
         abort();
-    if (rf_check_origin(text, "127.0.0.1:8085") && strcmp(text, "http://127.0.0.1:8085") != 0)
+    if (rf_check_host(text, 8085, "https://a.example") != rf_check_host(text, 8085, NULL) &&
+        strcasecmp(text, "a.example") != 0)
+        abort();
+    if (rf_check_origin(text, "127.0.0.1:8085", NULL) && strcmp(text, "http://127.0.0.1:8085") != 0)
+        abort();
+    if (rf_check_public(text) && (strncmp(text, "http", 4) != 0 || strpbrk(text, "@ \\?#")))
         abort();
 }
 
