@@ -137,9 +137,12 @@ bool rf_check_session(const char *text)
 
 bool rf_check_photo_ending(const char *name)
 {
-    static const char *const endings[] = {"jpg",  "jpeg", "png",  "heic", "heif", "hif", "tif",
-                                          "tiff", "exr",  "webp", "jxl",  "dng",  "cr2", "cr3",
-                                          "nef",  "arw",  "orf",  "raf",  "rw2",  "ppm", "pfm"};
+    static const char *const endings[] = {
+        /* pictures, and what libraw takes for camera raw */
+        "jpg", "jpeg", "jpe", "jfif", "mpo", "png", "heic", "heif", "hif", "avif", "tif", "tiff",
+        "exr", "webp", "jxl", "ppm",  "pgm", "pfm", "3fr",  "arw",  "cr2", "cr3",  "crw", "dcr",
+        "dng", "erf",  "fff", "gpr",  "iiq", "kdc", "mef",  "mos",  "mrw", "nef",  "nrw", "orf",
+        "pef", "raf",  "raw", "rw2",  "rwl", "sr2", "srf",  "srw",  "x3f"};
     const char *const dot = strrchr(name, '.');
 
     for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; i++)

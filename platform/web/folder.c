@@ -60,6 +60,8 @@ bool folder_open(struct folder *folder, const char *path, char *why)
         return true;
     } else if (!S_ISREG(about.st_mode)) {
         snprintf(why, 256, "it is neither a photo nor a folder");
+    } else if (!rf_check_photo_ending(name)) {
+        snprintf(why, 256, "its name does not end as a photo's does, such as in .jpg");
     } else if (!rf_check_name(name, strlen(name))) {
         snprintf(why, 256, "its name is hidden or not UTF-8; give it another");
     } else if (!add(folder, name, 0, 0, -1)) {

@@ -283,12 +283,28 @@ class Limits(Serving):
 
 
 class Lines(Case):
+    def test_photos_by_their_endings(self):
+        """All that the library reads as a photo is listed, whatever the case of its ending."""
+        os.mkdir('mixed')
+        shown = ['a.' + ending for ending in (
+            'jpg JPEG mpo png HEIC hif avif tif tiff exr webp jxl ppm pgm pfm dng cr2 CR3 crw nef nrw '
+            'arw orf raf rw2 pef srw x3f 3fr iiq rwl').split()]
+        for name in shown + ['a.txt', 'a.json', 'a.xmp', 'a.mp4', 'jpg', '.a.jpg']:
+            open(os.path.join('mixed', name), 'wb').close()
+        server = Server('mixed')
+        names = [photo['name'] for photo in server.get('photos').json['photos']]
+        self.assertEqual(sorted(names), sorted(shown))
+        self.assertEqual(server.close(), (0, '', []))
+
     def test_command_line(self):
+        open('notes.txt', 'wb').close()
         for words, arguments in (
                 (r"^refocus: nothing: No such file or directory\n$", ('nothing',)),
                 (r"^refocus: serve: example.org is no address in numbers\n$",
                  ('--listen', 'example.org')),
                 (r'^refocus: /dev/null: it is neither a photo nor a folder\n$', ('/dev/null',)),
+                (r"^refocus: notes.txt: its name does not end as a photo's does, such as in .jpg\n$",
+                 ('notes.txt',)),
                 (r"^refocus: serve: port \d+ of 127.0.0.1 cannot be had: Address already in use\n$",
                  ('--port', None))):
             with socket.create_server(('127.0.0.1', 0)) as taken:
