@@ -99,7 +99,7 @@ static void add_headers(struct MHD_Response *response, const struct request *req
     if (request->status >= 400)
         MHD_add_response_header(response, "Connection", "close");
     if (request->status == MHD_HTTP_METHOD_NOT_ALLOWED)
-        MHD_add_response_header(response, "Allow", "GET, POST");
+        MHD_add_response_header(response, "Allow", "GET, HEAD, POST");
 }
 
 enum MHD_Result answer_queue(struct request *request)

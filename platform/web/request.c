@@ -203,10 +203,10 @@ static void check(struct server *server, struct request *request, const char *ur
     const char *const site = header(request, "Sec-Fetch-Site");
     const char *const origin = server->setup->origin;
     const char *const name = rf_check_path(url, server->token);
-    const bool get = strcmp(method, MHD_HTTP_METHOD_GET) == 0;
-    const bool post = strcmp(method, MHD_HTTP_METHOD_POST) == 0;
     const struct way *way;
 
+    if (strcmp(method, MHD_HTTP_METHOD_HEAD) == 0)
+        method = MHD_HTTP_METHOD_GET; /* the library leaves the body out */
     if (!name || !rf_check_host(host, server->port, origin)) {
         answer_error(request, MHD_HTTP_NOT_FOUND, NULL);
         return;
@@ -221,7 +221,7 @@ static void check(struct server *server, struct request *request, const char *ur
     way = find_way(name);
     if (!way && request->status == 0) {
         answer_error(request, MHD_HTTP_NOT_FOUND, "there is nothing of this name");
-    } else if ((!get && !post) || strcmp(method, way ? way->method : MHD_HTTP_METHOD_GET) != 0) {
+    } else if (strcmp(method, way ? way->method : MHD_HTTP_METHOD_GET) != 0) {
         request->file = NULL;
         answer_error(request, MHD_HTTP_METHOD_NOT_ALLOWED, "another method is meant");
     } else if (way) {

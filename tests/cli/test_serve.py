@@ -295,7 +295,12 @@ class Refusals(Serving):
         self.assertFalse(self.server.children())
 
     def test_methods(self):
-        for method in 'PUT', 'DELETE', 'HEAD', 'OPTIONS', 'PATCH', 'TRACE', 'X':
+        for name in '', 'photos':
+            head, get = self.server.ask('HEAD', name), self.server.get(name)
+            self.assertEqual((head.status, head.body), (200, b''))
+            self.assertEqual(head.headers['Content-Length'], str(len(get.body)))
+        self.assertEqual(self.server.ask('HEAD', 'open?photo=none.jpg').status, 405)
+        for method in 'PUT', 'DELETE', 'OPTIONS', 'PATCH', 'TRACE', 'X':
             self.assertEqual(self.server.ask(method, 'photos').status, 405, method)
             self.assertEqual(self.server.ask(method, '').status, 405, method)
         self.assertEqual(self.server.get('open?photo=none.jpg').status, 405)
@@ -360,6 +365,11 @@ class Refusals(Serving):
                     'overlay?size=0&kind=blur&', 'save?as=jpeg&':
                 with self.subTest(settings=settings if len(str(settings)) < 99 else '', ask=ask):
                     self.check_settings(ask, session, settings, words)
+
+        flat = self.opened('none.jpg')  # which has no metres
+        for ask in 'picture?size=0&request=1&', 'picture?size=0&request=2&quick=1&', \
+                'overlay?size=0&kind=blur&', 'save?as=jpeg&':
+            self.check_settings(ask, flat, {'focus-distance': 2}, 'needs distances in metres')
 
     def check_settings(self, ask, session, settings, words):
         answer = self.server.post('%ssession=%s' % (ask, session['session']), settings)

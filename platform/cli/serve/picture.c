@@ -60,7 +60,8 @@ int serve_lens_of(const struct serving *s, const struct shot_settings *settings,
     if (status == EXIT_DONE)
         status =
             shot_aim(&s->input, &settings->lens, &engine->controls, serve_disparity(s), params);
-    return status;
+    /* Settings are refused that this photo cannot have, as metres of one without any. */
+    return status == EXIT_DONE ? EXIT_DONE : EXIT_WRONG;
 }
 
 /* Whether the depth is what the photo carries: the renderer then gets it as `refocus render` gives
