@@ -74,6 +74,17 @@ class Papers(Case):
         self.assertEqual(report['methods'][1]['rmse'], 0)
         self.fails(2, "--methods: 'swep' is no method; did you mean 'sweep'?", 'compare', *common,
                    '--reference', 'gt.ppm', '--methods', 'blur,swep')
+        self.fails(2, '--blur: unknown option within --methods; it is the same for all of them, so '
+                   'give it beside --methods',
+                   'compare', *common, '--reference', 'gt.ppm', '--methods', 'search:mirror:blur=3')
+        self.fails(2, '--rais: unknown option; did you mean --rays?', 'compare', *common,
+                   '--reference', 'gt.ppm', '--methods', 'sweep:rais=3')
+        for border in H // 2, 9999:
+            self.fails(2, '--border: %d pixels at each side leave nothing of %dx%d to compare; give '
+                       'fewer' % (border, W, H), 'compare', *common, '--reference', 'gt.ppm',
+                       '--border', str(border))
+        self.succeeds('compare', *common, '--reference', 'gt.ppm', '--methods', 'sweep', '--border',
+                      str(H // 2 - 1))
         report = self.reports(
             'compare', *common, '--reference', 'gt.ppm', '--iterations', '3', '--methods',
             'search:rays=full:iterations=1,search,jittered:cell=4:seed=7,search:mirror,sweep:rays=8')

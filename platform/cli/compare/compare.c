@@ -54,7 +54,8 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, border),
      .least = 0,
      .greatest = REFOCUS_MAX_SIDE,
-     .help = "pixels at each side that do not count; default the blur radius"},
+     .help = "pixels at each side that do not count, less than half the picture; default the "
+             "blur radius"},
     {.kind = OPTION_HEADING, .help = "Focus and blur"},
     FOCUS_OPTIONS(struct settings, lens),
     LENS_OPTIONS(struct settings, lens),
@@ -139,6 +140,15 @@ static int add(struct comparison *c, const char *name, const struct refocus_imag
                      : report_failure(EXIT_FAILED, name,
                                       "not enough "
                                       "memory");
+}
+
+static int check_border(const struct comparison *c, int border)
+{
+    if (2 * (int64_t)border < c->width && 2 * (int64_t)border < c->height)
+        return EXIT_DONE;
+    return report_failure(EXIT_WRONG, "--border",
+                          "%d pixels at each side leave nothing of %dx%d to compare; give fewer",
+                          border, c->width, c->height);
 }
 
 static int score(struct comparison *c, const uint8_t *mask, int border)
@@ -286,6 +296,8 @@ static int compare(struct engine *engine, struct input *input, struct comparison
         engine->params.render.focus_disparity = (float)focus;
         border = isnan(settings->border) ? (int)ceil(blur) : (int)settings->border;
     }
+    if (status == EXIT_DONE)
+        status = check_border(c, border);
     if (status == EXIT_DONE)
         status = add(c, "photo", photo, true);
     if (status == EXIT_DONE)

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "commands/commands.h"
 #include "compare/compare_list.h"
 
 enum { WORDS_MOST = 32 }; /* options for one method */
@@ -34,6 +35,27 @@ static int find_method(const char *name, int *method)
                           nearest ? nearest : "", nearest ? "'?" : "");
 }
 
+static bool knows(const struct option *known, const char *word)
+{
+    const size_t length = strcspn(word, "=");
+
+    for (; known->help; known++)
+        if (known->name && strlen(known->name) == length && strncmp(known->name, word, length) == 0)
+            return true;
+    return false;
+}
+
+/* An option that all methods share is none of a single one. */
+static int check_own(char *word)
+{
+    if (knows(options, word) || !knows(compare_command.options, word))
+        return EXIT_DONE;
+    word[strcspn(word, "=")] = '\0';
+    return report_failure(EXIT_WRONG, word,
+                          "unknown option within --methods; it is the same for all of them, so "
+                          "give it beside --methods");
+}
+
 /* "search:rays=64:mirror" with its colons cut: to "--rays=64", "--mirror" in *words. */
 static int parse_entry(struct variant *variant, char *text, char **words)
 {
@@ -54,6 +76,9 @@ static int parse_entry(struct variant *variant, char *text, char **words)
                                   name, WORDS_MOST);
         argv[argc++] = *words;
         *words += 1 + sprintf(*words, "--%.*s", (int)strcspn(option, ":"), option);
+        status = check_own(argv[argc - 1]);
+        if (status != EXIT_DONE)
+            return status;
     }
     status = find_method(name, &variant->settings.method);
     if (status != EXIT_DONE)
