@@ -70,6 +70,12 @@ static void take_painted(const struct serving *s, struct input *input)
     input->confidence = NULL;
 }
 
+#ifdef RF_HAVE_EDITABLE
+static const bool can_edit = true;
+#else
+static const bool can_edit = false;
+#endif
+
 static int save_picture(struct serving *s, const struct shot_settings *settings, const char *name,
                         struct refocus_blob *bytes)
 {
@@ -77,17 +83,13 @@ static int save_picture(struct serving *s, const struct shot_settings *settings,
         s->input.photo->deep->plane[0] && s->input.photo->deep->format != REFOCUS_FORMAT_RGB16;
     const bool depth = s->has_depth || serve_is_painted(s);
     const bool jpeg = strcmp(name, "picture.jpg") == 0;
-#ifdef RF_HAVE_EDITABLE
-    const struct keep_settings keep = {.editable = jpeg && depth && !floats, .no_editable = !depth};
-#else
-    const struct keep_settings keep = {.no_editable = true};
-#endif
+    const struct keep_settings keep = {.editable = can_edit && jpeg && depth && !floats,
+                                       .no_editable = !can_edit || !depth};
     struct editable editable = {.options = output_keeps(NULL)};
     struct refocus_image picture = {0};
     struct engine engine;
     int status = serve_render(s, settings, keep_has_light(&keep, name), &engine, &picture);
 
-    (void)floats;
     if (status == EXIT_DONE) {
         struct input input = s->input;
 
