@@ -8,19 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "exif_subject.h"
 #include "reason.h"
-
-struct tiff {
-    uint8_t *data;
-    size_t size;
-    bool big_endian;
-};
-
-struct entry {
-    size_t place; /* offset of the 12 bytes of the entry */
-    uint32_t tag, type, count;
-    size_t value; /* offset of the value */
-};
 
 enum {
     TAG_MAIN_WIDTH = 0x0100,
@@ -33,118 +22,57 @@ enum {
     TAG_FOCAL_LENGTH = 0x920a,
     TAG_SUBJECT_DISTANCE = 0x9206,
     TAG_MAKER_NOTE = 0x927c,
-    TAG_SUBJECT_AREA = 0x9214,
     TAG_WIDTH = 0xa002,
     TAG_HEIGHT = 0xa003,
     TAG_CUSTOM_RENDERED = 0xa401,
     TAG_FOCAL_LENGTH_35MM = 0xa405,
-    TAG_APPLE_HDR_HEADROOM = 0x21, /* in Apple's maker note */
+    TAG_LENS_MODEL = 0xa434,
+    TAG_APPLE_ACCELERATION = 8, /* in Apple's maker note */
+    TAG_APPLE_HDR_HEADROOM = 0x21,
     TAG_APPLE_HDR_GAIN = 0x30,
 };
 enum { APPLE_PORTRAIT_HDR = 7, APPLE_PORTRAIT = 8 }; /* values of TAG_CUSTOM_RENDERED */
-enum {
-    TYPE_ASCII = 2,
-    TYPE_SHORT = 3,
-    TYPE_LONG = 4,
-    TYPE_RATIONAL = 5,
-    TYPE_UNDEFINED = 7,
-    TYPE_SIGNED_RATIONAL = 10
-};
 
-static uint32_t get16(const struct tiff *tiff, size_t at)
-{
-    const uint8_t *const b = tiff->data + at;
-
-    return tiff->big_endian ? (uint32_t)(b[0] << 8 | b[1]) : (uint32_t)(b[1] << 8 | b[0]);
-}
-
-static uint32_t get32(const struct tiff *tiff, size_t at)
-{
-    const uint32_t first = get16(tiff, at), second = get16(tiff, at + 2);
-
-    return tiff->big_endian ? first << 16 | second : second << 16 | first;
-}
-
-static void put16(struct tiff *tiff, size_t at, uint32_t value)
-{
-    tiff->data[at] = (uint8_t)(tiff->big_endian ? value >> 8 : value);
-    tiff->data[at + 1] = (uint8_t)(tiff->big_endian ? value : value >> 8);
-}
-
-/* Entries that a directory really has room for; -1 when not even their number fits. */
-static int count_entries(const struct tiff *tiff, size_t directory)
-{
-    size_t room;
-
-    if (directory > tiff->size || tiff->size - directory < 2) {
-        return -1;
-    }
-    room = (tiff->size - directory - 2) / 12;
-    return get16(tiff, directory) <= room ? (int)get16(tiff, directory) : (int)room;
-}
-
-/* False for an entry whose value lies outside the block or is of no type used here. */
-static bool get_entry(const struct tiff *tiff, size_t directory, int index, struct entry *entry)
-{
-    static const uint8_t type_bytes[] = {0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8};
-    uint64_t bytes;
-
-    entry->place = directory + 2 + (size_t)index * 12;
-    entry->tag = get16(tiff, entry->place);
-    entry->type = get16(tiff, entry->place + 2);
-    entry->count = get32(tiff, entry->place + 4);
-    if (entry->type == 0 || entry->type > TYPE_SIGNED_RATIONAL || entry->count == 0) {
-        return false;
-    }
-    bytes = (uint64_t)entry->count * type_bytes[entry->type];
-    entry->value = bytes <= 4 ? entry->place + 8 : get32(tiff, entry->place + 8);
-    return entry->value <= tiff->size && bytes <= tiff->size - entry->value;
-}
-
-static uint32_t get_integer(const struct tiff *tiff, const struct entry *entry)
-{
-    return entry->type == TYPE_SHORT  ? get16(tiff, entry->value)
-           : entry->type == TYPE_LONG ? get32(tiff, entry->value)
-                                      : 0;
-}
-
-static double get_rational(const struct tiff *tiff, const struct entry *entry)
+static double get_rational(const struct rf_tiff *tiff, const struct rf_tiff_entry *entry)
 {
     uint32_t below;
 
-    if (entry->type != TYPE_RATIONAL) {
+    if (entry->type != RF_TIFF_RATIONAL) {
         return 0.0;
     }
-    below = get32(tiff, entry->value + 4);
-    return below ? get32(tiff, entry->value) / (double)below : 0.0;
+    below = rf_tiff_get32(tiff, entry->value + 4);
+    return below ? rf_tiff_get32(tiff, entry->value) / (double)below : 0.0;
 }
 
 /* 0 is not known, and the greatest numerator infinity. */
-static double get_distance(const struct tiff *tiff, const struct entry *entry)
+static double get_distance(const struct rf_tiff *tiff, const struct rf_tiff_entry *entry)
 {
-    const bool infinite = entry->type == TYPE_RATIONAL && get32(tiff, entry->value) == UINT32_MAX;
+    const bool infinite =
+        entry->type == RF_TIFF_RATIONAL && rf_tiff_get32(tiff, entry->value) == UINT32_MAX;
 
     return infinite ? INFINITY : get_rational(tiff, entry);
 }
 
-static bool get_signed_rational(const struct tiff *tiff, const struct entry *entry, double *value)
+static bool get_signed_rational(const struct rf_tiff *tiff, const struct rf_tiff_entry *entry,
+                                double *value)
 {
     int32_t above, below;
 
-    if (entry->type != TYPE_SIGNED_RATIONAL) {
+    if (entry->type != RF_TIFF_SIGNED_RATIONAL) {
         return false;
     }
-    above = (int32_t)get32(tiff, entry->value);
-    below = (int32_t)get32(tiff, entry->value + 4);
+    above = (int32_t)rf_tiff_get32(tiff, entry->value);
+    below = (int32_t)rf_tiff_get32(tiff, entry->value + 4);
     *value = below ? above / (double)below : 0;
     return below != 0;
 }
 
-static void get_text(const struct tiff *tiff, const struct entry *entry, char *text, size_t size)
+static void get_text(const struct rf_tiff *tiff, const struct rf_tiff_entry *entry, char *text,
+                     size_t size)
 {
     size_t n = 0;
 
-    if (entry->type != TYPE_ASCII) {
+    if (entry->type != RF_TIFF_ASCII) {
         return;
     }
     for (; n < entry->count && n + 1 < size && tiff->data[entry->value + n]; n++) {
@@ -177,11 +105,28 @@ static double apple_headroom(double headroom, double gain)
     return exp2(stops < 0 ? 0 : stops > 16 ? 16 : stops);
 }
 
+/* How the phone was held, by gravity in units of g: -1 along the second axis when upright, which
+ * is orientation 6 of the camera on its back. */
+static int find_held(const struct rf_tiff *note, const struct rf_tiff_entry *entry)
+{
+    double axis[2];
+
+    for (size_t i = 0; i < 2; i++) {
+        struct rf_tiff_entry one = *entry;
+
+        one.value += 8 * i;
+        if (entry->count != 3 || !get_signed_rational(note, &one, &axis[i])) {
+            return 0;
+        }
+    }
+    return fabs(axis[1]) <= fabs(axis[0]) ? 0 : axis[1] < 0 ? 6 : 8;
+}
+
 /* The note of an iPhone: 14 bytes, and a directory whose offsets count from the note's first. */
-static void read_maker_note(const struct tiff *tiff, const struct entry *entry,
+static void read_maker_note(const struct rf_tiff *tiff, const struct rf_tiff_entry *entry,
                             struct rf_exif *exif)
 {
-    const struct tiff note = {tiff->data + entry->value, entry->count, true};
+    const struct rf_tiff note = {tiff->data + entry->value, entry->count, true};
     bool has_headroom = false, has_gain = false;
     double headroom = 0, gain = 0;
     int count;
@@ -189,14 +134,16 @@ static void read_maker_note(const struct tiff *tiff, const struct entry *entry,
     if (entry->count < 14 || memcmp(note.data, "Apple iOS\0\0\1MM", 14) != 0) {
         return;
     }
-    count = count_entries(&note, 14);
+    count = rf_tiff_count(&note, 14);
     for (int i = 0; i < count; i++) {
-        struct entry own;
+        struct rf_tiff_entry own;
 
-        if (!get_entry(&note, 14, i, &own)) {
+        if (!rf_tiff_entry(&note, 14, i, &own)) {
             continue;
         }
-        if (own.tag == TAG_APPLE_HDR_HEADROOM) {
+        if (own.tag == TAG_APPLE_ACCELERATION) {
+            exif->subject.held = find_held(&note, &own);
+        } else if (own.tag == TAG_APPLE_HDR_HEADROOM) {
             has_headroom = get_signed_rational(&note, &own, &headroom);
         } else if (own.tag == TAG_APPLE_HDR_GAIN) {
             has_gain = get_signed_rational(&note, &own, &gain);
@@ -207,30 +154,15 @@ static void read_maker_note(const struct tiff *tiff, const struct entry *entry,
     }
 }
 
-/* Two to four numbers, of which the first two are the middle of the subject in pixels. */
-static void find_subject(const struct tiff *tiff, const struct entry *area,
-                         const struct entry *width, const struct entry *height,
-                         struct rf_exif *exif)
+static void read_settings(struct rf_tiff *tiff, size_t directory, struct rf_exif *exif)
 {
-    const bool known = area->type == TYPE_SHORT && area->count >= 2 && area->count <= 4 &&
-                       width->count == 1 && height->count == 1;
-    const uint32_t x = known ? get16(tiff, area->value) : 0;
-    const uint32_t y = known ? get16(tiff, area->value + 2) : 0;
-
-    if (known && x < get_integer(tiff, width) && y < get_integer(tiff, height)) {
-        exif->subject_x = (x + 0.5) / get_integer(tiff, width);
-        exif->subject_y = (y + 0.5) / get_integer(tiff, height);
-    }
-}
-
-static void read_settings(struct tiff *tiff, size_t directory, struct rf_exif *exif)
-{
-    const int count = count_entries(tiff, directory);
-    struct entry width = {0}, height = {0}, area = {0}, entry;
+    const int count = rf_tiff_count(tiff, directory);
+    struct rf_tiff_entry width = {0}, height = {0}, area = {0}, entry;
+    char lens[64] = "";
     uint32_t custom = 0;
 
     for (int i = 0; i < count; i++) {
-        if (!get_entry(tiff, directory, i, &entry)) {
+        if (!rf_tiff_entry(tiff, directory, i, &entry)) {
             continue;
         }
         if (entry.tag == TAG_F_NUMBER) {
@@ -238,24 +170,29 @@ static void read_settings(struct tiff *tiff, size_t directory, struct rf_exif *e
         } else if (entry.tag == TAG_FOCAL_LENGTH) {
             exif->focal_length_mm = get_rational(tiff, &entry);
         } else if (entry.tag == TAG_FOCAL_LENGTH_35MM) {
-            exif->focal_length_35mm = get_integer(tiff, &entry);
+            exif->focal_length_35mm = rf_tiff_integer(tiff, &entry, 0);
         } else if (entry.tag == TAG_CUSTOM_RENDERED) {
-            custom = get_integer(tiff, &entry);
+            custom = rf_tiff_integer(tiff, &entry, 0);
         } else if (entry.tag == TAG_SUBJECT_DISTANCE) {
             exif->subject_distance = get_distance(tiff, &entry);
-        } else if (entry.tag == TAG_MAKER_NOTE && entry.type == TYPE_UNDEFINED) {
+        } else if (entry.tag == TAG_MAKER_NOTE && entry.type == RF_TIFF_UNDEFINED) {
             read_maker_note(tiff, &entry, exif);
-        } else if (entry.tag == TAG_WIDTH && entry.type <= TYPE_RATIONAL) {
+        } else if (entry.tag == TAG_WIDTH && entry.type <= RF_TIFF_RATIONAL) {
             width = entry;
-        } else if (entry.tag == TAG_HEIGHT && entry.type <= TYPE_RATIONAL) {
+        } else if (entry.tag == TAG_HEIGHT && entry.type <= RF_TIFF_RATIONAL) {
             height = entry;
-        } else if (entry.tag == TAG_SUBJECT_AREA) {
+        } else if (entry.tag == TAG_LENS_MODEL) {
+            get_text(tiff, &entry, lens, sizeof lens);
+        } else if (entry.tag == RF_EXIF_SUBJECT_AREA) {
             area = entry;
         }
     }
     exif->is_portrait = strncmp(exif->camera, "Apple", 5) == 0 &&
                         (custom == APPLE_PORTRAIT || custom == APPLE_PORTRAIT_HDR);
-    find_subject(tiff, &area, &width, &height, exif);
+    if (strstr(lens, "front")) { /* it may be mirrored, which nothing says */
+        exif->subject.held = 0;
+    }
+    rf_subject_read(tiff, &area, &width, &height, &exif->subject);
     if (exif->orientation >= 5 && width.count == 1 && height.count == 1) {
         /* Exchange the tags, not the values: types may differ. Their order, which TIFF
          * wants ascending, is put right by exchanging the rest of the entries too. */
@@ -264,90 +201,95 @@ static void read_settings(struct tiff *tiff, size_t directory, struct rf_exif *e
         memcpy(tiff->data + width.place + 2, tiff->data + height.place + 2, 10);
         memcpy(tiff->data + height.place + 2, rest, 10);
     }
+    if (exif->orientation != 1) {
+        rf_subject_turn(tiff, directory, &exif->subject);
+    }
 }
 
 bool rf_exif_parse(uint8_t *data, size_t size, struct rf_exif *exif)
 {
-    struct tiff tiff = {data, size, false};
+    struct rf_tiff tiff = {data, size, false};
     char make[48] = "", model[64] = "";
-    size_t directory, settings = 0, next;
-    struct entry entry;
+    size_t directory, settings = 0;
+    struct rf_tiff_entry entry;
     int count;
 
     memset(exif, 0, sizeof *exif);
     exif->orientation = 1;
-    exif->subject_x = exif->subject_y = -1.0;
+    exif->subject.x = exif->subject.y = -1.0;
     if (size < 8 || (memcmp(data, "MM\0*", 4) != 0 && memcmp(data, "II*\0", 4) != 0)) {
         return false;
     }
     tiff.big_endian = data[0] == 'M';
-    directory = get32(&tiff, 4);
-    count = count_entries(&tiff, directory);
+    directory = rf_tiff_get32(&tiff, 4);
+    count = rf_tiff_count(&tiff, directory);
     if (count < 0) {
         return false;
     }
     for (int i = 0; i < count; i++) {
-        if (!get_entry(&tiff, directory, i, &entry)) {
+        if (!rf_tiff_entry(&tiff, directory, i, &entry)) {
             continue;
         }
         if (entry.tag == TAG_MAKE) {
             get_text(&tiff, &entry, make, sizeof make);
         } else if (entry.tag == TAG_MODEL) {
             get_text(&tiff, &entry, model, sizeof model);
-        } else if (entry.tag == TAG_ORIENTATION && entry.type == TYPE_SHORT) {
-            const uint32_t value = get16(&tiff, entry.value);
+        } else if (entry.tag == TAG_ORIENTATION && entry.type == RF_TIFF_SHORT) {
+            const uint32_t value = rf_tiff_get16(&tiff, entry.value);
             exif->orientation = value >= 1 && value <= 8 ? (int)value : 1;
-            put16(&tiff, entry.value, 1);
+            rf_tiff_put16(&tiff, entry.value, 1);
         } else if (entry.tag == TAG_SETTINGS) {
-            settings = get_integer(&tiff, &entry);
+            settings = rf_tiff_integer(&tiff, &entry, 0);
         }
     }
     join_camera(exif, make, model);
+    exif->subject.orientation = exif->orientation;
     if (settings != 0) {
         read_settings(&tiff, settings, exif);
     }
-    /* The link to the thumbnail's directory follows the entries. */
-    next = directory + 2 + (size_t)count * 12;
-    if (count == (int)get16(&tiff, directory) && size - next >= 4) {
-        memset(data + next, 0, 4);
-    }
+    rf_tiff_drop_thumbnail(&tiff, directory);
     return true;
 }
 
-static void set_integer(struct tiff *tiff, const struct entry *entry, uint32_t value)
+/* Set a side of the picture; returns whether it was that long before. */
+static bool set_side(struct rf_tiff *tiff, const struct rf_tiff_entry *entry, uint32_t side)
 {
-    if (entry->count == 1 && entry->type == TYPE_LONG) {
-        put16(tiff, entry->value, tiff->big_endian ? value >> 16 : value & 0xffff);
-        put16(tiff, entry->value + 2, tiff->big_endian ? value & 0xffff : value >> 16);
-    } else if (entry->count == 1 && entry->type == TYPE_SHORT && value <= UINT16_MAX) {
-        put16(tiff, entry->value, value);
-    }
+    const bool same = entry->count == 1 && rf_tiff_integer(tiff, entry, 0) == side;
+
+    rf_tiff_set_integer(tiff, entry, side);
+    return same;
 }
 
+/* The subject's place is in pixels of a picture of the old size, of which this may be any part. */
 void rf_exif_set_size(uint8_t *data, size_t size, uint32_t width, uint32_t height)
 {
-    struct tiff tiff = {data, size, size > 0 && data[0] == 'M'};
+    struct rf_tiff tiff = {data, size, size > 0 && data[0] == 'M'};
     size_t directories[2] = {0, 0};
-    struct entry entry;
+    struct rf_tiff_entry entry;
 
     if (size < 8) {
         return;
     }
-    directories[0] = get32(&tiff, 4);
+    directories[0] = rf_tiff_get32(&tiff, 4);
     for (int d = 0; d < 2; d++) {
-        const int count = directories[d] > 0 ? count_entries(&tiff, directories[d]) : 0;
+        const int count = directories[d] > 0 ? rf_tiff_count(&tiff, directories[d]) : 0;
+        bool same_width = false, same_height = false;
 
         for (int i = 0; i < count; i++) {
-            if (!get_entry(&tiff, directories[d], i, &entry)) {
+            if (!rf_tiff_entry(&tiff, directories[d], i, &entry)) {
                 continue;
             }
             if (entry.tag == TAG_SETTINGS && d == 0) {
-                directories[1] = get_integer(&tiff, &entry);
+                directories[1] = rf_tiff_integer(&tiff, &entry, 0);
             } else if (entry.tag == (d == 0 ? TAG_MAIN_WIDTH : TAG_WIDTH)) {
-                set_integer(&tiff, &entry, width);
+                same_width = set_side(&tiff, &entry, width);
             } else if (entry.tag == (d == 0 ? TAG_MAIN_HEIGHT : TAG_HEIGHT)) {
-                set_integer(&tiff, &entry, height);
+                same_height = set_side(&tiff, &entry, height);
             }
+        }
+        if (d == 1 && count > 0 && !(same_width && same_height)) {
+            rf_tiff_drop(&tiff, directories[1], RF_EXIF_SUBJECT_AREA);
+            rf_tiff_drop(&tiff, directories[1], RF_EXIF_SUBJECT_LOCATION);
         }
     }
 }
@@ -377,11 +319,7 @@ int rf_exif_take(struct rf_read *read, struct rf_bytes tiff, bool orient)
     info->focal_length_35mm = exif.focal_length_35mm;
     info->f_number = exif.f_number;
     info->subject_distance = exif.subject_distance;
-    if (exif.subject_x >= 0.0) {
-        info->focus_x = exif.subject_x;
-        info->focus_y = exif.subject_y;
-        rf_note(info, "EXIF: the middle of the subject area, taken for the focus point");
-    }
+    read->subject = exif.subject;
     if (exif.is_portrait) {
         rf_note(info, "EXIF: a portrait, blurred by the phone: further blur adds to that");
     }

@@ -146,9 +146,6 @@ static void say_orientation(struct rf_heic *heic)
     info->stored_width = heif_image_handle_get_ispe_width(heic->primary);
     info->stored_height = heif_image_handle_get_ispe_height(heic->primary);
     info->orientation = rf_heif_orientation(heic->file, 0);
-    if (info->focus_x >= 0.0) {
-        rf_orient_point(&info->focus_x, &info->focus_y, info->orientation);
-    }
     if (info->orientation != 1) {
         rf_note(info, "HEIC: the container's orientation %d is applied to photo and depth",
                 info->orientation);

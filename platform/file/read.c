@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "convert.h"
+#include "exif_subject.h"
 #include "formats.h"
 #include "load.h"
 #include "orient.h"
@@ -138,6 +139,7 @@ int rf_read_begin(struct rf_read *read, struct rf_bytes file,
         if (info->focus_x >= 0.0) {
             rf_orient_point(&info->focus_x, &info->focus_y, read->orientation);
         }
+        rf_subject_settle(read);
     }
     return status;
 }

@@ -19,6 +19,15 @@ struct rf_kept {
     int original_orientation, depth_orientation;
 };
 
+/* The middle of the subject by EXIF. The sides and the point are those of the camera's pixels. */
+struct rf_subject {
+    double x, y;            /* fractions of the sides; x -1: not said */
+    uint32_t width, height; /* 0: not said */
+    int orientation;        /* EXIF 1 to 8, before the block was made upright */
+    int held;               /* the orientation by which the phone was held, of a picture that is
+                               turned onto its side; 0: not known */
+};
+
 /* Readers of formats fill it, and read.c turns it into a photo. */
 struct rf_read {
     struct refocus_read_limits limits; /* no zeros */
@@ -37,6 +46,7 @@ struct rf_read {
     int orientation;                /* 1 to 8, to be applied to image, samples and gain map */
     struct rf_gain_map *gain;       /* NULL: no gain map is asked for */
     double apple_headroom;          /* by an iPhone's EXIF; 0: not said */
+    struct rf_subject subject;
     /* Gain map and portrait matte of a JPEG, behind its main picture in the file. */
     struct rf_bytes companion[2];
     int companions;

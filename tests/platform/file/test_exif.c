@@ -7,68 +7,8 @@
 
 #include "../../kernels/guarded.h"
 #include "exif.h"
+#include "exif_entries.h"
 #include "icc.h"
-
-enum {
-    ASCII = 2,
-    SHORT = 3,
-    LONG = 4,
-    RATIONAL = 5,
-    MAKE = 0x010f,
-    MODEL = 0x0110,
-    ORIENTATION = 0x0112,
-    SETTINGS = 0x8769,
-    F_NUMBER = 0x829d,
-    SUBJECT_DISTANCE = 0x9206,
-    FOCAL_LENGTH = 0x920a,
-    SUBJECT_AREA = 0x9214,
-    WIDTH = 0xa002,
-    HEIGHT = 0xa003,
-    CUSTOM_RENDERED = 0xa401,
-    FOCAL_LENGTH_35MM = 0xa405,
-};
-
-static void add(struct bytes *block, uint64_t value, int size)
-{
-    bytes_number(block, value, size, true);
-}
-
-/* A directory behind what is there already. */
-static void directory(struct bytes *block, int count)
-{
-    if (!block->data) {
-        bytes_add(block, "MM\0*", 4);
-        add(block, 8, 4);
-    }
-    add(block, (uint64_t)count, 2);
-}
-
-static void entry(struct bytes *block, int tag, int type, uint32_t count, uint32_t value)
-{
-    add(block, (uint64_t)tag, 2);
-    add(block, (uint64_t)type, 2);
-    add(block, count, 4);
-    add(block, value, 4);
-}
-
-/* The value of a SHORT lies in the first two of the four bytes. */
-static void entry_short(struct bytes *block, int tag, uint32_t value)
-{
-    entry(block, tag, SHORT, 1, value << 16);
-}
-
-/* Main directory of one entry and the camera's settings right behind it. */
-static struct bytes with_settings(int orientation, int count)
-{
-    struct bytes block = {NULL, 0};
-
-    directory(&block, 2);
-    entry_short(&block, ORIENTATION, (uint32_t)orientation);
-    entry(&block, SETTINGS, LONG, 1, 8 + 2 + 2 * 12 + 4);
-    add(&block, 0, 4);
-    directory(&block, count);
-    return block;
-}
 
 /* Parse at the end of a page; the block becomes what parsing made of it. */
 static bool parse(struct bytes *block, struct rf_exif *exif)
@@ -160,15 +100,15 @@ static void subject_lies_within(void **state)
     const struct rf_exif exif = facts(with_subject(SHORT, 2, 320, 479, 2));
 
     (void)state;
-    assert_near(exif.subject_x, 320.5 / 640);
-    assert_near(exif.subject_y, 479.5 / 480);
-    assert_true(facts(with_subject(SHORT, 2, 640, 0, 2)).subject_x == -1);
-    assert_true(facts(with_subject(SHORT, 2, 0, 480, 2)).subject_x == -1);
-    assert_true(facts(with_subject(SHORT, 2, 0, 0, 1)).subject_x == -1);
-    assert_true(facts(with_subject(SHORT, 2, 0, 0, 0)).subject_x == -1);
-    assert_true(facts(with_subject(SHORT, 1, 0, 0, 2)).subject_x == -1);
-    assert_true(facts(with_subject(SHORT, 9, 8, 8, 2)).subject_x == -1);
-    assert_true(facts(with_subject(LONG, 1, 0, 0, 2)).subject_x == -1);
+    assert_near(exif.subject.x, 320.5 / 640);
+    assert_near(exif.subject.y, 479.5 / 480);
+    assert_true(facts(with_subject(SHORT, 2, 640, 0, 2)).subject.x == -1);
+    assert_true(facts(with_subject(SHORT, 2, 0, 480, 2)).subject.x == -1);
+    assert_true(facts(with_subject(SHORT, 2, 0, 0, 1)).subject.x == -1);
+    assert_true(facts(with_subject(SHORT, 2, 0, 0, 0)).subject.x == -1);
+    assert_true(facts(with_subject(SHORT, 1, 0, 0, 2)).subject.x == -1);
+    assert_true(facts(with_subject(SHORT, 9, 8, 8, 2)).subject.x == -1);
+    assert_true(facts(with_subject(LONG, 1, 0, 0, 2)).subject.x == -1);
 }
 
 /* The number of entries lies within the block. */
