@@ -35,8 +35,9 @@ static double metres_in(const char *unit)
     return 1.0 / per_metre;
 }
 
-/* Floats have no greatest code. "Greatest is nearest" needs no measuring here, see
- * value_near in depth.h; for the inverse the ends of the map are its ends. */
+/* Floats have no greatest code, but for those that were whole numbers. "Greatest is nearest" needs
+ * no measuring here, see value_near in depth.h; for the inverse the ends of the map are its ends.
+ */
 static void set_float_ends(struct refocus_depth_map *map, bool inverse)
 {
     const uint8_t *row = map->samples;
@@ -62,7 +63,7 @@ static void set_float_ends(struct refocus_depth_map *map, bool inverse)
     }
 }
 
-/* Give the map the meaning of a unit's words, for samples whose white is max_value. */
+/* Give the map the meaning of a unit's words, for samples whose white is max_value; 0: floats. */
 static int set_unit(struct refocus_depth_map *map, const char *unit, double max_value)
 {
     const bool inverse = strcmp(unit, "inverse") == 0;
@@ -72,7 +73,7 @@ static int set_unit(struct refocus_depth_map *map, const char *unit, double max_
         map->meaning = REFOCUS_DEPTH_DISPARITY;
         map->flags = 0;
         map->metres_per_unit = map->metres_at_zero = 0.0;
-        if (map->sample == REFOCUS_SAMPLE_F32) {
+        if (max_value == 0.0) {
             set_float_ends(map, inverse);
         } else {
             map->value_near = inverse ? 0.0 : max_value;
@@ -111,7 +112,10 @@ int refocus_depth_set_unit(struct refocus_depth_map *given, const char *unit)
          !rf_good_rows(map->stride, 4 * (int64_t)map->width, map->height))) {
         return REFOCUS_ERR_ARGUMENT;
     }
-    status = set_unit(map, unit, map->sample == REFOCUS_SAMPLE_U16 ? 65535.0 : 255.0);
+    status = set_unit(map, unit,
+                      map->sample == REFOCUS_SAMPLE_F32   ? 0.0
+                      : map->sample == REFOCUS_SAMPLE_U16 ? 65535.0
+                                                          : 255.0);
     return status == REFOCUS_OK ? refocus_struct_write(given, first, map, sizeof *map) : status;
 }
 
@@ -122,6 +126,41 @@ static int check_range(double near_m, double far_m, struct refocus_reason *reaso
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT,
                        "near and far must be metres, near the smaller");
     }
+    return REFOCUS_OK;
+}
+
+/* Transparent samples of a picture hold no value: floats can say so of each. */
+static int mark_holes(struct rf_read *read)
+{
+    const struct rf_raster *const from = &read->samples;
+    const size_t count = (size_t)from->width * (size_t)from->height;
+    struct rf_raster floats = *from;
+    unsigned long long holes = 0;
+    int status;
+
+    if (!read->holes.pixels) {
+        return REFOCUS_OK;
+    }
+    floats.sample = REFOCUS_SAMPLE_F32;
+    status = rf_raster_alloc(read, &floats);
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const bool hole = read->holes.pixels[i] == 0;
+        float value = NAN;
+
+        if (!hole && from->sample == REFOCUS_SAMPLE_F32) {
+            memcpy(&value, from->pixels + 4 * i, 4);
+        } else if (!hole) {
+            value = (float)rf_raster_sample(from, i);
+        }
+        memcpy(floats.pixels + 4 * i, &value, 4);
+        holes += hole;
+    }
+    rf_raster_free(&read->samples);
+    read->samples = floats;
+    rf_note(read->info, "depth: %llu samples are transparent: no value, filled", holes);
     return REFOCUS_OK;
 }
 
@@ -139,15 +178,15 @@ static int picture_as_samples(struct rf_read *read, double *max_value)
         read->samples = read->image;
         read->image.pixels = NULL;
         *max_value = read->samples.max_value;
+        status = mark_holes(read);
     }
     return status;
 }
 
-static const char *sample_name(uint32_t sample)
+/* The samples of the file, whose white that is. */
+static const char *sample_name(double max_value)
 {
-    return sample == REFOCUS_SAMPLE_F32   ? "32-bit float"
-           : sample == REFOCUS_SAMPLE_U16 ? "16-bit"
-                                          : "8-bit";
+    return max_value == 0.0 ? "32-bit float" : max_value > 255.0 ? "16-bit" : "8-bit";
 }
 
 /* Say how the samples are read, and why. */
@@ -176,13 +215,13 @@ static int apply_unit(struct rf_read *read, const char *unit, double max_value)
     if (!said) {
         read->info->depth_source = REFOCUS_DEPTH_SOURCE_FILE;
         rf_note(read->info, "depth file: %d x %d %s samples", (int)map->width, (int)map->height,
-                sample_name(map->sample));
+                sample_name(max_value));
     }
     if (unit) {
         rf_note(read->info, "depth: read as \"%s\", as asked for", unit);
     } else if (!said) {
         rf_note(read->info, "depth: no unit in the file, read as disparity: %s is near",
-                map->sample == REFOCUS_SAMPLE_F32 ? "greater" : "brighter");
+                max_value == 0.0 ? "greater" : "brighter");
     }
     return REFOCUS_OK;
 }

@@ -20,6 +20,7 @@ struct reader {
     png_infop info;
     struct rf_raster raster;
     struct refocus_blob exif, icc;
+    bool alpha; /* it stays beside the samples */
     int status; /* status for errors that are not libpng's own */
 };
 
@@ -84,12 +85,17 @@ static void choose_samples(struct reader *reader)
     } else if (type == PNG_COLOR_TYPE_GRAY && bits < 8) {
         png_set_expand_gray_1_2_4_to_8(png);
     }
-    /* A palette brings its transparency with it. */
-    png_set_strip_alpha(png);
+    if (reader->alpha &&
+        (type & PNG_COLOR_MASK_ALPHA || png_get_valid(png, reader->info, PNG_INFO_tRNS))) {
+        png_set_tRNS_to_alpha(png);
+    } else {
+        reader->alpha = false;
+        png_set_strip_alpha(png); /* a palette brings its transparency with it */
+    }
     if (bits == 16 && *(const uint8_t *)&one == 1) {
         png_set_swap(png);
     }
-    reader->raster.channels = type & PNG_COLOR_MASK_COLOR ? 3 : 1;
+    reader->raster.channels = (type & PNG_COLOR_MASK_COLOR ? 3 : 1) + reader->alpha;
     reader->raster.sample = bits == 16 ? REFOCUS_SAMPLE_U16 : REFOCUS_SAMPLE_U8;
     reader->raster.max_value = bits == 16 ? 65535 : 255;
 }
@@ -198,11 +204,12 @@ static bool run(struct reader *reader)
     return true;
 }
 
-/* The pixels and, unless their places are NULL, EXIF and the colour profile. */
+/* The pixels and, unless their places are NULL, EXIF and the colour profile. With *alpha true their
+ * transparency is beside them; it becomes false where there is none. */
 static int decode(const struct rf_read *read, struct rf_bytes file, struct rf_raster *raster,
-                  struct refocus_blob *exif, struct refocus_blob *icc)
+                  bool *alpha, struct refocus_blob *exif, struct refocus_blob *icc)
 {
-    struct reader reader = {.read = read, .file = file};
+    struct reader reader = {.read = read, .file = file, .alpha = *alpha};
 
     reader.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning,
                                           &reader, on_malloc, on_free);
@@ -214,6 +221,7 @@ static int decode(const struct rf_read *read, struct rf_bytes file, struct rf_ra
         reader.status = rf_fail_memory(read->reason);
     } else if (run(&reader) && reader.status == REFOCUS_OK) {
         *raster = reader.raster;
+        *alpha = reader.alpha;
         if (exif) {
             *exif = reader.exif;
             reader.exif.data = NULL;
@@ -233,18 +241,24 @@ static int decode(const struct rf_read *read, struct rf_bytes file, struct rf_ra
 
 int rf_png_decode(const struct rf_read *read, struct rf_bytes file, struct rf_raster *raster)
 {
-    return decode(read, file, raster, NULL, NULL);
+    bool alpha = false;
+
+    return decode(read, file, raster, &alpha, NULL, NULL);
 }
 
 int rf_read_png(struct rf_read *read, struct rf_bytes file)
 {
     struct refocus_blob exif = {NULL, 0}, icc = {NULL, 0};
+    bool alpha = rf_wants_alpha(read);
     int status;
 
     memcpy(read->info->container, "PNG", 4);
-    status = decode(read, file, &read->image, &exif, &icc);
+    status = decode(read, file, &read->image, &alpha, &exif, &icc);
+    if (status == REFOCUS_OK && alpha) {
+        status = rf_part_alpha(read);
+    }
     /* IHDR comes first: its colour type is byte 25 of the file. */
-    if (status == REFOCUS_OK && file.data[25] & PNG_COLOR_MASK_ALPHA) {
+    if (status == REFOCUS_OK && !read->holes.pixels && file.data[25] & PNG_COLOR_MASK_ALPHA) {
         rf_note(read->info, "PNG: transparency is dropped");
     }
     if (status == REFOCUS_OK) {

@@ -10,7 +10,7 @@
 struct rf_raster {
     uint8_t *pixels; /* owned; top row first; NULL when there is none */
     int32_t width, height;
-    int32_t channels;   /* 1 or 3 */
+    int32_t channels;   /* 1 or 3; between decoding and rf_part_alpha() 2 or 4 */
     uint32_t sample;    /* enum refocus_sample */
     uint32_t max_value; /* code of white; 0 for F32 */
     bool lossy;         /* read from a JPEG: channels that were equal may differ by a little */

@@ -208,6 +208,7 @@ int rf_read_finish(struct rf_read *read, int status, struct rf_photo **photo)
             read->info->stored_bits++;
         }
     }
+    rf_raster_free(&read->holes);
     if (status == REFOCUS_OK && read->image.pixels) {
         status = rf_image_to_rgb8(read);
     }

@@ -2,6 +2,7 @@
 #include "reading.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "gain_map.h"
 #include "reason.h"
@@ -60,7 +61,8 @@ int rf_check_memory(const struct rf_read *read, uint64_t more)
 
     return check(read,
                  read->file_bytes + raster_bytes(&read->image) + raster_bytes(&read->samples) +
-                     raster_bytes(&read->confidence) + raster_bytes(&read->matte) + gain + more,
+                     raster_bytes(&read->confidence) + raster_bytes(&read->holes) +
+                     raster_bytes(&read->matte) + gain + more,
                  read->limits.max_memory, "decoding it");
 }
 
@@ -78,4 +80,44 @@ int rf_raster_alloc(const struct rf_read *read, struct rf_raster *raster)
     }
     raster->pixels = malloc((size_t)raster->width * (size_t)raster->height * bytes);
     return raster->pixels ? REFOCUS_OK : rf_fail_memory(read->reason);
+}
+
+bool rf_wants_alpha(const struct rf_read *read)
+{
+    return !read->picture_always;
+}
+
+int rf_part_alpha(struct rf_read *read)
+{
+    static const uint8_t zero[4] = {0};
+    struct rf_raster *const raster = &read->image;
+    const size_t sample = rf_sample_bytes(raster->sample);
+    const size_t colour = (size_t)(raster->channels - 1) * sample;
+    const size_t count = (size_t)raster->width * (size_t)raster->height;
+    struct rf_raster holes = {.width = raster->width,
+                              .height = raster->height,
+                              .channels = 1,
+                              .sample = REFOCUS_SAMPLE_U8,
+                              .max_value = 255};
+    const int status = rf_raster_alloc(read, &holes);
+    bool any = false;
+
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const uint8_t *const from = raster->pixels + i * (colour + sample);
+        const bool hole = memcmp(from + colour, zero, sample) == 0;
+
+        holes.pixels[i] = hole ? 0 : 255;
+        any |= hole;
+        memmove(raster->pixels + i * colour, from, colour);
+    }
+    raster->channels--;
+    if (any) {
+        read->holes = holes;
+    } else {
+        rf_raster_free(&holes);
+    }
+    return REFOCUS_OK;
 }

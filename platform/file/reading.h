@@ -36,12 +36,14 @@ struct rf_read {
     struct refocus_photo_info *info;
     struct refocus_blob exif, icc; /* owned */
     struct rf_kept kept;
-    size_t file_bytes;              /* size of the file in memory */
-    struct rf_raster image;         /* as stored */
-    struct rf_raster deep;          /* image of 16 bits or floats, once `image` is of 8 bits */
-    struct rf_raster samples;       /* depth, as stored */
-    struct rf_raster matte;         /* white is subject */
-    struct rf_raster confidence;    /* for each sample: 255 is sure, 0 a guess */
+    size_t file_bytes;           /* size of the file in memory */
+    struct rf_raster image;      /* as stored */
+    struct rf_raster deep;       /* image of 16 bits or floats, once `image` is of 8 bits */
+    struct rf_raster samples;    /* depth, as stored */
+    struct rf_raster matte;      /* white is subject */
+    struct rf_raster confidence; /* for each sample: 255 is sure, 0 a guess */
+    struct rf_raster holes;      /* for each pixel of an image that is read for its depth: 0 where
+                                    it is transparent, which is no distance */
     struct refocus_depth_map depth; /* meaning, values and range of the samples */
     int orientation;                /* 1 to 8, to be applied to image, samples and gain map */
     struct rf_gain_map *gain;       /* NULL: no gain map is asked for */
@@ -63,5 +65,10 @@ int rf_check_metadata(const struct rf_read *read, uint64_t bytes, const char *wh
 int rf_check_memory(const struct rf_read *read, uint64_t more);
 /* Memory for a raster whose other fields are filled, within the limits. */
 int rf_raster_alloc(const struct rf_read *read, struct rf_raster *raster);
+/* Whether transparency is of use: it says where a depth map has no value. */
+bool rf_wants_alpha(const struct rf_read *read);
+/* Take the last of 2 or 4 channels out of read->image, and into read->holes where it is 0 anywhere.
+ */
+int rf_part_alpha(struct rf_read *read);
 
 #endif

@@ -108,7 +108,8 @@ static int begin_picture(struct reader *reader)
     size_t size = 0;
     int status;
 
-    raster->channels = grey ? 1 : 3;
+    raster->channels =
+        (grey ? 1 : 3) + (reader->about.alpha_bits > 0 && rf_wants_alpha(reader->read));
     raster->sample = floats ? REFOCUS_SAMPLE_F32 : small ? REFOCUS_SAMPLE_U8 : REFOCUS_SAMPLE_U16;
     raster->max_value = floats ? 0 : small ? 255 : 65535;
     reader->read->info->stored_bits = floats ? 0 : (int32_t)reader->about.bits_per_sample;
@@ -232,7 +233,10 @@ static int decode(struct reader *reader)
     if (status == REFOCUS_OK && !reader->has_picture) {
         status = fail_damaged(reader);
     }
-    if (status == REFOCUS_OK && reader->about.alpha_bits > 0) {
+    if (status == REFOCUS_OK && reader->about.alpha_bits > 0 && rf_wants_alpha(reader->read)) {
+        status = rf_part_alpha(reader->read);
+    }
+    if (status == REFOCUS_OK && reader->about.alpha_bits > 0 && !reader->read->holes.pixels) {
         rf_note(reader->read->info, "JPEG XL: transparency is dropped");
     }
     if (status == REFOCUS_OK &&

@@ -115,7 +115,8 @@ static void put(const struct reader *reader, struct rf_raster *raster, const uin
 {
     const bool apart = reader->planar == PLANARCONFIG_SEPARATE;
     const size_t step = apart ? 1 : reader->channels, channels = (size_t)raster->channels;
-    const size_t grey = reader->channels < 3 ? 0 : 1; /* three channels of one are alike */
+    /* Three channels of one are alike. */
+    const size_t grey = reader->channels < 3 && channels == 3 ? 0 : 1;
     const bool inverted = reader->photometric == PHOTOMETRIC_MINISWHITE;
     const size_t at = ((size_t)y * (size_t)raster->width + x) * channels;
 
@@ -244,18 +245,30 @@ static int read_rgba(struct reader *reader, struct rf_raster *raster)
     return status;
 }
 
+/* Whether the channel behind the colour is transparency, which is of use. */
+static bool has_alpha(const struct reader *reader)
+{
+    uint16_t count = 0, *kinds = NULL;
+
+    return rf_wants_alpha(reader->read) && reader->planar == PLANARCONFIG_CONTIG &&
+           reader->photometric != PHOTOMETRIC_MINISWHITE &&
+           TIFFGetField(reader->tiff, TIFFTAG_EXTRASAMPLES, &count, &kinds) && count > 0 &&
+           (kinds[0] == EXTRASAMPLE_ASSOCALPHA || kinds[0] == EXTRASAMPLE_UNASSALPHA);
+}
+
 static int read_samples(struct reader *reader)
 {
     struct rf_read *const read = reader->read;
     const bool floats = reader->format == SAMPLEFORMAT_IEEEFP;
     const bool grey = reader->channels < 3;
     const bool depth = floats && grey && !read->picture_always;
+    const bool alpha = !floats && has_alpha(reader);
     struct rf_raster *const raster = depth ? &read->samples : &read->image;
     int status;
 
     raster->width = (int32_t)reader->width;
     raster->height = (int32_t)reader->height;
-    raster->channels = !grey || (floats && !depth) ? 3 : 1;
+    raster->channels = (!grey || (floats && !depth) ? 3 : 1) + alpha;
     raster->sample = floats               ? REFOCUS_SAMPLE_F32
                      : reader->bits == 16 ? REFOCUS_SAMPLE_U16
                                           : REFOCUS_SAMPLE_U8;
@@ -264,7 +277,10 @@ static int read_samples(struct reader *reader)
     if (status == REFOCUS_OK) {
         status = read_blocks(reader, raster);
     }
-    if (status == REFOCUS_OK && reader->channels != (grey ? 1 : 3)) {
+    if (status == REFOCUS_OK && alpha) {
+        status = rf_part_alpha(read);
+    }
+    if (status == REFOCUS_OK && reader->channels != (grey ? 1 : 3) && !read->holes.pixels) {
         rf_note(read->info, "TIFF: channels beyond its colour, as of transparency, are dropped");
     }
     if (status == REFOCUS_OK && floats) {

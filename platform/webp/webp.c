@@ -23,6 +23,7 @@ static int decode(struct rf_read *read, struct rf_bytes file)
     struct rf_raster *const raster = &read->image;
     WebPDecoderConfig config;
     VP8StatusCode code;
+    bool alpha;
     int status;
 
     if (!WebPInitDecoderConfig(&config)) {
@@ -36,9 +37,10 @@ static int decode(struct rf_read *read, struct rf_bytes file)
         return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
                        "it is an animated WebP; give a still picture");
     }
+    alpha = config.input.has_alpha && rf_wants_alpha(read);
     raster->width = config.input.width;
     raster->height = config.input.height;
-    raster->channels = 3;
+    raster->channels = alpha ? 4 : 3;
     raster->sample = REFOCUS_SAMPLE_U8;
     raster->max_value = 255;
     raster->lossy = config.input.format != 2;
@@ -49,7 +51,7 @@ static int decode(struct rf_read *read, struct rf_bytes file)
     if (status != REFOCUS_OK) {
         return status;
     }
-    config.output.colorspace = MODE_RGB;
+    config.output.colorspace = alpha ? MODE_RGBA : MODE_RGB;
     config.output.is_external_memory = 1;
     config.output.u.RGBA.rgba = raster->pixels;
     config.output.u.RGBA.stride = (int)rf_raster_stride(raster);
@@ -59,10 +61,13 @@ static int decode(struct rf_read *read, struct rf_bytes file)
     if (code != VP8_STATUS_OK) {
         return fail(read, code);
     }
-    if (config.input.has_alpha) {
+    if (alpha) {
+        status = rf_part_alpha(read);
+    }
+    if (status == REFOCUS_OK && config.input.has_alpha && !read->holes.pixels) {
         rf_note(read->info, "WebP: transparency is dropped");
     }
-    return REFOCUS_OK;
+    return status;
 }
 
 static int copy(const struct rf_read *read, const WebPDemuxer *demuxer, const char *name,

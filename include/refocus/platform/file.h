@@ -263,7 +263,8 @@ REFOCUS_API void refocus_light_destroy(struct refocus_light **light);
  * bits or TIFF of the same or of floats, OpenEXR (channel Z, or the only one), PFM (both byte
  * orders), NumPy's arrays of two sides, alone (.npy) or in archives (.npz: the one called depth or
  * disparity, else the first), or any photo with depth in it. The result has no image,
- * only depth.
+ * only depth. Samples of PNG, TIFF, WebP and JPEG XL whose opacity is 0 hold no value: a map that
+ * has any is of floats, the codes of the file and NaN for these.
  *
  * @param unit  how to read the samples, the words of the command line: "disparity"
  *              (bright = near), "inverse" (dark = near), "mm", "m", or a number per

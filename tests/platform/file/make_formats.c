@@ -27,11 +27,14 @@ static void add_float(struct bytes *file, float value, bool big)
 
 static void add_sample(struct bytes *file, struct tiff_kind kind, int x, int y, int c)
 {
-    if (kind.floats) {
+    const uint32_t most = kind.bits == 16 ? 65535 : 255;
+
+    if (kind.alpha && c == kind.channels - 1) {
+        bytes_number(file, x == 1 && y == 1 ? 0 : most, kind.bits / 8, kind.big_endian);
+    } else if (kind.floats) {
         add_float(file, (float)pattern(x, y, c, 255) / 64, kind.big_endian);
     } else {
-        bytes_number(file, pattern(x, y, c, kind.bits == 16 ? 65535 : 255), kind.bits / 8,
-                     kind.big_endian);
+        bytes_number(file, pattern(x, y, c, most), kind.bits / 8, kind.big_endian);
     }
 }
 
@@ -63,7 +66,7 @@ struct bytes make_tiff(int width, int height, struct tiff_kind kind)
     for (uint32_t i = 0; strips > 1 && i < strips; i++) {
         bytes_number(&file, plane, 4, big);
     }
-    bytes_number(&file, ENTRIES, 2, big);
+    bytes_number(&file, ENTRIES + kind.alpha, 2, big);
     entry(&file, 254, 4, 1, kind.thumbnail, big);
     entry(&file, 256, 3, 1, (uint32_t)width, big);
     entry(&file, 257, 3, 1, (uint32_t)height, big);
@@ -78,6 +81,9 @@ struct bytes make_tiff(int width, int height, struct tiff_kind kind)
         entry(&file, 330, 4, 1, 0, big);
     } else {
         entry(&file, 284, 3, 1, kind.planar ? 2 : 1, big);
+    }
+    if (kind.alpha) {
+        entry(&file, 338, 3, 1, 2, big);
     }
     entry(&file, 339, 3, 1, kind.floats ? 3 : 1, big);
     bytes_number(&file, 0, 4, big);

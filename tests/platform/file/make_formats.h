@@ -9,6 +9,7 @@
 struct tiff_kind {
     bool big_endian, floats, planar;
     int bits, channels, photometric, orientation;
+    bool alpha;     /* The last channel is 0 at (1, 1), else the greatest code. */
     bool thumbnail; /* the first directory says that it is one, and that there is more below */
 };
 struct bytes make_tiff(int width, int height, struct tiff_kind kind);

@@ -75,6 +75,28 @@ static void tiff_floats(void **state)
     refocus_photo_free(&photo);
 }
 
+static void tiff_transparent(void **state)
+{
+    struct tiff_kind kind = {.channels = 2, .photometric = 1, .orientation = 1, .alpha = true};
+    struct refocus_photo *photo;
+
+    (void)state;
+    for (kind.bits = 8; kind.bits <= 16; kind.bits += 8) {
+        photo = read_depth(make_tiff(W, H, kind), NULL, REFOCUS_OK);
+        for (int i = 0; i < W * H; i++) {
+            const double v = float_at(photo->depth, i % W, i / W);
+
+            assert_true(i == W + 1 ? isnan(v)
+                                   : v == pattern(i % W, i / W, 0, kind.bits == 8 ? 255 : 65535));
+        }
+        assert_true(photo->depth->value_near == (kind.bits == 8 ? 255 : 65535));
+        refocus_photo_free(&photo);
+        photo = read_photo(make_tiff(W, H, kind), REFOCUS_OK);
+        assert_true(has_evidence(photo, "dropped"));
+        refocus_photo_free(&photo);
+    }
+}
+
 static void tiff_refused(void **state)
 {
     const struct tiff_kind odd = {.bits = 32, .channels = 3, .photometric = 2, .orientation = 1};
@@ -153,6 +175,26 @@ static void tiff_exif(void **state)
 #endif
 
 #ifdef RF_HAVE_WEBP
+/* Grey of 40 with one pixel that is transparent. */
+static void webp_transparent(void **state)
+{
+    uint8_t rgba[4 * W * H], *made = NULL;
+    struct refocus_photo *photo;
+    size_t size;
+
+    (void)state;
+    for (int i = 0; i < W * H; i++) {
+        memset(rgba + 4 * i, 40, 3);
+        rgba[4 * i + 3] = i == 3 ? 0 : 255;
+    }
+    size = WebPEncodeLosslessRGBA(rgba, W, H, 4 * W, &made);
+    photo = read_depth(bytes_copy(made, size), NULL, REFOCUS_OK);
+    WebPFree(made);
+    assert_true(isnan(float_at(photo->depth, 3, 0)));
+    assert_true(float_at(photo->depth, 4, 0) == 40 && float_at(photo->depth, 3, 1) == 40);
+    refocus_photo_free(&photo);
+}
+
 static void webp(void **state)
 {
     uint8_t rgb[3 * W * H], *made = NULL;
@@ -195,11 +237,13 @@ static void webp(void **state)
 #endif
 
 #ifdef RF_HAVE_JXL
-/* Lossless, by a curve. */
+/* Lossless, by a curve; three channels, or four with transparency. */
 static struct bytes make_jxl(const void *samples, size_t size, JxlDataType type, uint32_t bits,
                              JxlTransferFunction curve)
 {
-    const JxlPixelFormat format = {3, type, JXL_NATIVE_ENDIAN, 0};
+    const size_t sample_bytes = type == JXL_TYPE_FLOAT ? 4 : type == JXL_TYPE_UINT16 ? 2 : 1;
+    const uint32_t channels = (uint32_t)(size / sample_bytes / (W * H));
+    const JxlPixelFormat format = {channels, type, JXL_NATIVE_ENDIAN, 0};
     JxlEncoder *const encoder = JxlEncoderCreate(NULL);
     JxlEncoderFrameSettings *const settings = JxlEncoderFrameSettingsCreate(encoder, NULL);
     JxlColorEncoding colour;
@@ -214,6 +258,8 @@ static struct bytes make_jxl(const void *samples, size_t size, JxlDataType type,
     about.bits_per_sample = bits;
     about.exponent_bits_per_sample = type == JXL_TYPE_FLOAT ? 5 : 0; /* half */
     about.uses_original_profile = JXL_TRUE;
+    about.num_extra_channels = channels - 3;
+    about.alpha_bits = channels > 3 ? bits : 0;
     JxlColorEncodingSetToSRGB(&colour, JXL_FALSE);
     colour.transfer_function = curve;
     JxlEncoderUseContainer(encoder, JXL_TRUE);
@@ -226,6 +272,23 @@ static struct bytes make_jxl(const void *samples, size_t size, JxlDataType type,
     bytes_add(&file, out, sizeof out - left);
     JxlEncoderDestroy(encoder);
     return file;
+}
+
+static void jxl_transparent(void **state)
+{
+    uint8_t rgba[4 * W * H];
+    struct refocus_photo *photo;
+
+    (void)state;
+    for (int i = 0; i < W * H; i++) {
+        memset(rgba + 4 * i, 40, 3);
+        rgba[4 * i + 3] = i == 3 ? 0 : 255;
+    }
+    photo = read_depth(make_jxl(rgba, sizeof rgba, JXL_TYPE_UINT8, 8, JXL_TRANSFER_FUNCTION_SRGB),
+                       NULL, REFOCUS_OK);
+    assert_true(isnan(float_at(photo->depth, 3, 0)));
+    assert_true(float_at(photo->depth, 4, 0) == 40 && float_at(photo->depth, 3, 1) == 40);
+    refocus_photo_free(&photo);
 }
 
 static void jxl(void **state)
@@ -429,14 +492,14 @@ int main(void)
     const struct CMUnitTest tests[] = {
 #ifdef RF_HAVE_TIFF
         cmocka_unit_test(tiff_kinds),    cmocka_unit_test(tiff_floats),
-        cmocka_unit_test(tiff_refused),  cmocka_unit_test(tiff_written),
-        cmocka_unit_test(tiff_exif),
+        cmocka_unit_test(tiff_refused),  cmocka_unit_test(tiff_transparent),
+        cmocka_unit_test(tiff_written),  cmocka_unit_test(tiff_exif),
 #endif
 #ifdef RF_HAVE_WEBP
-        cmocka_unit_test(webp),
+        cmocka_unit_test(webp),          cmocka_unit_test(webp_transparent),
 #endif
 #ifdef RF_HAVE_JXL
-        cmocka_unit_test(jxl),
+        cmocka_unit_test(jxl),           cmocka_unit_test(jxl_transparent),
 #endif
 #ifdef RF_HAVE_HEIC
         cmocka_unit_test(heic),          cmocka_unit_test(avif),

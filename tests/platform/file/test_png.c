@@ -141,6 +141,43 @@ static void png_depth(void **state)
     read_depth(make_png_raw(2, 2, 2, 8, grey_rgb, NULL), NULL, REFOCUS_ERR_NO_DEPTH);
 }
 
+/* A sample without opacity is no distance; the others keep their codes and the ends of the codes.
+ */
+static void transparent_samples_are_unknown(void **state)
+{
+    static const uint8_t grey8[] = {0, 255, 7, 0, 255, 1, 255, 255};
+    static const uint8_t rgb16[] = {1, 2, 1, 2, 1, 2, 255, 255, 9, 9, 9, 9, 9, 9, 0, 0};
+    struct refocus_photo *photo =
+        read_depth(make_png_raw(2, 2, 4, 8, grey8, NULL), "inverse", REFOCUS_OK);
+
+    (void)state;
+    assert_true(float_at(photo->depth, 0, 0) == 0);
+    assert_true(isnan(float_at(photo->depth, 1, 0)));
+    assert_true(float_at(photo->depth, 0, 1) == 255);
+    assert_true(float_at(photo->depth, 1, 1) == 255);
+    assert_true(photo->depth->value_near == 0 && photo->depth->value_far == 255);
+    assert_int_equal(photo->info->stored_bits, 8);
+    assert_true(has_evidence(photo, "1 samples are transparent"));
+    assert_true(has_evidence(photo, "8-bit"));
+    assert_false(has_evidence(photo, "dropped"));
+    refocus_photo_free(&photo);
+    photo = read_depth(make_png_raw(2, 1, 6, 16, rgb16, NULL), "mm", REFOCUS_OK);
+    assert_true(float_at(photo->depth, 0, 0) == 0x102);
+    assert_true(isnan(float_at(photo->depth, 1, 0)));
+    refocus_photo_free(&photo);
+    /* Indices 0 and 1 of the palette have an opacity of 0 and 128. */
+    photo = read_depth(make_png_raw(2, 1, 3, 8, (const uint8_t *)"\0\1", NULL), NULL, REFOCUS_OK);
+    assert_true(isnan(float_at(photo->depth, 0, 0)));
+    assert_true(float_at(photo->depth, 1, 0) == 1);
+    refocus_photo_free(&photo);
+    /* None is transparent: codes stay codes. */
+    photo = read_depth(make_png_raw(2, 1, 4, 8, grey8 + 4, NULL), NULL, REFOCUS_OK);
+    assert_int_equal(photo->depth->sample, REFOCUS_SAMPLE_U8);
+    assert_int_equal(sample_at(photo->depth, 1, 0), 255);
+    assert_true(has_evidence(photo, "dropped"));
+    refocus_photo_free(&photo);
+}
+
 /* Only the header's size is changed, its checksum mended. */
 static struct bytes png_of_size(uint64_t width, uint64_t height)
 {
@@ -171,8 +208,11 @@ static void png_absurd(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(png_kinds),         cmocka_unit_test(more_than_8_bits_are_dithered),
-        cmocka_unit_test(png_small_samples), cmocka_unit_test(png_depth),
+        cmocka_unit_test(png_kinds),
+        cmocka_unit_test(more_than_8_bits_are_dithered),
+        cmocka_unit_test(png_small_samples),
+        cmocka_unit_test(png_depth),
+        cmocka_unit_test(transparent_samples_are_unknown),
         cmocka_unit_test(png_absurd),
     };
 
