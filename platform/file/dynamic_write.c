@@ -1,7 +1,10 @@
 /* dynamic_write.c: depth is written as Dynamic Depth 1.0, in the form that Android takes:
  * https://developer.android.com/static/training/camera2/Dynamic-depth-v1.0.pdf
  * Its validator wants JPEGs, a confidence and metres, and counts items without padding. A JPEG has
- * 8 bits and is not exact; GDepth beside it, which readers here take first, is. */
+ * 8 bits and is not exact; GDepth beside it, which readers here take first, is. Examples of the
+ * document give attributes and elements to one property, which RDF forbids and Adobe's XMP Toolkit
+ * refuses with all else in the packet; a structure (rdf:parseType) says the same, and Android's
+ * reader looks for both. */
 #include "dynamic_write.h"
 
 #include <math.h>
@@ -86,12 +89,15 @@ void rf_dynamic_put(struct rf_text *text, const struct rf_behind *behind,
                         "container/\" xmlns:Item=\"" DD "item/\" xmlns:Camera=\"" DD
                         "camera/\" xmlns:Image=\"" DD "image/\" xmlns:DepthMap=\"" DD
                         "depthmap/\"><Device:Profiles><rdf:Seq><rdf:li rdf:parseType=\"Resource\">"
-                        "<Device:Profile Profile:Type=\"DepthPhoto\"><Profile:CameraIndices>"
+                        "<Device:Profile rdf:parseType=\"Resource\"><Profile:Type>DepthPhoto"
+                        "</Profile:Type><Profile:CameraIndices>"
                         "<rdf:Seq><rdf:li>0</rdf:li></rdf:Seq></Profile:CameraIndices>"
-                        "</Device:Profile></rdf:li></rdf:Seq></Device:Profiles><Device:Container>");
+                        "</Device:Profile></rdf:li></rdf:Seq></Device:Profiles>"
+                        "<Device:Container rdf:parseType=\"Resource\">");
     rf_behind_put_items(text, behind, false);
     rf_text_words(text, "</Device:Container><Device:Cameras><rdf:Seq><rdf:li rdf:parseType="
-                        "\"Resource\"><Device:Camera Camera:Trait=\"Physical\"><Camera:Image "
+                        "\"Resource\"><Device:Camera rdf:parseType=\"Resource\">"
+                        "<Camera:Trait>Physical</Camera:Trait><Camera:Image "
                         "Image:ItemSemantic=\"Primary\" Image:ItemURI=\"primary_image\"/>"
                         "<Camera:DepthMap DepthMap:Format=\"RangeInverse\" "
                         "DepthMap:ItemSemantic=\"Depth\" DepthMap:MeasureType=\"OpticalAxis\"");

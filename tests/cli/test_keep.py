@@ -9,6 +9,7 @@ import struct
 import subprocess
 import unittest
 import zlib
+from xml.etree import ElementTree
 
 import pictures
 from case import Case, H, REFOCUS, W
@@ -18,6 +19,8 @@ HAS_JPEG, HAS_PNG, HAS_XMP = 'JPEG' in VERSION, 'PNG' in VERSION, 'RF_XMP' in os
 
 STANDARD, EXTENDED = b'http://ns.adobe.com/xap/1.0/\0', b'http://ns.adobe.com/xmp/extension/\0'
 RDF = b'xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#"'
+
+RDF_NAME = '{http://www.w3.org/1999/02/22-rdf-syntax-ns#}'
 
 
 def segments(jpeg):
@@ -277,11 +280,30 @@ class Editable(Keep):
         self.check_dynamic_depth(first)
         return first
 
+    def check_rdf(self, node):
+        """A property has attributes, a structure, or one node: else XMP toolkits refuse all."""
+        for item in node:
+            content = list(item)
+            kind = item.get(RDF_NAME + 'parseType')
+            attributes = [a for a in item.attrib
+                          if not a.startswith((RDF_NAME, '{http://www.w3.org/XML/1998/namespace}'))]
+            if content:
+                self.assertEqual(attributes, [], item.tag)
+            if kind is None and content:
+                self.assertEqual([c.tag.startswith(RDF_NAME) for c in content], [True], item.tag)
+                content = content[0]
+            self.check_rdf(content)
+
     def check_dynamic_depth(self, jpeg):
         """Readers that know Dynamic Depth alone find the same depth, in 8 bits."""
         own = re.compile(rb'\s(GDepth|GImage|Refocus|xmpNote):\w+="[^"]*"')
         parts = [(m, own.sub(b'', p)) for m, p in segments(jpeg) if not p.startswith(EXTENDED)]
-        self.assertIn(b'Profile:Type="DepthPhoto"', b''.join(p for _, p in parts))
+        self.assertIn(b'>DepthPhoto</Profile:Type>', b''.join(p for _, p in parts))
+        for _, payload in parts:
+            if payload.startswith(STANDARD):
+                tree = ElementTree.fromstring(payload[payload.index(b'<x:xmpmeta'):])
+                for description in tree.find(RDF_NAME + 'RDF'):
+                    self.check_rdf(description)
         self.assertEqual(jpeg[-self.length_of(jpeg, b'android/confidencemap'):][:3], b'\xff\xd8\xff')
         rest = jpeg[2 + sum(len(p) + 4 for _, p in segments(jpeg)):]
         with open('other.jpg', 'wb') as file:
