@@ -118,6 +118,19 @@ void rf_gain_settle(struct rf_read *read, const char *why, double headroom)
             (int)map->samples.width, (int)map->samples.height, most);
 }
 
+/* Metadata of ISO 21496-1, else the XMP beside it, which says the same in more files. */
+static int judge(struct rf_read *read, const struct candidate *candidate, bool *is_map,
+                 const char **why, double *headroom)
+{
+    if (candidate->iso.data) {
+        *is_map = true;
+        *why = rf_gain_from_iso(candidate->iso, &read->gain->values);
+    }
+    return candidate->xmp.data && (!candidate->iso.data || *why)
+               ? judge_xmp(read, candidate, is_map, why, headroom)
+               : REFOCUS_OK;
+}
+
 static int try_picture(struct rf_read *read, struct candidate *candidate)
 {
     struct refocus_reason unused = {""};
@@ -131,12 +144,7 @@ static int try_picture(struct rf_read *read, struct candidate *candidate)
     if (!sort_segments(read, candidate)) {
         return REFOCUS_OK;
     }
-    if (candidate->iso.data) {
-        is_map = true;
-        why = rf_gain_from_iso(candidate->iso, &read->gain->values);
-    } else if (candidate->xmp.data) {
-        status = judge_xmp(&quiet, candidate, &is_map, &why, &headroom);
-    }
+    status = judge(&quiet, candidate, &is_map, &why, &headroom);
     if (status == REFOCUS_OK && is_map && !why) {
         status = rf_decode_part(&quiet, candidate->file, "gain map", &read->gain->samples);
         if (status != REFOCUS_OK && status != REFOCUS_ERR_MEMORY) {

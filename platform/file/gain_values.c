@@ -39,9 +39,13 @@ static const char *check(const struct rf_gain_values *v)
                : "its photo is not the darker rendition";
 }
 
+enum { THREE_CHANNELS = 0x80, COMMON_DENOMINATOR = 8 }; /* flags of ISO's metadata */
+
 struct reading {
     struct rf_bytes left;
     bool short_of; /* bytes were missing, or a denominator was 0 */
+    bool common;   /* one denominator for all fractions was read */
+    uint32_t denominator;
 };
 
 static uint32_t get(struct reading *r, size_t bytes)
@@ -63,7 +67,7 @@ static uint32_t get(struct reading *r, size_t bytes)
 /* A fraction; its numerator may be negative. */
 static double get_fraction(struct reading *r, bool is_signed)
 {
-    const uint32_t above = get(r, 4), below = get(r, 4);
+    const uint32_t above = get(r, 4), below = r->common ? r->denominator : get(r, 4);
     const double value = is_signed ? (double)(int32_t)above : (double)above;
 
     r->short_of |= below == 0;
@@ -72,15 +76,21 @@ static double get_fraction(struct reading *r, bool is_signed)
 
 const char *rf_gain_from_iso(struct rf_bytes metadata, struct rf_gain_values *values)
 {
-    struct reading r = {metadata, false};
+    struct reading r = {.left = metadata};
     const uint32_t least_version = get(&r, 2);
+    uint32_t flags;
     int channels;
 
     memset(values, 0, sizeof *values);
     get(&r, 2); /* version of the writer */
-    channels = get(&r, 1) & 0x80 ? 3 : 1;
+    flags = get(&r, 1);
+    channels = flags & THREE_CHANNELS ? 3 : 1;
     if (!r.short_of && least_version != 0) {
         return "its metadata is of a version that is not known";
+    }
+    if (flags & COMMON_DENOMINATOR) {
+        r.denominator = get(&r, 4);
+        r.common = true;
     }
     values->base_headroom = get_fraction(&r, false);
     values->other_headroom = get_fraction(&r, false);

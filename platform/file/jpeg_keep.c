@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "editable.h"
+#include "gain_map.h"
 #include "jpeg_segments.h"
 #include "jpeg_walk.h"
 #include "kept.h"
@@ -157,8 +158,9 @@ static int put_kept(struct rf_store *store, struct rf_xmp_keep *keep,
     } else if (keep->count > 0) {
         put_packet(store, &keep->packet[0], reason);
     }
-    /* In an editable picture the gain map lies behind the original. */
-    if (kept && !editable && !rf_behind_has_gain_map(behind)) {
+    /* In an editable picture the gain map lies behind the original, if it could be read. */
+    if (kept && !(editable && rf_photo_gain_map(options->keep)) &&
+        !rf_behind_has_gain_map(behind)) {
         rf_keep_warn(options->keep, keep, reason);
     }
     return REFOCUS_OK;

@@ -195,6 +195,9 @@ class Xmp(Keep):
                                  '--no-editable')
             self.assertEqual((result.returncode, 'gain map' in result.stderr),
                              (0, b'hdrgm' in text), result.stderr)
+            editable = self.run_it('render', 'in.jpg', '--depth', 'depth.pgm', '-o', 'edit.jpg')
+            self.assertEqual((editable.returncode, 'gain map' in editable.stderr),
+                             (0, b'hdrgm' in text), editable.stderr)
             with open('out.jpg', 'rb') as file:
                 out = segments(file.read())
             expected = packet(TITLE, whole, rest).replace(

@@ -316,17 +316,32 @@ struct bytes make_gain_xmp(const char *elements)
     return xmp;
 }
 
-struct bytes make_gain_iso(int channels, const int32_t *values)
+static struct bytes make_iso(int channels, const int32_t *values, bool common)
 {
     struct bytes iso = {NULL, 0};
 
     bytes_number(&iso, 0, 4, true);
-    bytes_number(&iso, channels == 3 ? 0xc0 : 0x40, 1, true);
-    for (int i = 0; i < 2 + 5 * channels; i++) {
-        bytes_number(&iso, (uint32_t)values[i], 4, true);
+    bytes_number(&iso, (channels == 3 ? 0xc0 : 0x40) + 8 * common, 1, true);
+    if (common) {
         bytes_number(&iso, 1000, 4, true);
     }
+    for (int i = 0; i < 2 + 5 * channels; i++) {
+        bytes_number(&iso, (uint32_t)values[i], 4, true);
+        if (!common) {
+            bytes_number(&iso, 1000, 4, true);
+        }
+    }
     return iso;
+}
+
+struct bytes make_gain_iso(int channels, const int32_t *values)
+{
+    return make_iso(channels, values, false);
+}
+
+struct bytes make_gain_iso_common(int channels, const int32_t *values)
+{
+    return make_iso(channels, values, true);
 }
 
 struct bytes make_xmp(const char *attributes)

@@ -96,6 +96,8 @@ struct bytes make_gain_xmp(const char *elements);
 /* ISO 21496-1: base and other headroom, then least, greatest, gamma and two offsets of each
  * channel, in thousandths. */
 struct bytes make_gain_iso(int channels, const int32_t *values);
+/* Here all values share one denominator. */
+struct bytes make_gain_iso_common(int channels, const int32_t *values);
 /* A grey JPEG whose XMP says what it is. */
 struct bytes make_auxiliary(const char *type, const char *extra);
 

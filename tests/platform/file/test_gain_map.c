@@ -374,12 +374,10 @@ static void limits(void **state)
 }
 
 /* Cut anywhere, ISO's metadata is damaged; so is it with a denominator of 0. */
-static void iso_metadata(void **state)
+static void check_iso(struct bytes iso, size_t denominator)
 {
-    struct bytes iso = make_gain_iso(1, one_channel);
     struct rf_gain_values values;
 
-    (void)state;
     assert_null(rf_gain_from_iso((struct rf_bytes){iso.data, iso.size}, &values));
     for (int c = 0; c < 3; c++) {
         assert_near(values.least[c], -1);
@@ -396,13 +394,34 @@ static void iso_metadata(void **state)
         assert_non_null(rf_gain_from_iso((struct rf_bytes){cut, size}, &values));
         free(cut);
     }
-    memset(iso.data + 9, 0, 4);
+    memset(iso.data + denominator, 0, 4);
     assert_non_null(rf_gain_from_iso((struct rf_bytes){iso.data, iso.size}, &values));
     bytes_free(&iso);
-    iso = make_gain_iso(1, one_channel);
+}
+
+static void iso_metadata(void **state)
+{
+    struct bytes iso = make_gain_iso(1, one_channel);
+    struct rf_gain_values values;
+
+    (void)state;
     iso.data[1] = 1; /* a later version */
     assert_non_null(rf_gain_from_iso((struct rf_bytes){iso.data, iso.size}, &values));
     bytes_free(&iso);
+    check_iso(make_gain_iso(1, one_channel), 9);
+    check_iso(make_gain_iso_common(1, one_channel), 5);
+}
+
+/* Metadata of ISO that cannot be used is no reason to pass over what XMP says. */
+static void xmp_beside_damaged_iso(void **state)
+{
+    static const char *const elements = "<hdrgm:GainMapMax>2</hdrgm:GainMapMax>"
+                                        "<hdrgm:HDRCapacityMax>2</hdrgm:HDRCapacityMax>";
+    struct bytes part = xmp_part(elements);
+
+    (void)state;
+    jpeg_insert(&part, 0xe2, "urn:iso:std:iso:ts:21496:-1", 28, "\0\1\0\0\100", 5);
+    check_light(with_part(part, true, 1), 0, 2, 1, 1 / 64.0, 1 / 64.0);
 }
 
 /* Light that nothing changed has the photo's codes; light between two quarters their tones. */
@@ -482,11 +501,17 @@ static void halves(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(light_of_maps), cmocka_unit_test(lamp),
-        cmocka_unit_test(turned),        cmocka_unit_test(three_channels),
-        cmocka_unit_test(apple),         cmocka_unit_test(passed_over),
-        cmocka_unit_test(limits),        cmocka_unit_test(iso_metadata),
-        cmocka_unit_test(tones),         cmocka_unit_test(halves),
+        cmocka_unit_test(light_of_maps),
+        cmocka_unit_test(lamp),
+        cmocka_unit_test(turned),
+        cmocka_unit_test(three_channels),
+        cmocka_unit_test(apple),
+        cmocka_unit_test(passed_over),
+        cmocka_unit_test(limits),
+        cmocka_unit_test(iso_metadata),
+        cmocka_unit_test(xmp_beside_damaged_iso),
+        cmocka_unit_test(tones),
+        cmocka_unit_test(halves),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
