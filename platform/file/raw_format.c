@@ -103,46 +103,51 @@ static bool recognise(struct rf_bytes file)
 }
 
 /* Pixels of a JPEG of 8 bits that can be decoded; 0 for others, such as raw samples in a lossless
- * one. */
-static uint64_t jpeg_pixels(const struct rf_read *read, struct rf_bytes jpeg)
+ * one. Bytes that were gone over are taken from the budget, and with the last one it ends. */
+static uint64_t jpeg_pixels(const struct rf_read *read, struct rf_bytes jpeg, size_t *budget)
 {
     struct rf_jpeg_walk walk;
+    uint64_t pixels = 0;
 
     if (!rf_jpeg_walk_begin(&walk, jpeg)) {
         return 0;
     }
-    for (uint32_t i = 0;
-         i < read->limits.max_segments && rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT; i++) {
+    for (uint32_t i = 0; i < read->limits.max_segments && walk.position < *budget &&
+                         rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT;
+         i++) {
         const uint8_t *const s = walk.segment.data;
 
         if (walk.marker >= 0xc0 && walk.marker <= 0xcf && walk.marker != 0xc4 &&
             walk.marker != 0xc8 && walk.marker != 0xcc) {
-            return walk.marker <= 0xc2 && walk.segment.size >= 5 && s[0] == 8
-                       ? (uint64_t)(s[1] << 8 | s[2]) * (uint64_t)(s[3] << 8 | s[4])
-                       : 0;
+            pixels = walk.marker <= 0xc2 && walk.segment.size >= 5 && s[0] == 8
+                         ? (uint64_t)(s[1] << 8 | s[2]) * (uint64_t)(s[3] << 8 | s[4])
+                         : 0;
+            break;
         }
     }
-    return 0;
+    *budget -= walk.position < *budget ? walk.position : *budget;
+    return pixels;
 }
 
 /* The largest JPEG in the file; empty: none. More than some are not looked at, as their bytes come
- * by chance in samples, too. */
+ * by chance in samples, too; nor more bytes of their headers than the file has and a megabyte, as
+ * one that begins in another goes over the same ones again. */
 static struct rf_bytes find_preview(const struct rf_read *read, struct rf_bytes file)
 {
     struct rf_bytes best = {NULL, 0};
     uint64_t most = 0;
-    size_t at = 0;
+    size_t at = 0, budget = file.size + (1u << 20);
 
     for (int tried = 0; tried < 64 && file.size - at > 3;) {
         const uint8_t *const next = memchr(file.data + at, 0xff, file.size - at - 2);
 
-        if (!next) {
+        if (!next || budget == 0) {
             break;
         }
         at = (size_t)(next - file.data) + 1;
         if (next[1] == 0xd8 && next[2] == 0xff) {
             const struct rf_bytes jpeg = {next, file.size - at + 1};
-            const uint64_t pixels = jpeg_pixels(read, jpeg);
+            const uint64_t pixels = jpeg_pixels(read, jpeg, &budget);
 
             tried += pixels > 0;
             if (pixels > most) {

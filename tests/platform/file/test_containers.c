@@ -1,6 +1,9 @@
 /* test_containers.c: boxes of HEIF, directories of camera raw and of EXIF that are laid out in each
  * way that their standards allow, and in ways they do not: which are found, and which are none. */
 #include "check.h"
+
+#include <time.h>
+
 #include "exif_copy.h"
 #include "format.h"
 #include "heif_boxes.h"
@@ -300,6 +303,26 @@ static void raw_previews(void **state)
     }
 }
 
+/* Half a megabyte of segments in each of which the next JPEG begins: gone over from each beginning,
+ * it took a minute. The preview before them is found all the same. */
+static void raw_of_many_beginnings(void **state)
+{
+    const struct tag tag = {DNG, 1, 0x01040000};
+    struct bytes file = tiff(false, &tag, 1);
+    struct refocus_photo *photo;
+    const clock_t begin = clock();
+
+    (void)state;
+    bytes_join(&file, make_jpeg(48, 32, false, false));
+    for (int i = 0; i < 87000; i++) {
+        bytes_add(&file, "\xff\xfe\0\4\xff\xd8", 6);
+    }
+    photo = read_preview(&file, REFOCUS_OK);
+    assert_int_equal(photo->image->width, 48);
+    refocus_photo_free(&photo);
+    assert_true((double)(clock() - begin) / CLOCKS_PER_SEC < 10);
+}
+
 static void raw_without_a_preview(void **state)
 {
     static const char *const ends[] = {"",
@@ -324,11 +347,12 @@ static void raw_without_a_preview(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(heif_layouts),       cmocka_unit_test(heif_without_a_turn),
-        cmocka_unit_test(heif_without_a_box), cmocka_unit_test(raw_headers),
+        cmocka_unit_test(heif_layouts),           cmocka_unit_test(heif_without_a_turn),
+        cmocka_unit_test(heif_without_a_box),     cmocka_unit_test(raw_headers),
         cmocka_unit_test(raw_directories),
 #ifdef RF_HAVE_JPEG
-        cmocka_unit_test(raw_previews),       cmocka_unit_test(raw_without_a_preview),
+        cmocka_unit_test(raw_previews),           cmocka_unit_test(raw_without_a_preview),
+        cmocka_unit_test(raw_of_many_beginnings),
 #endif
     };
 
