@@ -212,6 +212,7 @@ static int read_rgba(struct reader *reader, struct rf_raster *raster)
 {
     const uint64_t pixels = (uint64_t)reader->width * reader->height;
     char why[1024] = "";
+    uint16_t orientation = ORIENTATION_TOPLEFT;
     uint32_t *rgba;
     int status;
 
@@ -232,8 +233,11 @@ static int read_rgba(struct reader *reader, struct rf_raster *raster)
     if (!rgba) {
         return rf_fail_memory(reader->read->reason);
     }
-    if (!TIFFReadRGBAImageOriented(reader->tiff, reader->width, reader->height, rgba,
-                                   ORIENTATION_TOPLEFT, 1)) {
+    /* In the orientation of the file libtiff turns nothing: it mirrors for others, and never turns
+     * a picture onto its side. */
+    TIFFGetFieldDefaulted(reader->tiff, TIFFTAG_ORIENTATION, &orientation);
+    if (!TIFFReadRGBAImageOriented(reader->tiff, reader->width, reader->height, rgba, orientation,
+                                   1)) {
         status = fail_damaged(reader);
     }
     for (uint64_t i = 0; status == REFOCUS_OK && i < pixels; i++) {

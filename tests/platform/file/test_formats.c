@@ -97,6 +97,28 @@ static void tiff_transparent(void **state)
     }
 }
 
+/* CMYK goes by way of libtiff's RGB: it is turned once, as other pictures are. */
+static void tiff_cmyk_is_turned(void **state)
+{
+    struct tiff_kind kind = {.bits = 8, .channels = 4, .photometric = 5, .orientation = 1};
+    struct refocus_photo *const upright = read_photo(make_tiff(W, H, kind), REFOCUS_OK);
+
+    (void)state;
+    for (kind.orientation = 2; kind.orientation <= 8; kind.orientation++) {
+        struct refocus_photo *photo = read_photo(make_tiff(W, H, kind), REFOCUS_OK);
+
+        for (int i = 0; i < W * H; i++) {
+            int x, y;
+
+            upright_place(kind.orientation, W, H, i % W, i / W, &x, &y);
+            assert_memory_equal(pixel_at(photo->image, x, y),
+                                pixel_at(upright->image, i % W, i / W), 3);
+        }
+        refocus_photo_free(&photo);
+    }
+    refocus_photo_free(&(struct refocus_photo *){upright});
+}
+
 static void tiff_refused(void **state)
 {
     const struct tiff_kind odd = {.bits = 32, .channels = 3, .photometric = 2, .orientation = 1};
@@ -491,18 +513,25 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
 #ifdef RF_HAVE_TIFF
-        cmocka_unit_test(tiff_kinds),    cmocka_unit_test(tiff_floats),
-        cmocka_unit_test(tiff_refused),  cmocka_unit_test(tiff_transparent),
-        cmocka_unit_test(tiff_written),  cmocka_unit_test(tiff_exif),
+        cmocka_unit_test(tiff_kinds),
+        cmocka_unit_test(tiff_floats),
+        cmocka_unit_test(tiff_refused),
+        cmocka_unit_test(tiff_cmyk_is_turned),
+        cmocka_unit_test(tiff_transparent),
+        cmocka_unit_test(tiff_written),
+        cmocka_unit_test(tiff_exif),
 #endif
 #ifdef RF_HAVE_WEBP
-        cmocka_unit_test(webp),          cmocka_unit_test(webp_transparent),
+        cmocka_unit_test(webp),
+        cmocka_unit_test(webp_transparent),
 #endif
 #ifdef RF_HAVE_JXL
-        cmocka_unit_test(jxl),           cmocka_unit_test(jxl_transparent),
+        cmocka_unit_test(jxl),
+        cmocka_unit_test(jxl_transparent),
 #endif
 #ifdef RF_HAVE_HEIC
-        cmocka_unit_test(heic),          cmocka_unit_test(avif),
+        cmocka_unit_test(heic),
+        cmocka_unit_test(avif),
 #endif
 #ifdef RF_HAVE_RAW
         cmocka_unit_test(raw_developed),
