@@ -180,7 +180,7 @@ static void run(struct writer *writer)
         png_write_row(writer->png, rows->top + y * rows->stride);
     }
     if (writer->store->error == 0) {
-        png_write_end(writer->png, writer->info);
+        png_write_end(writer->png, NULL); /* all that the info has stands before the pixels */
     }
 }
 

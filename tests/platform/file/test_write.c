@@ -188,6 +188,19 @@ static void png_round_trip(void **state)
 #endif
 
 #if defined(RF_HAVE_PNG) || defined(RF_HAVE_JPEG)
+static int times_in_file(const char *name, const char *word)
+{
+    struct refocus_blob file;
+    int times = 0;
+
+    assert_int_equal(refocus_file_read(in_folder(name), UINT64_MAX, &file, NULL), REFOCUS_OK);
+    for (size_t i = 0; i + strlen(word) <= file.size; i++) {
+        times += memcmp(file.data + i, word, strlen(word)) == 0;
+    }
+    free(file.data);
+    return times;
+}
+
 static void keeps_exif_and_icc(const char *name, size_t icc_size)
 {
     struct picture picture = make_picture(REFOCUS_FORMAT_RGB8, 20, 10, false);
@@ -204,6 +217,7 @@ static void keeps_exif_and_icc(const char *name, size_t icc_size)
     assert_string_equal(reason.text, "");
     photo = read_back(in_folder(name));
     assert_int_equal(photo->exif.size, exif.size);
+    assert_int_equal(times_in_file(name, "eXIf"), strstr(name, ".png") ? 1 : 0);
     assert_string_equal(photo->info->camera, "Maker Model X");
     assert_int_equal(photo->icc.size, icc.size);
     assert_memory_equal(photo->icc.data, icc.data, icc.size);
