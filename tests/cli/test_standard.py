@@ -114,6 +114,23 @@ class Standard(Case):
         self.assertEqual((result.returncode, result.stdout), (1, b''))
         self.assertRegex(result.stderr.decode(), '^refocus: standard output: .*\n$')
 
+    def test_nobody_else_reads_it(self):
+        os.mkdir('temporary')
+        environment = dict(os.environ, TMPDIR=os.path.abspath('temporary'))
+        process = subprocess.Popen([REFOCUS, 'render', 'photo.ppm', *BLUR, '-o', '-'],
+                                   stdout=subprocess.DEVNULL, env=environment,
+                                   preexec_fn=lambda: os.umask(0))
+        modes = set()
+        while process.poll() is None:
+            for entry in os.scandir('temporary'):
+                try:
+                    modes.add(entry.stat().st_mode & 0o077)
+                except FileNotFoundError:
+                    pass
+        self.assertEqual(process.returncode, 0)
+        self.assertLessEqual(modes, {0})
+        os.rmdir('temporary')
+
     def test_what_is_refused(self):
         photo = pictures.read_bytes('photo.ppm')
         for line, data, status, arguments in (

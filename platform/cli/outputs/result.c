@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include "line/interrupt.h"
 #include "line/report.h"
@@ -83,6 +84,16 @@ static int read_whole(const char *path, struct refocus_blob *bytes)
     return EXIT_DONE;
 }
 
+/* A file that nobody else can read, as what goes through a pipe. */
+static int make_temporary(const char *beside, char **path, struct refocus_reason *reason)
+{
+    const mode_t mask = umask(0077);
+    const int status = refocus_file_temporary(beside, path, reason);
+
+    umask(mask);
+    return status;
+}
+
 /* Writes to a temporary file first, so that an error leaves nothing on standard output. */
 static int write_standard(const char *output, const struct refocus_image *picture,
                           const struct refocus_write_options *options)
@@ -95,7 +106,7 @@ static int write_standard(const char *output, const struct refocus_image *pictur
 
     snprintf(beside, sizeof beside, "%s/refocus%s", folder && *folder ? folder : "/tmp",
              strrchr(output, '.'));
-    if (refocus_file_temporary(beside, &path, &reason) != REFOCUS_OK)
+    if (make_temporary(beside, &path, &reason) != REFOCUS_OK)
         return report_failure(EXIT_FAILED, "standard output", "%s", reason.text);
     interrupt_clean_up(remove_file, path);
     status = output_write_image(path, picture, options);
