@@ -93,6 +93,12 @@ static int read_pfm(struct rf_read *read, struct rf_bytes file)
     if (status != REFOCUS_OK) {
         return status;
     }
+    /* One blank ends the header; programs of Windows end a line with two, where there is a byte
+     * more for it. */
+    if (position + 1 < file.size && memcmp(file.data + position, "\r\n", 2) == 0 &&
+        file.size - position - 1 > width * height * 4 * channels) {
+        position++;
+    }
     if (position >= file.size || file.size - position - 1 < width * height * 4 * channels) {
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
                        "damaged: it ends in the middle of the %s; copy it again",

@@ -127,6 +127,26 @@ static void pfm_both_byte_orders(void **state)
 }
 
 /* Light of three colours is a photo: floats as they are, and codes of sRGB beside them. */
+/* Lines may end as in Windows; a blank may be a carriage return, and the first sample begin with a
+ * line feed. */
+static void pfm_line_ends(void **state)
+{
+    static const char samples[] = "\n\0\200\77\0\0\0\100";
+    static const char *const heads[] = {"Pf\r\n2 1\r\n-1.0\r\n", "Pf\r2 1\r-1.0\r"};
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct bytes file = text_file(heads[i]);
+        struct refocus_photo *photo;
+
+        bytes_add(&file, samples, 8);
+        photo = read_depth(file, NULL, REFOCUS_OK);
+        assert_true(float_at(photo->depth, 0, 0) > 1 && float_at(photo->depth, 0, 0) < 1.0001);
+        assert_true(float_at(photo->depth, 1, 0) == 2);
+        refocus_photo_free(&photo);
+    }
+}
+
 static void pfm_in_colour(void **state)
 {
     static const float values[6] = {-1.5f, 0.0f, 2.25f, 3.0f, 100.0f, 0.125f};
@@ -425,6 +445,7 @@ int main(void)
         cmocka_unit_test(pnm_damaged),
         cmocka_unit_test(pfm_both_byte_orders),
         cmocka_unit_test(pfm_in_colour),
+        cmocka_unit_test(pfm_line_ends),
         cmocka_unit_test(pfm_units),
         cmocka_unit_test(pfm_refused),
         cmocka_unit_test(ends_of_floats),
