@@ -15,6 +15,19 @@ static int fail_jpeg(const struct rf_read *read, tjhandle jpeg)
 }
 
 enum { MARKER_SOS = 0xda, MARKER_APP14 = 0xee };
+enum { MARKER_SOF0 = 0xc0, MARKER_SOF2 = 0xc2, MARKER_SOF15 = 0xcf };
+enum { MARKER_DHT = 0xc4, MARKER_JPG = 0xc8, MARKER_DAC = 0xcc, MARKER_SOF9 = 0xc9 };
+
+/* ITU-T T.81 has kinds that few programs read: of 12 bits, without loss, of several sizes. */
+static bool is_rare_kind(const struct rf_jpeg_walk *walk)
+{
+    const int marker = walk->marker;
+    const bool frame = marker >= MARKER_SOF0 && marker <= MARKER_SOF15 && marker != MARKER_DHT &&
+                       marker != MARKER_JPG && marker != MARKER_DAC;
+    const bool known = marker <= MARKER_SOF2 || marker == MARKER_SOF9 || marker == MARKER_SOF9 + 1;
+
+    return frame && (!known || (walk->segment.size > 0 && walk->segment.data[0] == 12));
+}
 
 /* Count the scans, and see whether Adobe wrote it. TurboJPEG paints a missing rest grey without an
  * error, so the end of the picture must be there. */
@@ -28,6 +41,11 @@ static int survey(const struct rf_read *read, struct rf_bytes file, uint32_t *sc
     *adobe = false;
     if (rf_jpeg_walk_begin(&walk, file)) {
         while ((step = rf_jpeg_walk_next(&walk)) == RF_JPEG_SEGMENT) {
+            if (is_rare_kind(&walk)) {
+                return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
+                               "it is a JPEG of 12 bits or without loss, which is not read; save "
+                               "it as PNG or TIFF");
+            }
             *scans += walk.marker == MARKER_SOS;
             *adobe |= walk.marker == MARKER_APP14 && walk.segment.size >= 5 &&
                       memcmp(walk.segment.data, "Adobe", 5) == 0;

@@ -283,9 +283,31 @@ static void colour_follows_luma(void **state)
     }
 }
 
+/* Whole files of kinds that TurboJPEG does not decode are not called damaged. */
+static void rare_kinds_are_told(void **state)
+{
+    static const struct {
+        uint8_t marker, bits;
+    } kinds[] = {{0xc1, 12}, {0xc3, 8}, {0xc3, 16}, {0xc5, 8}, {0xcb, 8}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        struct bytes jpeg = make_jpeg(16, 16, false, false);
+
+        for (size_t k = 2; k + 4 < jpeg.size; k++) {
+            if (memcmp(jpeg.data + k, "\xff\xc0\0\x11", 4) == 0) {
+                jpeg.data[k + 1] = kinds[i].marker;
+                jpeg.data[k + 4] = kinds[i].bits;
+            }
+        }
+        assert_null(read_photo(jpeg, REFOCUS_ERR_UNSUPPORTED));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rare_kinds_are_told),
 #ifdef RF_HAVE_PNG
         cmocka_unit_test(orientation_of_png),
 #endif
