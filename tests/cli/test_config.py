@@ -18,7 +18,7 @@ class Config(Case):
         os.environ['XDG_CONFIG_HOME'] = os.path.abspath('xdg')
 
     def write(self, text, file=FILE):
-        with open(file, 'w') as out:
+        with open(file, 'w', encoding='utf-8') as out:
             out.write(text)
 
     def picture(self, *arguments):
@@ -31,6 +31,8 @@ class Config(Case):
                    'threads = 1')
         self.same(self.picture(), expected)
         self.differs(self.picture('--config', 'none'), expected)
+        self.write('\ufeff[render]\nblur = 5\nfocus = 1\nno-dither = yes\n')
+        self.same(self.picture(), expected)
         self.write('[render]\nblur = 5\nfocus = 1\n', 'other')
         self.write('[render]\nblurr = 5\n')
         self.same(self.picture('--config', 'other'), expected)

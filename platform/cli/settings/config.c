@@ -184,8 +184,13 @@ static char *usual_path(void)
     return NULL;
 }
 
+/* Editors of Windows put a mark of UTF-8 in front. */
 static int take_text(const char *bytes, size_t size)
 {
+    if (size >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0) {
+        bytes += 3;
+        size -= 3;
+    }
     config.text = calloc(size + 1, 1);
     if (!config.text)
         return report_failure(EXIT_FAILED, config.path, "not enough memory");
