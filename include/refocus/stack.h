@@ -127,6 +127,10 @@ struct refocus_stack_result {
                            lower, too; else 0. That is doubtful where no ground is seen: 16 of 16
                            photos that it was chosen by and tried with were right, an engraved
                            surface through a macro lens was wrong */
+    uint32_t matched; /**< receives how many frames got the exposure or the white of the reference
+                       */
+    float exposure;   /**< receives how much their light was of the reference's, of the frame and
+                           the channel that differ most: 1/4 to 2; 1 where `matched` is 0 */
 };
 
 static inline struct refocus_stack_result refocus_stack_result_default(void)
@@ -201,6 +205,10 @@ REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refo
  * Frames of another exposure or white than the reference's get those of it, a channel's gain being
  * the median over blocks of the picture, 24 across, of the ratio of mean light (sRGB), of blocks
  * that are neither dark nor clipped nor vary by more than 3/10; differences below 1/50 are left.
+ * Where n of them have quartiles that are apart by more than sqrt(n) / 20 of the median, in any
+ * channel, blocks that vary count as well, and differences below 1/10 are left; where these do not
+ * agree either, or the light is above twice that of the reference or below a quarter, frames
+ * stay as they are.
  *
  * Where the mean of colour over a window, a tenth of the photo wide, is another one than in the
  * reference, something has moved: such a frame is not used there, and depth is filled from around

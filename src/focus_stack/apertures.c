@@ -114,6 +114,8 @@ void rf_stack_apertures(struct refocus_stack *s, struct refocus_stack_result *re
     result->order_margin = 1;
     result->direction = result->disorder = 0;
     result->by_rows = 0;
+    s->matched = 0;
+    s->exposure = 1;
     /* The narrowest aperture blurs, too, and the squares of both add up to those of the widest. */
     result->blur = (float)(s->farthest / 256.0 * s->reduced /
                            sqrt(1 - narrowest * narrowest / (widest * widest)));

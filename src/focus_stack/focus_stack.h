@@ -64,6 +64,8 @@ struct refocus_stack {
     uint32_t align, order, kind;
     double alike;      /* the least correlation of neighbours once they are aligned */
     atomic_int moving; /* samples where something moves */
+    int matched;       /* frames that got the exposure of the reference */
+    double exposure;   /* factor by which that of a matched frame differed at the most */
     int threads;
     struct rf_pool *pool; /* while a frame is added or the stack is finished */
     int sub;              /* depths from a frame to the next: 1 where steps are fine */

@@ -363,6 +363,8 @@ static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
         own->order[k] = (uint8_t)s->frame[k].added;
     write_rows(s, own);
     own->moving = (float)((double)s->moving / ((double)s->columns * s->rows));
+    own->matched = (uint32_t)s->matched;
+    own->exposure = (float)s->exposure;
     own->moved = 0;
     for (int k = 0; k < s->count; k++) {
         const double reach = rf_similarity_reach(&s->frame[k].from_reference, s->width, s->height);

@@ -489,6 +489,36 @@ class DepthOfAStack(Case):
         os.remove('both.pfm')
         shutil.rmtree('links')
 
+    def test_frames_of_other_light(self):
+        """They are matched, and the report says so; where that cannot be, a line does."""
+        names = [f'light-{k}.ppm' for k in range(4)]
+        for k, name in enumerate(names):
+            def code(x, y, gain):
+                return (int((90 + mean(x, y, k if x < W // 2 else 3 - k) / 3) * gain),) * 3
+            pictures.ppm(name, W, H, lambda x, y: code(x, y, 1 if k else 0.8))
+        command = ['depth', '--align', 'none', '--order', 'given', '-o', 'x.pgm', '--focal-stack']
+        report = self.reports(*command, *names)
+        self.assertRegex(report['evidence'][1], '^focus stack: frames of another exposure or white '
+                         r'are matched to frame 3: \d, the farthest of 0\.[56]\d times its light$')
+        # The light gets another colour on either side.
+        def tinted(x, y, k, gain):
+            checks = 80 + 60 * (x // 16 + y // 12 & 1)
+            v = checks + mean(x, y, k if x < W // 2 else 3 - k) / 8
+            return (int(v * gain), int(v), int(v / gain))
+        for k, name in enumerate(names):
+            pictures.ppm(name, W, H, lambda x, y: tinted(
+                x, y, k, 1 if k == 2 else 1.4 if x < W // 2 else 0.7))
+        self.fails(1, f'{names[2]}: something moves in most of the picture, or its light changed; '
+                   'leave out the frames that differ, or give another --reference', *command,
+                   *names)
+        # Other frames show another place.
+        for k, name in enumerate(names[:2]):
+            pictures.ppm(name, W, H, lambda x, y: (128 + 90 * (-1) ** (x // 16 + y // 12 + k),) * 3)
+        self.fails(1, f'{names[1]}: frames do not lie on each other: the camera moved too far, or '
+                   'they show different places; give frames of one view', *command, *names[:3])
+        for name in *names, 'x.pgm':
+            os.remove(name)
+
     def test_what_is_no_stack(self):
         out = ('-o', 'x.pgm')
         self.fails(2, '0.ppm: one frame is no focus stack; give two at least',

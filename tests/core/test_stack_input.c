@@ -105,6 +105,53 @@ static void says_when_a_frame_shows_another_place(void **state)
     assert_true(result.moved < 0.2 * W);
 }
 
+/* A frame gets a gain for each channel in light, by the curve of sRGB. */
+static void expose(uint8_t *rgb, const double gain[3])
+{
+    for (int i = 0; i < 3 * PIXELS; i++) {
+        const double code = rgb[i] / 255.0;
+        const double light = code <= 0.04045 ? code / 12.92 : pow((code + 0.055) / 1.055, 2.4);
+        const double now = light * gain[i % 3] < 1 ? light * gain[i % 3] : 1;
+
+        rgb[i] =
+            (uint8_t)(255 * (now <= 0.0031308 ? 12.92 * now : 1.055 * pow(now, 1 / 2.4) - 0.055) +
+                      0.5);
+    }
+}
+
+/* Few blocks of a picture are flat, or none: frames of other light and white are matched yet. */
+static void matches_exposures_of_what_is_not_flat(void **state)
+{
+    static const struct {
+        int flat;
+        double gain[2][3]; /* the first and the last frame's */
+        int matched;
+        double most;
+    } cases[] = {
+        {1, {{0.95, 0.95, 0.95}, {1.1, 1.1, 1.1}}, 2, 1.1},
+        {1, {{1.1, 1, 0.9}, {0.4, 0.45, 0.4}}, 2, 0.4},
+        {0, {{0.7, 0.7, 0.7}, {0.8, 0.8, 0.8}}, 2, 0.7},
+        {1, {{1, 1, 1}, {0.2, 0.2, 0.2}}, 0, 1}, /* too far away */
+        {0, {{1, 1, 1}, {1, 1, 1}}, 0, 1},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const struct scene scene = {.left = 1, .right = 3, .flat = cases[i].flat};
+        struct refocus_stack_result result;
+
+        draw(&scene);
+        expose(frame[0], cases[i].gain[0]);
+        expose(frame[FRAMES - 1], cases[i].gain[1]);
+        result = run(NULL, NULL, REFOCUS_STACK_ALIGN_SIMILARITY);
+        assert_int_equal(result.matched, cases[i].matched);
+        assert_in_range(1000 * result.exposure, 1000 * cases[i].most - 20,
+                        1000 * cases[i].most + 20);
+        if (cases[i].most > 0.2 || !cases[i].matched)
+            assert_true(result.moving < 0.1f || i == 3);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -112,6 +159,7 @@ int main(void)
         cmocka_unit_test(says_when_the_order_is_doubtful),
         cmocka_unit_test(follows_a_camera_that_moves),
         cmocka_unit_test(says_when_a_frame_shows_another_place),
+        cmocka_unit_test(matches_exposures_of_what_is_not_flat),
     };
 
     make_waves();

@@ -13,6 +13,8 @@
 #define LEAST_ORDER_MARGIN 0.01
 /* The picture shows which end is far from here on. */
 #define LEAST_DIRECTION (1 / 25.0)
+/* More of a photo that moves is of one frame for the most part. */
+#define MOST_MOVING 0.5
 /* More of it is no order: 0.03 in stacks of nine frames as they were taken, 0.9 shuffled. */
 #define MOST_DISORDER 0.5
 
@@ -141,18 +143,32 @@ static void set_range(struct input *input, const struct stack_frames *frames,
         input->report.far_m = settings->far_m;
 }
 
+/* Why hardly any depth was measured. */
+static const char *why_unmeasured(const struct refocus_stack_result *result)
+{
+    if (result->moving <= (float)MOST_MOVING)
+        return "no part of the picture is sharper in one frame than in the others; give frames of "
+               "different focus";
+    if (result->alike < (float)LEAST_ALIKE)
+        return "frames do not lie on each other: the camera moved too far, or they show different "
+               "places; give frames of one view";
+    return "something moves in most of the picture, or its light changed; leave out the frames "
+           "that differ, or give another --reference";
+}
+
 int stack_judge(const struct refocus_stack_result *result, const char *name)
 {
     if (result->measured < (float)LEAST_MEASURED)
-        return report_failure(EXIT_FAILED, name,
-                              "no part of the picture is sharper in one frame than in the others; "
-                              "give frames of different focus");
+        return report_failure(EXIT_FAILED, name, "%s", why_unmeasured(result));
     if (result->disorder > (float)MOST_DISORDER)
         report_warning(name, "frames do not follow each other in focus; give the farthest first, "
                              "--positions, or --order found");
     else if (result->alike < (float)LEAST_ALIKE)
         report_warning(name, "not all frames lie on each other: the camera moved too far, or they "
                              "show different places; depth is wrong there");
+    else if (result->moving > (float)MOST_MOVING)
+        report_warning(name, "something moves in most of the picture, or its light changed: depth "
+                             "and photo are doubtful");
     return EXIT_DONE;
 }
 
@@ -283,6 +299,12 @@ static int finish(struct input *input, struct refocus_stack *stack,
         snprintf(input->made_info.evidence[input->made_info.evidence_count++], REFOCUS_INFO_LENGTH,
                  "focus stack: something moves in %.1f %% of the picture, which is as in frame %d",
                  100 * (double)result.moving, result.reference);
+    if (result.matched)
+        snprintf(
+            input->made_info.evidence[input->made_info.evidence_count++], REFOCUS_INFO_LENGTH,
+            "focus stack: frames of another exposure or white are matched to frame %d: %u, the "
+            "farthest of %.2f times its light",
+            result.reference, (unsigned)result.matched, (double)result.exposure);
     if (frames->kind != REFOCUS_STACK_FOCUS) {
         tell_apertures(&input->made_info, frames, &result);
         return EXIT_DONE;
