@@ -117,16 +117,17 @@ struct refocus_stack_result {
     uint8_t order[REFOCUS_STACK_MOST_FRAMES];
     float direction; /**< receives which end of the order that frames were added in, or that was
                           found, is far, by the edges between surfaces, which are as blurred as the
-                          nearer one is, and where these say little by what lies lower, which is
-                          nearer in most pictures: -1 to 1. 1/25 and more: the first frame; -1/25
+                          nearer one is, and where these say little, or less than what lies lower
+                          and the opposite of it, by that as well, which is nearer in most pictures:
+                          -1 to 1. 1/25 and more: the first frame; -1/25
                           and less: the last, and the order is its reverse. In between they do not
                           tell. 0 where the order was not to be told */
     float blur; /**< receives, of apertures, the blur radius in the frame of the widest one of what
                      is farthest from the focus, in pixels: K of its depth of field; else 0 */
-    uint32_t by_rows; /**< receives 1 where edges say little, so that `direction` is by what lies
-                           lower, too; else 0. That is doubtful where no ground is seen: 16 of 16
-                           photos that it was chosen by and tried with were right, an engraved
-                           surface through a macro lens was wrong */
+    uint32_t by_rows; /**< receives 1 where edges say little or are outweighed, so that `direction`
+                         is by what lies lower, too; else 0. That is doubtful where no ground is
+                         seen: 16 of 16 photos that it was chosen by and tried with were right, an
+                         engraved surface through a macro lens was wrong */
     uint32_t matched; /**< receives how many frames got the exposure or the white of the reference
                        */
     float exposure;   /**< receives how much their light was of the reference's, of the frame and

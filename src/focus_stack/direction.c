@@ -24,7 +24,10 @@
  * Some pictures have few edges, or such as show nothing: a table, a page, a row of things. What
  * lies lower is nearer in most pictures, for cameras look down on the ground. So where the mean of
  * the votes is below SURE, the correlation of depth and row, -1 to 1, is added with a weight of
- * LOWER.
+ * LOWER, and likewise where it is the opposite and outweighs them: steps of depth are no edges
+ * where something moved that was not found, or a frame is of another light.
+ *
+ * No votes come from where light is clipped: its blur is brighter and steeper than is known.
  */
 #include "focus_stack/focus_stack.h"
 
@@ -41,6 +44,7 @@ enum {
     ONE = 256,        /* the vote of a step that one of both frames has alone */
     UNSURE = 128,     /* the weight of depth that was not measured, beside 255 more */
     LEAST_EDGES = 60, /* fewer tell nothing */
+    CLIPPED = 250,    /* codes from here on */
 };
 static const double SURE = 0.05, LOWER = 0.2;
 
@@ -89,7 +93,7 @@ static int frame_at(const struct track *t, int i)
     return rf_stack_clamp((depth_at(t, i) / 256 + s->sub / 2) / s->sub, s->count - 1);
 }
 
-/* The colours around sample i as frame k shows them; false: it does not show all of them. */
+/* The colours around sample i as frame k shows them; false: they are not known. */
 static bool take(const struct track *t, int i, int k, uint8_t colour[ACROSS][3])
 {
     const struct refocus_stack *s = t->stack;
@@ -97,7 +101,10 @@ static bool take(const struct track *t, int i, int k, uint8_t colour[ACROSS][3])
     for (int d = -SIDE; d <= SIDE; d++) {
         const int x = t->is_column ? t->number : i + d, y = t->is_column ? i + d : t->number;
 
-        if (!rf_stack_pixel(s, k, x * s->reduced, y * s->reduced, colour[d + SIDE]))
+        uint8_t *const p = colour[d + SIDE];
+
+        if (!rf_stack_pixel(s, k, x * s->reduced, y * s->reduced, p) || p[0] >= CLIPPED ||
+            p[1] >= CLIPPED || p[2] >= CLIPPED)
             return false;
     }
     return true;
@@ -206,14 +213,15 @@ static double of_rows(const struct refocus_stack *s)
 float rf_stack_direction(struct refocus_stack *s, uint32_t *by_rows)
 {
     const size_t bytes = (size_t)s->columns * (size_t)s->rows * sizeof *s->depth;
-    double direction;
+    double direction, rows;
 
     memcpy(s->moved, s->depth, bytes);
     rf_stack_smooth(s);
     direction = of_edges(s);
-    *by_rows = fabs(direction) < SURE;
+    rows = LOWER * of_rows(s);
+    *by_rows = fabs(direction) < SURE || (direction * rows < 0 && fabs(direction) < fabs(rows));
     if (*by_rows)
-        direction += LOWER * of_rows(s);
+        direction += rows;
     memcpy(s->depth, s->moved, bytes);
     return (float)direction;
 }

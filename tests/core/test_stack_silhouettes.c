@@ -219,12 +219,9 @@ static void tells_which_end_is_far(void **state)
     assert_true(misplaced() > PIXELS / 2);
 }
 
-/* A floor has no edges: what lies lower is nearer, in focus in later frames. */
-static void lower_is_nearer(void **state)
+/* A floor, nearer where it is lower, is in focus there in later frames. */
+static void draw_floor(void)
 {
-    struct refocus_stack_result result;
-
-    (void)state;
     draw_surfaces(1);
     for (int k = 0; k < FRAMES; k++) {
         for (int i = 0; i < PIXELS; i++) {
@@ -236,6 +233,15 @@ static void lower_is_nearer(void **state)
         }
         is_drawn[k] = true;
     }
+}
+
+/* It has no edges. */
+static void lower_is_nearer(void **state)
+{
+    struct refocus_stack_result result;
+
+    (void)state;
+    draw_floor();
     result = run_order(far_first, REFOCUS_STACK_ORDER_EITHER, false);
     assert_in_range(1000 * result.direction, 160, 240);
     assert_int_equal(result.by_rows, 1);
@@ -248,6 +254,49 @@ static void lower_is_nearer(void **state)
     assert_int_equal(result.order[0], FRAMES);
     assert_in_range(disparity[10 * W + W / 2], 0, 9999);
     assert_in_range(disparity[(H - 10) * W + W / 2], 55000, 65535);
+}
+
+/* A patch lies on the floor: its texture is in focus in the last frame, its edges are sharp in the
+ * first, as those of nothing are. */
+static void draw_patch(double brightness)
+{
+    const double left = 60, right = 120, top = 5, bottom = 55;
+
+    for (int k = 0; k < FRAMES; k++)
+        for (int i = 0; i < PIXELS; i++) {
+            const int x = i % W, y = i / W;
+            const double away = (double)k / (FRAMES - 1), wide = 2 * RADIUS * away + 1;
+            const double across = fmin(x - left, right - x) / wide + 0.5;
+            const double down = fmin(y - top, bottom - y) / wide + 0.5;
+            const double share = fmin(fmax(across, 0), 1) * fmin(fmax(down, 0), 1);
+            uint8_t *p = drawn[k] + 3 * i;
+            double whole;
+
+            if (share > 0)
+                memset(p,
+                       (int)(*p + share * (code_of(brightness *
+                                                   spread(0, x, y, RADIUS * (1 - away), &whole)) -
+                                           *p)),
+                       3);
+        }
+}
+
+/* Its votes are wrong: they are outweighed by what lies lower, or left out as they are clipped. */
+static void weighs_edges_with_what_lies_lower(void **state)
+{
+    static const double brightness[] = {3, 30};
+
+    (void)state;
+    for (int clipped = 0; clipped < 2; clipped++) {
+        struct refocus_stack_result result;
+
+        draw_floor();
+        draw_patch(brightness[clipped]);
+        result = run_order(far_first, REFOCUS_STACK_ORDER_EITHER, false);
+        assert_true(result.direction > (clipped ? 0.15f : 0.04f));
+        assert_int_equal(result.by_rows, 1);
+        assert_int_equal(result.order[0], 1);
+    }
 }
 
 /* A camera that measures the light for each frame: tones are those of the reference. */
@@ -291,11 +340,9 @@ static void leaves_no_disc_of_what_is_clipped(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ends_at_silhouettes),
-        cmocka_unit_test(tells_which_end_is_far),
-        cmocka_unit_test(lower_is_nearer),
-        cmocka_unit_test(matches_exposures),
-        cmocka_unit_test(leaves_no_disc_of_what_is_clipped),
+        cmocka_unit_test(ends_at_silhouettes), cmocka_unit_test(tells_which_end_is_far),
+        cmocka_unit_test(lower_is_nearer),     cmocka_unit_test(weighs_edges_with_what_lies_lower),
+        cmocka_unit_test(matches_exposures),   cmocka_unit_test(leaves_no_disc_of_what_is_clipped),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
