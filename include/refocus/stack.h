@@ -216,6 +216,9 @@ REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refo
  * it. A blur wider than the window may be taken for movement; what moves and has the colour of what
  * is behind it is not seen.
  *
+ * In the photo a frame fades into the next one, towards the reference, beside such places, and over
+ * a 128th of the longer side where it ends before the photo does.
+ *
  * A sample is sure where the least sharp frame has less than half of the E_k of the sharpest: noise
  * is alike in all. Each sample takes the depth of most of the sure ones around it, on its side of
  * the photo's edges. So what is flat, clipped or grainy takes the depth of what is around it. The

@@ -6,6 +6,8 @@
 
 #define ONE_Q32 4294967296.0
 
+enum { FADE = 128 }; /* frames fade over this part of the longer side where they end */
+
 struct rf_stack_line rf_stack_line(const struct refocus_stack *s,
                                    const struct rf_stack_frame *frame, double x, double y,
                                    double step)
@@ -93,7 +95,7 @@ uint16_t rf_stack_focus(const struct refocus_stack *s, uint16_t depth)
 /* Where a row of the photo lies in a frame, and what moves there. */
 struct line {
     struct rf_stack_line at;
-    const uint8_t *moving;
+    struct rf_stack_mask moving;
 };
 
 bool rf_stack_reaches(const struct refocus_stack *s, const struct rf_stack_line *line, int x)
@@ -104,26 +106,61 @@ bool rf_stack_reaches(const struct refocus_stack *s, const struct rf_stack_line 
     return px >= 0 && py >= 0 && px < s->width * one && py < s->height * one;
 }
 
-/* The frame next to frame k, towards the reference, that has the place: the focus breathes and
- * hands shake, so some do not reach the border of the photo, and things move. */
-static int frame_with(const struct refocus_stack *s, const struct line *line, int k, int x)
+/* The share of a pixel that a side of a frame leaves to it: the frame ends `here` pixels away, the
+ * photo `there`, Q8 each. Where both end together all is left. */
+static int share_beside(int64_t here, int64_t there, int64_t most)
 {
-    const int column = rf_stack_moving_column(s, x);
+    const int64_t gap = there - here < most ? there - here : most;
 
-    while (k != s->still &&
-           (!rf_stack_reaches(s, &line[k].at, x) || rf_stack_moves(line[k].moving, column)))
-        k += k < s->still ? 1 : -1;
-    return k;
+    return here < gap ? (int)(here > 0 ? 256 * here / gap : 0) : 256;
 }
 
-static void pixel_of(const struct refocus_stack *s, const struct line *line, int k, int x,
+/* The share of pixel (x, y) that is of a frame, Q8: the focus breathes and hands shake, so some do
+ * not reach the border of the photo, and things move. It fades towards either. */
+static int share_of_frame(const struct refocus_stack *s, const struct line *line, int x, int y)
+{
+    const int64_t longer = s->width > s->height ? s->width : s->height;
+    const int64_t most = (longer + FADE - 1) / FADE * 256;
+    const int64_t right = s->width * INT64_C(256), below = s->height * INT64_C(256);
+    const int64_t px = ((line->at.x + x * line->at.dx) >> 24) + 128;
+    const int64_t py = ((line->at.y + x * line->at.dy) >> 24) + 128;
+    const int64_t ux = 256 * (int64_t)x + 128, uy = 256 * (int64_t)y + 128;
+    int share = 256 - rf_stack_moving_share(s, &line->moving, x);
+
+    if (px < most || py < most || px > right - most || py > below - most) {
+        share = share * share_beside(px, ux, most) >> 8;
+        share = share * share_beside(py, uy, most) >> 8;
+        share = share * share_beside(right - px, right - ux, most) >> 8;
+        share = share * share_beside(below - py, below - uy, most) >> 8;
+    }
+    return share;
+}
+
+/* Takes a pixel from frame k and, where that leaves a share, from those next to it towards the
+ * reference, which has all. */
+static void pixel_of(const struct refocus_stack *s, const struct line *line, int k, int x, int y,
                      uint8_t out[3])
 {
-    k = frame_with(s, line, k, x);
+    int left = 256;
 
-    const struct rf_stack_line *at = &line[k].at;
+    for (;; k += k < s->still ? 1 : -1) {
+        const struct rf_stack_line *at = &line[k].at;
+        const int share = k == s->still ? 256 : share_of_frame(s, &line[k], x, y);
+        const int now = (left * share + 128) >> 8, before = 256 - left;
+        uint8_t pixel[3];
 
-    pixel_at(s, &s->frame[k], out, at->x + x * at->dx, at->y + x * at->dy);
+        if (now) {
+            pixel_at(s, &s->frame[k], pixel, at->x + x * at->dx, at->y + x * at->dy);
+            for (int c = 0; c < 3; c++)
+                out[c] = before
+                             ? (uint8_t)((out[c] * before + pixel[c] * now + (before + now) / 2) /
+                                         (before + now))
+                             : pixel[c];
+        }
+        left -= now;
+        if (left == 0)
+            return;
+    }
 }
 
 bool rf_stack_pixel(const struct refocus_stack *s, int k, int x, int y, uint8_t out[3])
@@ -143,7 +180,7 @@ void rf_stack_compose_row(const struct refocus_stack *s, uint8_t *out, const uin
 
     for (int k = 0; k < s->count; k++) {
         line[k].at = rf_stack_line(s, &s->frame[k], 0, y, 1);
-        line[k].moving = rf_stack_moving_row(s, k, y);
+        line[k].moving = rf_stack_moving_mask(s, k, y);
     }
     for (int x = 0; x < s->width; x++, out += 3) {
         const int k = rf_stack_clamp(depth[x] >> 8, s->count - 2);
@@ -151,9 +188,9 @@ void rf_stack_compose_row(const struct refocus_stack *s, uint8_t *out, const uin
         uint8_t a[3] = {0}, b[3] = {0};
 
         if (share < 256)
-            pixel_of(s, line, k, x, a);
+            pixel_of(s, line, k, x, y, a);
         if (share > 0)
-            pixel_of(s, line, k + 1, x, b);
+            pixel_of(s, line, k + 1, x, y, b);
         for (int c = 0; c < 3; c++)
             out[c] = share == 0     ? a[c]
                      : share == 256 ? b[c]

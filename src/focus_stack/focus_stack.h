@@ -161,6 +161,15 @@ void rf_stack_find_moving(struct refocus_stack *stack);
 /* A row of the photo in the mask of what moves in a frame; NULL: nothing moves. */
 const uint8_t *rf_stack_moving_row(const struct refocus_stack *stack, int k, int y);
 int rf_stack_moving_column(const struct refocus_stack *stack, int x);
+/* The two rows of the mask that a row of the photo lies between, Q8 below the first. */
+struct rf_stack_mask {
+    const uint8_t *row[2]; /* NULL: nothing moves */
+    int below;
+};
+struct rf_stack_mask rf_stack_moving_mask(const struct refocus_stack *stack, int k, int y);
+/* How much of a pixel moves, Q8: between the middles of the mask's pixels in proportion. */
+int rf_stack_moving_share(const struct refocus_stack *stack, const struct rf_stack_mask *mask,
+                          int x);
 /* Frames get the highest cost in a row of samples where something moves. */
 void rf_stack_leave_out(struct refocus_stack *stack, int y);
 /* Depths from a frame to the next for so many frames. */

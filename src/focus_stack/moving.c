@@ -279,6 +279,39 @@ int rf_stack_moving_column(const struct refocus_stack *s, int x)
     return rf_stack_clamp(x / (s->small_by << LEVEL), (s->width / s->small_by >> LEVEL) - 1);
 }
 
+/* A place in the mask, Q8 from the middle of its first pixel. */
+static int place_in_mask(const struct refocus_stack *s, int x)
+{
+    const int block = s->small_by << LEVEL;
+
+    return rf_stack_clamp(((2 * x + 1) * 128 - 128 * block) / block, INT32_MAX);
+}
+
+struct rf_stack_mask rf_stack_moving_mask(const struct refocus_stack *s, int k, int y)
+{
+    const int w = s->width / s->small_by >> LEVEL, h = s->height / s->small_by >> LEVEL;
+    const int place = place_in_mask(s, y);
+    struct rf_stack_mask mask = {{NULL, NULL}, place & 255};
+
+    for (int i = 0; i < 2 && s->frame[k].moving; i++)
+        mask.row[i] = s->frame[k].moving + (ptrdiff_t)rf_stack_clamp((place >> 8) + i, h - 1) * w;
+    return mask;
+}
+
+int rf_stack_moving_share(const struct refocus_stack *s, const struct rf_stack_mask *mask, int x)
+{
+    const int last = (s->width / s->small_by >> LEVEL) - 1, place = place_in_mask(s, x);
+    const int left = rf_stack_clamp(place >> 8, last), right = rf_stack_clamp(left + 1, last);
+    const int u = place & 255, v = mask->below;
+    const uint8_t *const up = mask->row[0], *const down = mask->row[1];
+
+    if (!up)
+        return 0;
+    return ((rf_stack_moves(up, left) * (256 - u) + rf_stack_moves(up, right) * u) * (256 - v) +
+            (rf_stack_moves(down, left) * (256 - u) + rf_stack_moves(down, right) * u) * v) >>
+           8;
+}
+
 void rf_stack_leave_out(struct refocus_stack *s, int y)
 {
     const int middle = (s->reduced - 1) / 2;

@@ -152,6 +152,28 @@ static void covers_the_border(void **state)
     assert_true(wrong < H / 10);
 }
 
+/* Where the first frame ends, at column 6, the photo goes over from it to the second within two
+ * pixels, of a size of 128 and more. */
+static void fades_where_a_frame_ends(void **state)
+{
+    static const struct scene scene = {.left = 0, .right = 3, .shift_x = 3};
+    double from_mix = 0, from_first = 0;
+
+    (void)state;
+    draw(&scene);
+    run(NULL, NULL, REFOCUS_STACK_ALIGN_SIMILARITY);
+    for (int y = 8; y < H - 8; y++)
+        for (int x = 6; x < 8; x++) {
+            const int here = photo[3 * (y * W + x)], first = frame[0][3 * (y * W + x - 6)];
+            const int second = frame[1][3 * (y * W + x - 3)];
+
+            from_mix +=
+                fabs(here - (x == 6 ? 0.25 : 0.75) * first - (x == 6 ? 0.75 : 0.25) * second);
+            from_first += abs(here - first);
+        }
+    assert_true(from_mix < from_first / 2);
+}
+
 static void fills_what_is_flat(void **state)
 {
     static const struct scene scene = {.left = 1, .right = 3, .flat = 1};
@@ -230,6 +252,20 @@ static void takes_no_noise_for_texture(void **state)
     assert_true(right_share(&scene) > 0.98);
 }
 
+/* How many pixels on the left are a mix of two frames that differ there. */
+static int mixed_of(int k, int l)
+{
+    int mixed = 0;
+
+    for (int i = 0; i < 3 * PIXELS; i += 3) {
+        const int a = frame[k][i], b = frame[l][i];
+        const double share = (double)(photo[i] - b) / (a - b ? a - b : 1);
+
+        mixed += i / 3 % W < W / 2 - 8 && abs(a - b) > 30 && share > 0.2 && share < 0.8;
+    }
+    return mixed;
+}
+
 /* A disc that walks is in the photo once, where the reference has it, and changes no depth where it
  * was in other frames. */
 static void shows_what_moves_once(void **state)
@@ -253,6 +289,7 @@ static void shows_what_moves_once(void **state)
     assert_true(right > 590);
     assert_true(wrong < 40);
     assert_true(result.moving > 0.2f && result.moving < 0.9f);
+    assert_true(mixed_of(1, 2) > 12); /* 1 where masks have hard borders */
     draw(&without);
     assert_true(run(NULL, NULL, REFOCUS_STACK_ALIGN_NONE).moving == 0);
 }
@@ -344,6 +381,7 @@ int main(void)
         cmocka_unit_test(undoes_breathing_and_shake),
         cmocka_unit_test(measures_nothing_beyond_the_border),
         cmocka_unit_test(covers_the_border),
+        cmocka_unit_test(fades_where_a_frame_ends),
         cmocka_unit_test(fills_what_is_flat),
         cmocka_unit_test(is_smooth_where_nothing_is_measured),
         cmocka_unit_test(makes_no_blob_of_a_lamp),

@@ -281,7 +281,8 @@ static void draw_patch(double brightness)
         }
 }
 
-/* Its votes are wrong: they are outweighed by what lies lower, or left out as they are clipped. */
+/* The votes of the patch are wrong: they are outweighed by what lies lower, or left out as they are
+ * clipped. */
 static void weighs_edges_with_what_lies_lower(void **state)
 {
     static const double brightness[] = {3, 30};
