@@ -102,7 +102,8 @@ struct refocus_stack_result {
                          are wrong. A reversed order has no more than the right one: see `direction`
                      */
     float moving;   /**< receives the share of the photo where something moved between the frames:
-                         it is as in the reference, and its depth is filled from around it */
+                         those that differ from the reference are left out there, and its depth is
+                         filled from around it */
     float order_margin; /**< receives how sure an order is that was found: how much deeper the
                              valleys between peaks of sharpness would be in the next best one, a
                              block of the picture, in parts of its sharpest frame. Below 0.01 it

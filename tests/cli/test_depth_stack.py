@@ -511,6 +511,14 @@ class DepthOfAStack(Case):
         self.fails(1, f'{names[2]}: something moves in most of the picture, or its light changed; '
                    'leave out the frames that differ, or give another --reference', *command,
                    *names)
+        for k, name in enumerate(names):
+            pictures.ppm(name, W, H, lambda x, y: tinted(
+                x, y, k, 1 if k == 2 or x > 0.45 * W else 1.4))
+        report = self.warns(f'{names[2]}: in much of the picture something moves, its light '
+                            'changed, or frames do not follow each other: depth and photo are '
+                            'doubtful', *command, *names)
+        self.assertRegex(report['evidence'][1], r'^focus stack: something moves in [56]\d\.\d % of '
+                         'the picture: frames that differ from frame 3 are left out there$')
         # Other frames show another place.
         for k, name in enumerate(names[:2]):
             pictures.ppm(name, W, H, lambda x, y: (128 + 90 * (-1) ** (x // 16 + y // 12 + k),) * 3)

@@ -13,7 +13,7 @@
 #define LEAST_ORDER_MARGIN 0.01
 /* The picture shows which end is far from here on. */
 #define LEAST_DIRECTION (1 / 25.0)
-/* More of a photo that moves is of one frame for the most part. */
+/* More of a photo that moves is of one frame for the most part; what is out of order adds to it. */
 #define MOST_MOVING 0.5
 /* More of it is no order: 0.03 in stacks of nine frames as they were taken, 0.9 shuffled. */
 #define MOST_DISORDER 0.5
@@ -166,9 +166,9 @@ int stack_judge(const struct refocus_stack_result *result, const char *name)
     else if (result->alike < (float)LEAST_ALIKE)
         report_warning(name, "not all frames lie on each other: the camera moved too far, or they "
                              "show different places; depth is wrong there");
-    else if (result->moving > (float)MOST_MOVING)
-        report_warning(name, "something moves in most of the picture, or its light changed: depth "
-                             "and photo are doubtful");
+    else if (result->moving + result->disorder > (float)MOST_MOVING)
+        report_warning(name, "in much of the picture something moves, its light changed, or frames "
+                             "do not follow each other: depth and photo are doubtful");
     return EXIT_DONE;
 }
 
@@ -297,7 +297,9 @@ static int finish(struct input *input, struct refocus_stack *stack,
     input->made_info.evidence_count = 1;
     if (result.moving > 0)
         snprintf(input->made_info.evidence[input->made_info.evidence_count++], REFOCUS_INFO_LENGTH,
-                 "focus stack: something moves in %.1f %% of the picture, which is as in frame %d",
+                 "focus stack: something moves in %.1f %% of the picture: frames that differ from "
+                 "frame %d are "
+                 "left out there",
                  100 * (double)result.moving, result.reference);
     if (result.matched)
         snprintf(
