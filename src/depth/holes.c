@@ -332,8 +332,8 @@ static uint32_t gap_of(const struct holes *holes)
              (x = unknown_from(state_row(holes, y), x + 1, holes->width)) < holes->width;)
             unknown++;
     known = samples - unknown;
-    if (known > unknown)
-        return 0;
+    if (known > unknown || holes->width < 3 || holes->height < 3)
+        return 0; /* in a line all have few neighbours */
     for (int y = 0; y < holes->height; y++)
         for (int x = 0; x < holes->width; x++)
             single += state_row(holes, y)[x] == RF_SAMPLE_KNOWN && known_around(holes, x, y) < 4;

@@ -22,11 +22,11 @@ enum { RF_SAMPLE_KNOWN = 0, RF_SAMPLE_UNKNOWN = 255 };
  * mostly go on to the border of the map. Not so a thing that is no wider than the hole at the
  * border is there, and nearer than what is behind it by half of the range, as a pole beside the
  * unmeasured columns at the left of a Kinect's map: the hole is next to what is behind it.
- * In a sparse map, as of a laser scanner, most of whose known samples have less than half of their
- * eight neighbours, p is no farther from one than two mean distances of samples, but in a hole:
- * there w d(q) does not count, and nothing at the border is a thing.
- * What is inpainted is then smoothed where it is continuous, the wider the deeper it lies in a
- * hole.
+ * In a sparse map, as of a laser scanner, of three rows and columns or more, most of whose known
+ * samples have less than half of their eight neighbours, p is no farther from one than two mean
+ * distances of samples, but in a hole: there w d(q) does not count, and nothing at the border is a
+ * thing. What is inpainted is then smoothed where it is continuous, the wider the deeper it lies in
+ * a hole.
  *
  * Time is linear in the number of samples. At least one sample is known.
  *

@@ -92,7 +92,7 @@ class Ways(Case):
             if y >= alike:
                 return noise[shift + 1][y][x]
             return noise[0][y][x + 20 + ((14 if x + 14 * shift >= 120 else 4) if shift else 0)]
-        for alike, doubtful in (50, True), (80, False):
+        for alike, doubtful in (46, True), (80, False):
             for name, shift in ('some-left.ppm', 0), ('some-right.ppm', 1):
                 pictures.ppm(name, 240, 128, lambda x, y, s=shift: (seen(x, y, s, alike),) * 3)
             for arguments in (('depth', 'some-left.ppm', 'some-right.ppm', '-o', 'some.pgm'),
