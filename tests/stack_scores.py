@@ -193,6 +193,12 @@ given. The weights of votes and the bound of 1/20 were chosen by these: before v
 that was chosen by half of them, 4 of 40 were wrong in the other half. Below 1/20 what lies lower counts as nearer, too:
 of 36 pairs and 9 stacks of other sources 39 are right, 5 wrong and 1 not told, with edges alone 26, 5 and 14; of the 20
 pairs of a light field camera that were looked at afterwards 20 are right, with edges alone 17 and 3 not told.
+Since these were counted, edges beside what is clipped vote no more, and what lies lower counts as well where it is the
+opposite of edges and outweighs them: one of nine frames of a tabletop that has 1.9 times the light, or somebody small who
+walks by, votes -.06 to -.19. Of 35 other stacks, drawn and of cameras, four have too few edges left, and one whose
+edges voted .01 votes -.02.
+Three frames of an engraved surface through a macro lens, the farthest first, are turned by it against edges that vote
+.03 (rows: -.49), so that the command says where what lies lower alone turns a stack that this is doubtful.
 
 Processor time of `refocus depth --focal-stack`, nine frames, with files read and written, x86-64: 2 megapixels
 4.5 s and 280 MB, 12 megapixels 19 s and 735 MB (a slow day; on another 2.9 and 10.4 s). By the clock with two threads,
