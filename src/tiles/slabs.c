@@ -118,6 +118,29 @@ static int end_of_noise(const struct rf_bins_in_reach *reach, struct rf_bin_scal
     return rf_larger(until, end);
 }
 
+/* Adds a slab of the blurs low to high, none of which is sharp, that overlaps those beside it. */
+static void add_blurred_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, int low,
+                             int high)
+{
+    const int half = HALF >> scale.unit, closed = CLOSED >> scale.unit;
+    const int centre = low + (high - low + 1) / 2; /* exact for a single blur */
+    const int overlap = rf_larger(OVERLAP >> scale.unit, (high - low) / 8);
+
+    plan->sharp = false;
+    plan->reach = rf_larger(plan->reach, rf_larger(-low, high));
+    if (low > 0 && low < plan->least)
+        plan->least = low;
+    if (high < 0 && -high < plan->least)
+        plan->least = -high;
+    low = rf_larger(low - overlap, INT16_MIN);
+    high = rf_smaller(high + overlap, INT16_MAX);
+    if (centre < 0 && high >= -half)
+        high = -half - 1;
+    if (centre > 0 && low < half)
+        low = half - closed;
+    add_slab(plan, scale, (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre});
+}
+
 /* Covers the occupied bins by slabs, nearest first. Slabs are a pixel wide, half of that where the
  * blur is small and a pixel would show, and |s| / 8 less one pixel from 16 pixels on: there rays
  * lie farther apart than half of that. Wide slabs end where those end that cover all bins from the
@@ -149,7 +172,7 @@ static int cover(const struct rf_bins_in_reach *reach, struct rf_bin_scale scale
     plan->least = INT16_MAX;
     plan->sharp = true;
     for (int bin = next_bin(bins, 0); bin < RF_BINS; bin = next_bin(bins, bin)) {
-        int end, last = bin, low, high, centre, overlap;
+        int end, last = bin, low, high;
         bool sure = false;
 
         if (bin >= scale.focus && bin < focus_end) {
@@ -176,27 +199,7 @@ static int cover(const struct rf_bins_in_reach *reach, struct rf_bin_scale scale
         high = rf_edge_of(scale, last + 1) - 1;
         low = low < bins->least ? bins->least : low;
         high = high > bins->most ? bins->most : high;
-        centre = low + (high - low + 1) / 2; /* exact for a single blur */
-        plan->sharp = false;
-        if (-low > plan->reach)
-            plan->reach = -low;
-        if (high > plan->reach)
-            plan->reach = high;
-        if (low > 0 && low < plan->least)
-            plan->least = low;
-        if (high < 0 && -high < plan->least)
-            plan->least = -high;
-        overlap = rf_larger(OVERLAP >> unit, (high - low) / 8);
-        low -= overlap;
-        high += overlap;
-        low = rf_larger(low, INT16_MIN);
-        high = rf_smaller(high, INT16_MAX);
-        if (centre < 0 && high >= -half)
-            high = -half - 1;
-        if (centre > 0 && low < half)
-            low = half - closed;
-        add_slab(plan, scale,
-                 (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre});
+        add_blurred_slab(plan, scale, low, high);
         bin = last + 1;
     }
     plan->reach = rf_in_pixels(plan->reach, unit);
