@@ -119,21 +119,15 @@ void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)
     const struct rf_order o = rf_order_of(f->out->format);
     const uint8_t *to_code = f->transfer->to_code;
     const ptrdiff_t first = rect.y0 * f->light.stride + rect.x0;
+    const uint16_t *const light[3] = {f->light.channel[0] + first, f->light.channel[1] + first,
+                                      f->light.channel[2] + first};
 
     if (f->deep_out->on) {
-        rf_encode_deep(f, rect,
-                       (const uint16_t *const[3]){f->light.channel[0] + first,
-                                                  f->light.channel[1] + first,
-                                                  f->light.channel[2] + first},
-                       NULL, f->light.stride, 4);
+        rf_encode_deep(f, rect, light, NULL, f->light.stride, 4);
         return;
     }
     if (f->dither) {
-        rf_encode_dithered(f, rect,
-                           (const uint16_t *const[3]){f->light.channel[0] + first,
-                                                      f->light.channel[1] + first,
-                                                      f->light.channel[2] + first},
-                           f->light.stride, 4);
+        rf_encode_dithered(f, rect, light, f->light.stride, 4);
         return;
     }
     for (int y = rect.y0; y < rect.y1; y++) {
@@ -141,11 +135,11 @@ void rf_copy_tile(const struct rf_frame *f, struct rf_rect rect)
         uint8_t *out = pixel(f, o.bytes, rect.x0, y);
 
         for (int x = rect.x0; x < rect.x1; x++, out += o.bytes) {
-            const ptrdiff_t at = y * f->view->stride + x;
+            const ptrdiff_t at = (y - rect.y0) * f->light.stride + x - rect.x0;
 
-            out[o.r] = to_code[4 * f->light.channel[0][at]];
-            out[o.g] = to_code[4 * f->light.channel[1][at]];
-            out[o.b] = to_code[4 * f->light.channel[2][at]];
+            out[o.r] = to_code[4 * light[0][at]];
+            out[o.g] = to_code[4 * light[1][at]];
+            out[o.b] = to_code[4 * light[2][at]];
             if (o.a >= 0)
                 out[o.a] = alpha[x];
         }
