@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """usage: test_live.py REFOCUS  -- the pictures of refocus live, by scripted cameras alone."""
+import json
 import os
 import struct
 import subprocess
@@ -39,6 +40,11 @@ class Pictures(Live):
         listed = live('--list', '--camera', script, common=[])
         self.assertIn(b'lens, --autofocus off, fixed:0 to 4 dioptres, once, continuous\n',
                       listed.stdout)
+        listed = json.loads(live('--list', '--camera', script, '--json', common=[]).stdout)
+        self.assertEqual(listed['camera'], script)
+        self.assertEqual({type(mode[key]) for mode in listed['modes']
+                          for key in ('width', 'height')}, {int})
+        self.assertIsInstance(json.loads(live('--list', '--json', common=[]).stdout)['cameras'], list)
         listed = live('--list', common=[])
         self.assertEqual(listed.stderr, b'' if listed.stdout else
                          b'refocus: --list: no camera is there; --camera replay:SCRIPT plays pictures '

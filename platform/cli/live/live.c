@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include "commands/commands.h"
 #include "line/interrupt.h"
+#include "line/report.h"
 #include "live/live_colour.h"
 #include "live/live_commands.h"
 #include "live/live_depth_camera.h"
@@ -17,42 +18,65 @@
 #include "live/live_sources.h"
 #include "live/live_stack.h"
 
+/* A line, or an entry of the array where one is given. */
 static void print_camera(void *user, const char *name, const char *description)
 {
-    (void)user;
-    printf("%s  %s\n", name, description);
+    if (user)
+        json_array_append_new(user, json_pack("{s:o, s:o}", "name", report_text_json(name),
+                                              "description", report_text_json(description)));
+    else
+        printf("%s  %s\n", name, description);
 }
 
-static int print_modes(const char *name)
+static json_t *mode_json(const struct refocus_source_mode *mode)
+{
+    return json_pack("{s:s, s:i, s:i, s:f}", "format", refocus_frame_format_name(mode->format),
+                     "width", (int)mode->width, "height", (int)mode->height, "fps", mode->fps);
+}
+
+static int print_modes(const char *name, bool json)
 {
     struct refocus_reason reason = {""};
     struct refocus_source_mode mode = refocus_source_mode_default();
     struct refocus_source *source;
     const int status = refocus_source_open(&source, name, &reason);
+    json_t *modes;
 
     if (status != REFOCUS_OK)
         return report_failure(input_exit_code(status), name, "%s", reason.text);
+    modes = json ? json_array() : NULL;
     for (int i = 0; refocus_source_get_mode(source, i, &mode) == REFOCUS_OK; i++)
-        printf("%-6s %5dx%-5d %g fps\n", refocus_frame_format_name(mode.format), (int)mode.width,
-               (int)mode.height, mode.fps);
-    live_lens_print(source);
+        if (json)
+            json_array_append_new(modes, mode_json(&mode));
+        else
+            printf("%-6s %5dx%-5d %g fps\n", refocus_frame_format_name(mode.format),
+                   (int)mode.width, (int)mode.height, mode.fps);
+    if (!json)
+        live_lens_print(source);
     refocus_source_close(&source);
-    return report_end_output();
+    return json ? report_print_json(
+                      json_pack("{s:o, s:o}", "camera", report_text_json(name), "modes", modes))
+                : report_end_output();
 }
 
 static int list(const struct live_settings *settings)
 {
+    json_t *cameras;
     int n;
 
     if (settings->camera)
-        return print_modes(settings->camera);
-    n = refocus_source_list(print_camera, NULL);
-    if (n < 0)
+        return print_modes(settings->camera, settings->engine.json);
+    cameras = settings->engine.json ? json_array() : NULL;
+    n = refocus_source_list(print_camera, cameras);
+    if (n < 0) {
+        json_decref(cameras);
         return report_failure(EXIT_FAILED, "--list", "%s", refocus_strerror(n));
+    }
     if (n == 0)
         report_warning("--list",
                        "no camera is there; --camera replay:SCRIPT plays pictures instead");
-    return report_end_output();
+    return cameras ? report_print_json(json_pack("{s:o}", "cameras", cameras))
+                   : report_end_output();
 }
 
 static int open_all(struct live *live)
