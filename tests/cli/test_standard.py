@@ -131,6 +131,10 @@ class Standard(Case):
         self.assertLessEqual(modes, {0})
         os.rmdir('temporary')
 
+    def test_depth_is_a_file(self):
+        self.fails(2, "--depth: '-' is standard input, which is for the photo; give a file",
+                   'render', 'photo.ppm', '--depth', '-', '-o', 'x.ppm')
+
     def test_what_is_refused(self):
         photo = pictures.read_bytes('photo.ppm')
         for line, data, status, arguments in (

@@ -37,6 +37,9 @@ int input_check_depth(const struct depth_settings *settings)
                               "with commas",
                               settings->invalid);
 
+    if (settings->file && standard_is(settings->file))
+        return report_failure(EXIT_WRONG, "--depth",
+                              "'-' is standard input, which is for the photo; give a file");
     map.sample = REFOCUS_SAMPLE_U16;
     if (settings->unit && refocus_depth_set_unit(&map, settings->unit) != REFOCUS_OK)
         return report_failure(EXIT_WRONG, "--depth-unit",
