@@ -131,6 +131,12 @@ class Standard(Case):
         self.assertLessEqual(modes, {0})
         os.rmdir('temporary')
 
+    def test_info_of_floats(self):
+        self.succeeds('render', 'photo.ppm', *BLUR, '-o', 'floats.pfm')
+        self.assertIn(', upright, floats\n', self.succeeds('info', 'floats.pfm'))
+        self.assertIn(', upright, 8 bits a channel\n', self.succeeds('info', 'photo.ppm'))
+        os.remove('floats.pfm')
+
     def test_depth_is_a_file(self):
         self.fails(2, "--depth: '-' is standard input, which is for the photo; give a file",
                    'render', 'photo.ppm', '--depth', '-', '-o', 'x.ppm')

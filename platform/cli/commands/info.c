@@ -175,14 +175,15 @@ static void print_text(const char *file, const struct refocus_photo *photo,
                        const struct findings *found)
 {
     const struct refocus_photo_info *info = photo->info;
-    char clean[REFOCUS_INFO_LENGTH];
+    char clean[REFOCUS_INFO_LENGTH], bits[32];
 
     report_clean(clean, sizeof clean, file);
     printf("file          %s\n", clean);
     printf("container     %s\n", info->container);
+    snprintf(bits, sizeof bits, "%d bits a channel", (int)info->stored_bits);
     if (photo->image->plane[0])
-        printf("picture       %dx%d, upright, %d bits a channel%s\n", (int)photo->image->width,
-               (int)photo->image->height, (int)info->stored_bits,
+        printf("picture       %dx%d, upright, %s%s\n", (int)photo->image->width,
+               (int)photo->image->height, info->stored_bits ? bits : "floats",
                info->original_used ? ", the all-in-focus original in the file" : "");
     if (info->stored_width > 0)
         printf("stored        %dx%d, orientation %d\n", (int)info->stored_width,
