@@ -19,7 +19,7 @@ static struct place place_of(const void *entry)
 }
 
 /* Whether a comes after b, row by row. */
-static bool is_after(const void *a, const void *b)
+static bool is_later_place(const void *a, const void *b)
 {
     const struct place p = place_of(a), q = place_of(b);
 
@@ -57,16 +57,16 @@ void rf_add_place(void *list, uint32_t *count, uint32_t capacity, const void *en
     if (*count < capacity) {
         memcpy(at(list, (*count)++, size), entry, size);
         if (*count == capacity)
-            make_heap(list, *count, size, is_after);
-    } else if (capacity && is_after(list, entry)) {
+            make_heap(list, *count, size, is_later_place);
+    } else if (capacity && is_later_place(list, entry)) {
         memcpy(list, entry, size);
-        sink(list, 0, capacity, size, is_after);
+        sink(list, 0, capacity, size, is_later_place);
     }
 }
 
 void rf_sort_places(void *list, uint32_t count, size_t size)
 {
-    rf_sort(list, count, size, is_after);
+    rf_sort(list, count, size, is_later_place);
 }
 
 void rf_sort(void *list, uint32_t count, size_t size, rf_after_fn *is_after)
