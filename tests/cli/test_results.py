@@ -29,6 +29,12 @@ class Results(Case):
                           depth['width'], depth['height']), (0, 0, None, None, W, H))
         for quality, rays in (('preview', 32), ('standard', 64), ('best', 128)):
             self.assertEqual(self.reports(*self.render('--quality', quality))['rays'], rays)
+            self.assertEqual(self.reports(*self.render('--quality', quality, '--blur', '40'))['rays'],
+                             rays)
+        for blur, rays in ((20, 64), (30, 144), (40, 256), (100, 256)):
+            self.assertEqual(self.reports(*self.render('--blur', str(blur)))['rays'], rays)
+        self.assertEqual(self.reports(*self.render('--blur', '40', '--rays', '9'))['rays'], 9)
+        self.assertEqual(self.reports(*self.render('--blur', '40', '--method', 'search'))['rays'], 64)
         self.assertEqual(self.reports(*self.render('--quality', 'best', '--rays', '7'))['rays'],
                          7)
         self.assertEqual(self.reports(*self.render('--rays', 'full', '--blur', '3'))['rays'],

@@ -217,7 +217,7 @@ static int run(int argc, char **argv)
 {
     struct settings settings = {.depth = DEPTH_SETTINGS_NONE,
                                 .lens = LENS_SETTINGS_NONE,
-                                .engine = ENGINE_SETTINGS_NONE(5),
+                                .engine = ENGINE_SETTINGS_NONE(QUALITY_STANDARD, 5),
                                 .size = {NAN, NAN}};
     struct engine engine;
     struct input input = {0};

@@ -328,7 +328,7 @@ static int run(int argc, char **argv)
 {
     struct settings settings = {.depth = DEPTH_SETTINGS_NONE,
                                 .lens = LENS_SETTINGS_NONE,
-                                .engine = ENGINE_SETTINGS_NONE(1),
+                                .engine = ENGINE_SETTINGS_NONE(QUALITY_STANDARD, 1),
                                 .border = NAN};
     struct comparison comparison = {0};
     struct refocus_photo *reference = NULL;

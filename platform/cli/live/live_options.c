@@ -278,7 +278,7 @@ const struct option live_options[] = {
 const struct live_settings live_settings_none = {
     .depth = {.near_m = NAN, .far_m = NAN, .edges = EDGES_AS_GIVEN},
     .lens = LENS_SETTINGS_NONE,
-    .engine = ENGINE_SETTINGS_NONE(1),
+    .engine = ENGINE_SETTINGS_NONE(QUALITY_STANDARD, 1),
     .size = {NAN, NAN},
     .fps = NAN,
     .blur_most = NAN,

@@ -15,7 +15,11 @@ static const struct {
 } qualities[] = {
     {"preview", "32 rays, thin structures gathered by them", 32, false, false},
     {"standard", "64 rays, thin structures splatted", 64, true, false},
-    {"best", "128 rays, thin structures splatted, texture continued behind them", 128, true, true}};
+    {"best", "128 rays, thin structures splatted, texture continued behind them", 128, true, true},
+    [QUALITY_AUTO] = {"auto",
+                      "standard; in stills more rays where they would lie farther apart than at a "
+                      "blur of 20 pixels, up to 256",
+                      64, true, false}};
 
 static const struct {
     const char *name, *summary;
@@ -118,6 +122,18 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
     if (status == EXIT_DONE)
         status = bokeh_apply(&settings->bokeh, !isnan(settings->highlights), params);
     return status;
+}
+
+void engine_set_blur(struct engine *engine, const struct engine_settings *settings, double blur)
+{
+    enum { DENSE_TO = 20, MOST_RAYS = 256 };
+    struct refocus_render_params *const params = &engine->params.render;
+    const double rays = qualities[QUALITY_AUTO].rays * blur * blur / (DENSE_TO * DENSE_TO);
+
+    params->max_blur_radius = (float)blur;
+    if (settings->quality == QUALITY_AUTO && isnan(settings->rays) &&
+        params->method == REFOCUS_METHOD_SWEEP)
+        params->rays = (int32_t)fmin(fmax(ceil(rays), qualities[QUALITY_AUTO].rays), MOST_RAYS);
 }
 
 static int interrupted(const struct engine *engine)

@@ -24,13 +24,13 @@ struct engine_settings {
     struct bokeh_settings bokeh;
 };
 
-enum { QUALITY_STANDARD = 1 };
+enum { QUALITY_STANDARD = 1, QUALITY_AUTO = 3 };
 
 enum { HIGHLIGHTS_ESTIMATED = 0 }; /* `highlights`: no gain, which is 1 or more */
 
-#define ENGINE_SETTINGS_NONE(repeat_default)                                                       \
+#define ENGINE_SETTINGS_NONE(quality_default, repeat_default)                                      \
     {                                                                                              \
-        .quality = QUALITY_STANDARD, .rays = NAN, .iterations = NAN, .sigma = NAN,                 \
+        .quality = (quality_default), .rays = NAN, .iterations = NAN, .sigma = NAN,                \
         .highlights = NAN, .repeat = repeat_default, .papers = PAPER_SETTINGS_NONE,                \
         .controls = CONTROL_SETTINGS_NONE, .bokeh = BOKEH_SETTINGS_NONE                            \
     }
@@ -70,7 +70,7 @@ const char *engine_blend_summary(uint32_t index);
          .choice = engine_quality_name,                                                            \
          .summary = engine_quality_summary,                                                        \
          .brief = "time against smoothness",                                                       \
-         .help = "presets; default standard; --rays overrules"},                                   \
+         .help = "presets; default auto for stills, else standard; --rays overrules"},             \
         {.kind = OPTION_INTEGER,                                                                   \
          .name = "--iterations",                                                                   \
          .argument = "T",                                                                          \
@@ -211,6 +211,9 @@ void engine_add_grain(struct engine *engine, const struct engine_settings *setti
 
 /* The largest blur radius, in pixels, that the method of these settings renders. */
 double engine_most_blur(const struct engine_settings *settings);
+
+/* The largest blur radius, in pixels, and the rays that a still is given for it. */
+void engine_set_blur(struct engine *engine, const struct engine_settings *settings, double blur);
 
 /* Renderer for photos of this size and blur; prepare; render settings->repeat times. */
 int engine_create(struct engine *engine, const struct engine_settings *settings, int width,

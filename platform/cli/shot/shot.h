@@ -22,7 +22,7 @@ struct shot_settings {
 #define SHOT_SETTINGS_NONE                                                                         \
     {                                                                                              \
         .depth = DEPTH_SETTINGS_NONE, .lens = LENS_SETTINGS_NONE,                                  \
-        .engine = ENGINE_SETTINGS_NONE(1)                                                          \
+        .engine = ENGINE_SETTINGS_NONE(QUALITY_AUTO, 1)                                            \
     }
 
 /* Rows of tables of options, for settings with a member of that type. */
