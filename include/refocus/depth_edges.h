@@ -46,6 +46,8 @@ struct refocus_depth_edges_report {
                                it was, brought to the photo's size by straight lines */
     float noise;          /**< standard deviation of the noise that was smoothed away, share of the
                                range, 0 to 1 */
+    float specks;         /**< share of the samples that lay far off all of those around them, of
+                               a map that was freed from such; 0 if they were too few */
 };
 
 static inline struct refocus_depth_edges_report refocus_depth_edges_report_default(void)
@@ -66,7 +68,9 @@ static inline struct refocus_depth_edges_report refocus_depth_edges_report_defau
  *     photo clearly better then. A photo of something else can mislead it.
  *   - Each pixel of a ramp between two surfaces is given to the one that looks like it in the
  *     photo. Slopes and rounded things, which are longer ramps, stay.
- *   - Noise of 0.4 % of the range and more is smoothed away within surfaces.
+ *   - Noise of 0.4 % of the range and more is smoothed away within surfaces. Where 0.4 % of the
+ *     samples of a map of the photo's size are specks, by themselves far off all of those around
+ *     them, each sample that is off the median of 5 x 5 takes that.
  *   - Wires and hair get back the disparity that a soft map mixed with what is behind them.
  *   - In a photo that is not sharp to the pixel, and in a still of more than 3 megapixels, pixels
  *     that mix both surfaces go to the nearer one, up to 3 beyond its edge: so its silhouette is as

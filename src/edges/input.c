@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "depth/dequantise.h"
+#include "depth/impulses.h"
 #include "depth/noise.h"
 #include "image/format.h"
 #include "image/disparity_map.h"
@@ -131,6 +132,9 @@ void rf_load_edge_map(struct rf_edge_job *job)
     for (int x = 0; x < e->width; x++)
         job->column[x] = place_of(x, e->width, job->columns);
     rf_pool_run(e->pool, load_samples, job, job->rows);
+    job->impulses = job->enlarged ? 0 : rf_impulses_of(job->sample, job->columns, job->rows);
+    if (job->impulses)
+        rf_remove_impulses(job->sample, spare[0], job->columns, job->rows, e->pool);
     job->noise = rf_noise_of(job->sample, job->columns, job->rows, d.step);
     if (job->noise)
         rf_denoise(e->kernels, job->sample, spare, job->columns, job->rows, job->noise, e->pool);

@@ -22,6 +22,7 @@ struct rf_edge_job {
     struct rf_sample_place *column; /* where each pixel of a row lies among samples */
     bool enlarged;                  /* the map is not of the photo's size */
     bool points;                    /* samples were taken at points */
+    int impulses;                   /* samples that were far off those around them, 1/65536 */
     int noise;                      /* standard deviation of what was smoothed away, Q16 */
     struct rf_disparity_q16 sample; /* in the memory of near, until ramps are found */
 };

@@ -199,6 +199,7 @@ static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_repor
     report->shift_y = (float)(found.shift_y * pixel);
     report->bent = found.bent;
     report->parted = soft;
+    report->specks = (float)job->impulses / 65536;
     report->noise = fminf((float)job->noise / 65535, 1);
     if (soft && (!job->points || is_moved(report)) && !rf_run_cancelled(e->pool->run)) {
         rf_vote(e, softness);
@@ -206,7 +207,7 @@ static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_repor
         rf_restore_thin(e, softness);
         rf_copy_plane(e, e->map, e->label);
     }
-    return soft || job->noise || is_moved(report);
+    return soft || job->noise || job->impulses || is_moved(report);
 }
 
 static bool fits(const struct rf_last_edges *last, const struct rf_edges *e)

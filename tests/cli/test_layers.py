@@ -85,7 +85,8 @@ class Layers(Case):
             (self.differs if parted else self.same)(picture, pictures.read_bytes('given.ppm'))
             self.assertIsNone(given['edges'])
             self.assertEqual(set(edges), {'softness_px', 'on_photo', 'grown_px', 'shift_x_px',
-                                          'shift_y_px', 'bent', 'parted', 'changed', 'noise'})
+                                          'shift_y_px', 'bent', 'parted', 'changed', 'noise',
+                                          'specks'})
             self.assertEqual((edges['grown_px'], edges['shift_x_px'], edges['shift_y_px'],
                               edges['bent'], edges['parted']), (0, 0, 0, False, parted))
             self.assertEqual((edges['softness_px'] > 1.25, edges['changed'] > 0.05),

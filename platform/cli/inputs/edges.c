@@ -43,10 +43,10 @@ json_t *edges_json(const struct refocus_depth_edges_report *report)
 {
     if (report->struct_size == 0)
         return json_null();
-    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:b, s:b, s:f, s:f}", "softness_px",
+    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:b, s:b, s:f, s:f, s:f}", "softness_px",
                      (double)report->softness, "on_photo", (double)report->on_photo, "grown_px",
                      (double)report->grown, "shift_x_px", (double)report->shift_x, "shift_y_px",
                      (double)report->shift_y, "bent", (int)report->bent, "parted",
                      (int)report->parted, "changed", (double)report->changed, "noise",
-                     (double)report->noise);
+                     (double)report->noise, "specks", (double)report->specks);
 }

@@ -107,6 +107,7 @@ static void check_report(const struct refocus_depth_edges_report *report)
     check(report->bent <= 1 && report->parted <= 1);
     check(report->changed >= 0 && report->changed <= 1);
     check(report->noise >= 0 && report->noise <= 1);
+    check(report->specks >= 0 && report->specks <= 1);
 }
 
 static uint16_t code_at(const struct refocus_disparity *map, int i)
@@ -120,7 +121,7 @@ static void check_untouched(const struct job *job, const struct refocus_depth_ed
 {
     if (job->map.width != job->photo.width || job->map.height != job->photo.height ||
         report->parted || report->bent || report->grown != 0 || report->shift_x != 0 ||
-        report->shift_y != 0 || report->noise != 0)
+        report->shift_y != 0 || report->noise != 0 || report->specks != 0)
         return;
     check(report->changed == 0);
     for (int i = 0; i < job->map.width * job->map.height; i++)
