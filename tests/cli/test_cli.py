@@ -73,7 +73,7 @@ class Usage(Case):
                     '--cpu --json --config --preset --settings --size --fullscreen --seconds --page --font --dpi -h --help --help-all',
             'serve': '--port --listen --origin --live --depth --depth-unit --near --far --max-upload --session-memory --upsample --depth-edges --max-side --max-pixels '
                      '--raw-preview --max-memory --threads --cpu -h --help --help-all',
-            'info': '--near --far --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
+            'info': '--depth --depth-unit --near --far --orient-depth --invalid --speckle --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --max-side --max-pixels --raw-preview --max-memory --json -h --help --help-all',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
                        '--depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --upsample --depth-edges --orient-depth --matte --gain-map --no-dither --focus --focus-at --focus-rectangle '

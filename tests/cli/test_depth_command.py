@@ -214,6 +214,35 @@ class DepthAndInfo(Case):
         self.assertTrue(edges['parted'] and 2 < edges['softness_px'] < 6 and edges['changed'] > 0.05)
         self.assertRegex(self.succeeds('info', 'soft.jpg'), r'(?m)^placed +1?\d\.\d % of the pixels')
 
+    def test_info_of_a_photo_with_a_map(self):
+        """By --depth, edges, blur and focus are those that `render` finds."""
+        pictures.ppm('step.ppm', 96, 64, lambda x, y: (40,) * 3 if x < 48 else (200,) * 3)
+        pictures.pgm('ramp.pgm', 96, 64, lambda x, y: 50 + 15 * min(max(x - 42, 0), 12))
+        for more in (), ('--depth-unit', 'inverse'), ('--invalid', 'zero', '--speckle', '3'), (
+                '--depth-unit', '100/m', '--near', '0.4', '--far', '5'), ('--orient-depth', '180'):
+            pair = ('step.ppm', '--depth', 'ramp.pgm', *more)
+            info = self.reports('info', *pair)
+            rendered = self.reports('render', *pair, '-o', 'out.ppm')
+            self.assertEqual(info['depth'], info['depth'] | rendered['depth'])
+            self.assertEqual(info['depth']['edges'], rendered['edges'])
+            self.assertAlmostEqual(info['depth']['blur'], rendered['blur'], 5)
+            self.assertAlmostEqual(info['depth_of_field']['focus'], rendered['focus'], 5)
+            self.assertGreater(info['depth']['edges']['changed'], 0.02)
+            self.assertEqual((info['file'], info['picture']), ('step.ppm', [96, 64]))
+            self.assertTrue(info['evidence'])
+        text = self.succeeds('info', 'step.ppm', '--depth', 'ramp.pgm')
+        for line in (r'depth         ramp\.pgm: the file itself, as --depth reads it',
+                     r'depth size    96x64, 8-bit', r'placed +1?\d\.\d % of the pixels',
+                     r'because       depth file: 96 x 64 8-bit samples'):
+            self.assertRegex(text, '(?m)^' + line)
+        # depth that the photo has itself by another unit, and what is no pair
+        unit = self.reports('info', 'mm.pgm', '--depth-unit', 'm')['depth']
+        self.assertEqual((unit['meaning'], unit['near_m']), ('distance', 500))
+        self.fails(2, '--orient-depth: it turns the map of --depth; give that too', 'info',
+                   'photo.ppm', '--orient-depth', '90')
+        self.fails(1, 'metres.pfm: it is a depth map, not a photo; give it as the depth', 'info',
+                   'metres.pfm', '--depth', 'ramp.pgm')
+
     def test_info(self):
         info = self.reports('info', 'photo.ppm')
         self.assertEqual((info['container'], info['picture'], info['depth'], info['orientation'],

@@ -6,7 +6,9 @@
 #include <refocus/refocus.h>
 #include "commands/commands.h"
 #include "commands/depth_of_field.h"
+#include "inputs/disparities.h"
 #include "inputs/edges.h"
+#include "inputs/inputs.h"
 #include "inputs/lens.h"
 #include "inputs/limits.h"
 #include "inputs/standard.h"
@@ -19,10 +21,8 @@ struct settings {
     struct lens_settings lens;
 };
 
-/* Findings from the pictures of a file. */
+/* Findings from the pictures of a file, beside those that the input has. */
 struct findings {
-    struct refocus_depth_report depth;
-    struct refocus_depth_edges_report edges; /* struct_size 0: there is no photo, or no depth */
     struct depth_of_field field;
     bool unit_is_doubtful;
     char unit_line[UNIT_LINE]; /* says so */
@@ -34,7 +34,10 @@ static const struct option options[] = {
      .offset = offsetof(struct settings, json),
      .brief = "print it as one JSON object",
      .help = "print it as one JSON object; what is not known is null"},
-    DEPTH_RANGE_OPTIONS(struct settings, depth),
+    DEPTH_FILE_OPTION(struct settings, depth),
+    DEPTH_UNIT_OPTIONS(struct settings, depth),
+    ORIENT_DEPTH_OPTION(struct settings, depth),
+    REPAIR_OPTIONS(struct settings, depth),
     LIMIT_OPTIONS(struct settings, depth.limits),
     {.kind = OPTION_HEADING, .help = "The lens whose depth of field is told"},
     FOCUS_OPTIONS(struct settings, lens),
@@ -90,17 +93,19 @@ static void print_metres(const char *name, double metres)
         printf("%-13s not known\n", name);
 }
 
-static void print_depth(const struct refocus_photo *photo,
-                        const struct refocus_depth_report *report)
+static void print_depth(const struct input *input)
 {
-    const struct refocus_depth_map *map = photo->depth;
-    char text[160];
+    const struct refocus_depth_report *report = &input->report;
+    const struct refocus_photo *from = input->depth_from;
+    const struct refocus_depth_map *map = from->depth;
+    char text[160], name[REFOCUS_INFO_LENGTH];
 
-    printf("depth         %s%s\n", source_text(photo->info->depth_source),
-           map->samples || photo->info->views == 0
-               ? ""
-               : "; 'refocus depth FILE --stereo-file' makes it "
-                 "of the two views");
+    report_clean(name, sizeof name, input->depth_name);
+    printf("depth         %s%s%s%s\n", input->side ? name : "", input->side ? ": " : "",
+           source_text(from->info->depth_source),
+           map->samples || from->info->views == 0 ? ""
+                                                  : "; 'refocus depth FILE --stereo-file' makes it "
+                                                    "of the two views");
     if (!map->samples)
         return;
     describe_meaning(text, sizeof text, map);
@@ -119,30 +124,25 @@ static bool has_focus_point(const struct refocus_photo_info *info)
 }
 
 /* The blur that `render` takes where no option says it; false where there is nothing to render. */
-static bool find_blur(const struct refocus_photo *photo, const struct findings *found, double *blur,
-                      char why[INPUT_WHY])
+static bool find_blur(const struct input *input, double *blur, char why[INPUT_WHY])
 {
-    struct input input = {.report = found->depth};
-
-    if (!photo->image->plane[0] || !photo->depth->samples)
+    if (!input->photo->image->plane[0] || !input->depth_from->depth->samples)
         return false;
-    input.photo = (struct refocus_photo *)photo;
-    input.depth_from = photo;
-    input_default_blur(&input, blur, why);
+    input_default_blur(input, blur, why);
     return true;
 }
 
-static void print_defaults(const struct refocus_photo *photo, const struct findings *found)
+static void print_defaults(const struct input *input)
 {
-    const struct refocus_photo_info *info = photo->info;
+    const struct refocus_photo_info *info = input->photo->info;
     char why[INPUT_WHY];
     double blur;
 
-    if (!find_blur(photo, found, &blur, why))
+    if (!find_blur(input, &blur, why))
         return;
     printf("render takes  %.1f pixels of blur: %s\n", blur, why);
     printf("              focus on the %s\n", has_focus_point(info) ? "focus point"
-                                              : info->focus_distance > 0 && found->depth.near_m > 0
+                                              : info->focus_distance > 0 && input->report.near_m > 0
                                                   ? "focus distance"
                                                   : "centre, for the file names no point");
 }
@@ -171,13 +171,26 @@ static void print_edges(const struct refocus_depth_edges_report *edges)
     putchar('\n');
 }
 
-static void print_text(const char *file, const struct refocus_photo *photo,
-                       const struct findings *found)
+/* The lines of a file on why its depth is believed; false where it has none. */
+static bool print_evidence(const struct refocus_photo_info *info, bool first)
 {
+    char clean[REFOCUS_INFO_LENGTH];
+
+    for (int i = 0; i < info->evidence_count && i < REFOCUS_INFO_LINES; i++, first = false) {
+        report_clean(clean, sizeof clean, info->evidence[i]);
+        printf("%s %s\n", first ? "because      " : "             ", clean);
+    }
+    return !first;
+}
+
+static void print_text(const struct input *input, const struct findings *found)
+{
+    const struct refocus_photo *photo = input->photo;
     const struct refocus_photo_info *info = photo->info;
     char clean[REFOCUS_INFO_LENGTH], bits[32];
+    bool first;
 
-    report_clean(clean, sizeof clean, file);
+    report_clean(clean, sizeof clean, input->photo_name);
     printf("file          %s\n", clean);
     printf("container     %s\n", info->container);
     snprintf(bits, sizeof bits, "%d bits a channel", (int)info->stored_bits);
@@ -209,17 +222,16 @@ static void print_text(const char *file, const struct refocus_photo *photo,
     if (photo->image->plane[0] && has_focus_point(info))
         printf("focus point   %.0f,%.0f\n", info->focus_x * photo->image->width,
                info->focus_y * photo->image->height);
-    print_depth(photo, &found->depth);
-    print_edges(&found->edges);
+    print_depth(input);
+    print_edges(&input->edges);
     if (photo->matte->samples)
         printf("matte         %dx%d, the portrait's; render uses it unless told --matte none\n",
                (int)photo->matte->width, (int)photo->matte->height);
-    print_defaults(photo, found);
+    print_defaults(input);
     depth_of_field_print(&found->field);
-    for (int i = 0; i < info->evidence_count && i < REFOCUS_INFO_LINES; i++) {
-        report_clean(clean, sizeof clean, info->evidence[i]);
-        printf("%s %s\n", i == 0 ? "because      " : "             ", clean);
-    }
+    first = !print_evidence(info, true);
+    if (input->side)
+        print_evidence(input->side->info, first);
     if (found->unit_is_doubtful)
         printf("doubtful      %s\n", found->unit_line);
 }
@@ -234,38 +246,52 @@ static json_t *size_json(int width, int height)
     return json_pack("[i, i]", width, height);
 }
 
-static json_t *evidence_json(const struct refocus_photo_info *info, const struct findings *found)
+static void add_evidence(json_t *lines, const struct refocus_photo_info *info)
+{
+    for (int i = 0; i < info->evidence_count && i < REFOCUS_INFO_LINES; i++)
+        json_array_append_new(lines, report_text_json(info->evidence[i]));
+}
+
+static json_t *evidence_json(const struct input *input, const struct findings *found)
 {
     json_t *lines = json_array();
 
-    for (int i = 0; i < info->evidence_count && i < REFOCUS_INFO_LINES; i++)
-        json_array_append_new(lines, report_text_json(info->evidence[i]));
+    add_evidence(lines, input->photo->info);
+    if (input->side)
+        add_evidence(lines, input->side->info);
     if (found->unit_is_doubtful)
         json_array_append_new(lines, json_string(found->unit_line));
     return lines;
 }
 
-static json_t *make_json(const char *file, const struct refocus_photo *photo,
-                         const struct findings *found)
+static json_t *depth_json(const struct input *input)
 {
-    const struct refocus_photo_info *info = photo->info;
-    json_t *depth = photo->depth->samples ? report_depth_json(photo, &found->depth) : json_null();
+    const struct refocus_depth_map *map = input->depth_from->depth;
+    json_t *depth = map->samples ? report_depth_json(input->depth_from, &input->report) : NULL;
     char text[160], why[INPUT_WHY];
     double blur = NAN;
 
-    if (photo->depth->samples && depth) {
-        describe_meaning(text, sizeof text, photo->depth);
-        json_object_set_new(depth, "unit", report_text_json(text));
-        json_object_set_new(depth, "sample", json_string(sample_name(photo->depth->sample)));
-        json_object_set_new(depth, "edges", edges_json(&found->edges));
-        if (find_blur(photo, found, &blur, why))
-            json_object_set_new(depth, "blur_from", json_string(why));
-        json_object_set_new(depth, "blur", report_number_json(blur));
-    }
+    if (!map->samples)
+        return json_null();
+    describe_meaning(text, sizeof text, map);
+    json_object_set_new(depth, "unit", report_text_json(text));
+    json_object_set_new(depth, "sample", json_string(sample_name(map->sample)));
+    json_object_set_new(depth, "edges", edges_json(&input->edges));
+    if (find_blur(input, &blur, why))
+        json_object_set_new(depth, "blur_from", json_string(why));
+    json_object_set_new(depth, "blur", report_number_json(blur));
+    return depth;
+}
+
+static json_t *make_json(const struct input *input, const struct findings *found)
+{
+    const struct refocus_photo *photo = input->photo;
+    const struct refocus_photo_info *info = photo->info;
+
     return json_pack(
         "{s:o, s:s, s:o, s:o, s:i, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, "
         "s:o, s:o, s:i, s:o, s:o}",
-        "file", report_text_json(file), "container", info->container, "picture",
+        "file", report_text_json(input->photo_name), "container", info->container, "picture",
         photo->image->plane[0] ? size_json(photo->image->width, photo->image->height) : json_null(),
         "stored",
         info->stored_width > 0 ? size_json(info->stored_width, info->stored_height) : json_null(),
@@ -276,21 +302,24 @@ static json_t *make_json(const char *file, const struct refocus_photo *photo,
         "f_number", positive(info->f_number), "simulated_f_number",
         positive(info->simulated_f_number), "own_blur", positive(info->own_blur), "focus_point",
         has_focus_point(info) ? json_pack("[f, f]", info->focus_x, info->focus_y) : json_null(),
-        "depth", depth, "matte",
+        "depth", depth_json(input), "matte",
         photo->matte->samples ? size_json(photo->matte->width, photo->matte->height) : json_null(),
-        "evidence", evidence_json(info, found), "views", (int)info->views, "subject_distance",
+        "evidence", evidence_json(input, found), "views", (int)info->views, "subject_distance",
         report_metres_json(info->subject_distance), "depth_of_field",
         depth_of_field_json(&found->field));
 }
 
-static int read_any(struct refocus_photo **photo, const char *file)
+static int read_any(struct input *input, const char *file)
 {
     struct refocus_reason reason = {""};
-    const int status = standard_photo_or_map(photo, file, &reason);
+    const int status = standard_photo_or_map(&input->photo, file, &reason);
 
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, file, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
+    input->photo_name = input->depth_name = file;
+    input->depth_from = input->photo;
+    input->report = refocus_depth_report_default();
     return EXIT_DONE;
 }
 
@@ -308,9 +337,8 @@ static int measure_photo(struct input *input, const struct lens_settings *lens,
         refocus_disparity16(input->disparity, map->width, map->height, (ptrdiff_t)map->width * 2);
     uint16_t *placed = NULL;
     int status =
-        edges_place(input->photo->image, &given, &placed, &found->edges, input->photo_name);
+        edges_place(input->photo->image, &given, &placed, &input->edges, input->photo_name);
 
-    input->report = found->depth;
     if (status == EXIT_DONE)
         status = depth_of_field_find(input, lens, placed, &found->field);
     free(placed);
@@ -322,15 +350,20 @@ static int measure_photo(struct input *input, const struct lens_settings *lens,
 static int measure_depth(struct input *input, const struct settings *settings,
                          struct findings *found)
 {
-    const struct refocus_repair_params params = refocus_repair_params_default();
-    const struct refocus_depth_map *map = input->photo->depth;
-    struct refocus_depth_report *report = &found->depth;
+    struct refocus_repair_params params = refocus_repair_params_default();
+    struct refocus_depth_map *map = input->photo->depth;
+    struct refocus_depth_report *report = &input->report;
     const uint64_t samples = (uint64_t)map->width * (uint64_t)map->height;
+    uint32_t codes;
     int status = input_settle_embedded(input, &settings->depth);
 
     if (status != EXIT_DONE)
         return status;
-    found->unit_is_doubtful = unit_is_doubtful(input->photo, false, found->unit_line);
+    input_find_codes(settings->depth.invalid, &codes);
+    map->flags |= codes;
+    params.speckle = (int32_t)settings->depth.speckle;
+    found->unit_is_doubtful =
+        !settings->depth.unit && unit_is_doubtful(input->photo, false, found->unit_line);
     input->disparity = samples <= SIZE_MAX / 2 ? malloc((size_t)samples * 2) : NULL;
     status = input->disparity ? refocus_depth_repair(map, &params, input->disparity,
                                                      (ptrdiff_t)map->width * 2, report)
@@ -345,11 +378,12 @@ static int measure_depth(struct input *input, const struct settings *settings,
     return EXIT_DONE;
 }
 
-static int measure(struct input *input, const struct settings *settings, struct findings *found)
+static int measure(struct input *input, const char *file, const struct settings *settings,
+                   struct findings *found)
 {
-    int status = EXIT_DONE;
+    int status = read_any(input, file);
 
-    if (input->photo->depth->samples)
+    if (status == EXIT_DONE && input->photo->depth->samples)
         status = measure_depth(input, settings, found);
     if (status == EXIT_DONE && !found->field.known && lens_is_given(&settings->lens))
         status = report_failure(EXIT_FAILED, input->photo_name,
@@ -358,10 +392,33 @@ static int measure(struct input *input, const struct settings *settings, struct 
     return status;
 }
 
+/* A photo and the map of --depth, read as they are rendered. */
+static int measure_pair(struct input *input, const char *file, const struct settings *settings,
+                        struct findings *found)
+{
+    struct depth_settings depth = settings->depth;
+    int status;
+
+    depth.full = true;
+    depth.deep = DEEP_ALL; /* nothing is rendered, so that no bits are dropped */
+    status = input_read(input, file, &depth);
+    return status == EXIT_DONE
+               ? depth_of_field_find(input, &settings->lens, input->disparity, &found->field)
+               : status;
+}
+
+static int check(const struct settings *settings)
+{
+    if (!settings->depth.file && settings->depth.orient != ORIENT_AUTO)
+        return report_failure(EXIT_WRONG, "--orient-depth",
+                              "it turns the map of --depth; give that too");
+    return input_check_lens(&settings->lens);
+}
+
 static int run(int argc, char **argv)
 {
     struct settings settings = {.depth = DEPTH_SETTINGS_NONE, .lens = LENS_SETTINGS_NONE};
-    struct findings found = {.depth = refocus_depth_report_default()};
+    struct findings found = {.unit_is_doubtful = false};
     struct input input = {.width = 0};
     const char *files[2];
     int status;
@@ -371,18 +428,14 @@ static int run(int argc, char **argv)
         return status;
     status = input_check_depth(&settings.depth);
     if (status == EXIT_DONE)
-        status = input_check_lens(&settings.lens);
+        status = check(&settings);
     if (status == EXIT_DONE)
-        status = read_any(&input.photo, files[0]);
-    if (status == EXIT_DONE) {
-        input.photo_name = input.depth_name = files[0];
-        input.depth_from = input.photo;
-        status = measure(&input, &settings, &found);
-    }
+        status =
+            (settings.depth.file ? measure_pair : measure)(&input, files[0], &settings, &found);
     if (status == EXIT_DONE && settings.json) {
-        status = report_print_json(make_json(files[0], input.photo, &found));
+        status = report_print_json(make_json(&input, &found));
     } else if (status == EXIT_DONE) {
-        print_text(files[0], input.photo, &found);
+        print_text(&input, &found);
         status = report_end_output();
     }
     input_free(&input);
