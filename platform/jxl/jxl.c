@@ -18,6 +18,7 @@ struct reader {
     int curve, primaries;    /* numbers of ITU-T H.273; 0: not said */
     struct refocus_blob box; /* the one that is being read */
     JxlBoxType type;
+    JXL_BOOL unpacks; /* libjxl unpacks boxes that are compressed by Brotli ("brob") */
     bool has_picture;
 };
 
@@ -162,7 +163,7 @@ static int begin_box(struct reader *reader)
     uint64_t size = 0;
 
     end_box(reader);
-    if (JxlDecoderGetBoxType(reader->decoder, reader->type, JXL_FALSE) != JXL_DEC_SUCCESS ||
+    if (JxlDecoderGetBoxType(reader->decoder, reader->type, reader->unpacks) != JXL_DEC_SUCCESS ||
         JxlDecoderGetBoxSizeRaw(reader->decoder, &size) != JXL_DEC_SUCCESS) {
         return fail_damaged(reader);
     }
@@ -184,6 +185,30 @@ static int begin_box(struct reader *reader)
                : fail_damaged(reader);
 }
 
+/* A compressed box is larger than its room: it gets twice as much, or is passed over. */
+static int grow_box(struct reader *reader)
+{
+    struct refocus_blob *const box = &reader->box;
+    const size_t filled = box->size - JxlDecoderReleaseBoxBuffer(reader->decoder);
+    uint8_t *grown;
+
+    if (box->size > SIZE_MAX / 2 ||
+        rf_check_metadata(reader->read, 2 * (uint64_t)box->size, "a block of it") != REFOCUS_OK) {
+        free(box->data);
+        *box = (struct refocus_blob){NULL, 0};
+        return REFOCUS_OK;
+    }
+    grown = realloc(box->data, 2 * box->size);
+    if (!grown) {
+        return rf_fail_memory(reader->read->reason);
+    }
+    *box = (struct refocus_blob){grown, 2 * box->size};
+    return JxlDecoderSetBoxBuffer(reader->decoder, grown + filled, box->size - filled) ==
+                   JXL_DEC_SUCCESS
+               ? REFOCUS_OK
+               : fail_damaged(reader);
+}
+
 static int step(struct reader *reader, bool *ended)
 {
     switch (JxlDecoderProcessInput(reader->decoder)) {
@@ -198,12 +223,8 @@ static int step(struct reader *reader, bool *ended)
         return REFOCUS_OK;
     case JXL_DEC_BOX:
         return begin_box(reader);
-    case JXL_DEC_BOX_NEED_MORE_OUTPUT: /* unpacked it is larger: it is passed over */
-        JxlDecoderReleaseBoxBuffer(reader->decoder);
-        free(reader->box.data);
-        reader->box = (struct refocus_blob){NULL, 0};
-        *ended = reader->has_picture;
-        return *ended ? REFOCUS_OK : fail_damaged(reader);
+    case JXL_DEC_BOX_NEED_MORE_OUTPUT:
+        return grow_box(reader);
     case JXL_DEC_SUCCESS:
         *ended = true;
         return REFOCUS_OK;
@@ -219,6 +240,7 @@ static int decode(struct reader *reader)
     bool ended = false;
     int status = REFOCUS_OK;
 
+    reader->unpacks = JxlDecoderSetDecompressBoxes(reader->decoder, JXL_TRUE) == JXL_DEC_SUCCESS;
     if (JxlDecoderSubscribeEvents(reader->decoder, JXL_DEC_BASIC_INFO | JXL_DEC_COLOR_ENCODING |
                                                        JXL_DEC_FULL_IMAGE | JXL_DEC_BOX) !=
             JXL_DEC_SUCCESS ||

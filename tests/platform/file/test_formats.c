@@ -259,9 +259,10 @@ static void webp(void **state)
 #endif
 
 #ifdef RF_HAVE_JXL
-/* Lossless, by a curve; three channels, or four with transparency. */
-static struct bytes make_jxl(const void *samples, size_t size, JxlDataType type, uint32_t bits,
-                             JxlTransferFunction curve)
+/* Lossless, by a curve; three channels, or four with transparency; with a box of EXIF, packed by
+ * Brotli, unless it is NULL. */
+static struct bytes make_jxl_with(const struct bytes *exif, const void *samples, size_t size,
+                                  JxlDataType type, uint32_t bits, JxlTransferFunction curve)
 {
     const size_t sample_bytes = type == JXL_TYPE_FLOAT ? 4 : type == JXL_TYPE_UINT16 ? 2 : 1;
     const uint32_t channels = (uint32_t)(size / sample_bytes / (W * H));
@@ -285,6 +286,11 @@ static struct bytes make_jxl(const void *samples, size_t size, JxlDataType type,
     JxlColorEncodingSetToSRGB(&colour, JXL_FALSE);
     colour.transfer_function = curve;
     JxlEncoderUseContainer(encoder, JXL_TRUE);
+    if (exif) {
+        JxlEncoderUseBoxes(encoder);
+        assert_int_equal(JxlEncoderAddBox(encoder, "Exif", exif->data, exif->size, JXL_TRUE),
+                         JXL_ENC_SUCCESS);
+    }
     assert_int_equal(JxlEncoderSetBasicInfo(encoder, &about), JXL_ENC_SUCCESS);
     assert_int_equal(JxlEncoderSetColorEncoding(encoder, &colour), JXL_ENC_SUCCESS);
     JxlEncoderSetFrameLossless(settings, JXL_TRUE);
@@ -294,6 +300,45 @@ static struct bytes make_jxl(const void *samples, size_t size, JxlDataType type,
     bytes_add(&file, out, sizeof out - left);
     JxlEncoderDestroy(encoder);
     return file;
+}
+
+static struct bytes make_jxl(const void *samples, size_t size, JxlDataType type, uint32_t bits,
+                             JxlTransferFunction curve)
+{
+    return make_jxl_with(NULL, samples, size, type, bits, curve);
+}
+
+/* EXIF that is packed is read, however much larger it is unpacked, and passed over where it is
+ * larger than the limit. */
+static void jxl_packed_exif(void **state)
+{
+    const uint8_t offset[4] = {0}, room[100000] = {0};
+    uint8_t codes[3 * W * H] = {0};
+    struct refocus_read_limits limits = refocus_read_limits_default();
+    struct bytes block = make_exif(true, 6), exif = {NULL, 0}, file;
+    struct refocus_photo *photo;
+    struct refocus_reason reason;
+
+    (void)state;
+    bytes_add(&exif, offset, sizeof offset);
+    bytes_add(&exif, block.data, block.size);
+    bytes_add(&exif, room, sizeof room);
+    file = make_jxl_with(&exif, codes, sizeof codes, JXL_TYPE_UINT8, 8, JXL_TRANSFER_FUNCTION_SRGB);
+    assert_true(file.size < exif.size / 10);
+    photo = read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
+    assert_string_equal(photo->info->camera, "Maker Model X");
+    assert_int_equal(photo->exif.size, exif.size - sizeof offset);
+    assert_memory_equal(photo->exif.data + photo->exif.size - sizeof room, room, sizeof room);
+    refocus_photo_free(&photo);
+    limits.max_metadata = sizeof room / 2;
+    assert_int_equal(refocus_photo_read_memory(&photo, file.data, file.size, &limits, &reason),
+                     REFOCUS_OK);
+    assert_string_equal(photo->info->camera, "");
+    assert_true(photo->image->plane[0] && photo->exif.size == 0);
+    refocus_photo_free(&photo);
+    bytes_free(&file);
+    bytes_free(&exif);
+    bytes_free(&block);
 }
 
 static void jxl_transparent(void **state)
@@ -528,6 +573,7 @@ int main(void)
 #ifdef RF_HAVE_JXL
         cmocka_unit_test(jxl),
         cmocka_unit_test(jxl_transparent),
+        cmocka_unit_test(jxl_packed_exif),
 #endif
 #ifdef RF_HAVE_HEIC
         cmocka_unit_test(heic),
