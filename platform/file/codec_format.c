@@ -213,6 +213,7 @@ int rf_codec_write(const struct rf_format *format, struct rf_codec_slot *slot,
     }
     if (options->keep) {
         status = take_xmp(&keep, options->keep, rows, &xmp, reason);
+        rf_keep_warn_kind(options->keep, RF_KEPT_XMP, reason);
     }
     if (status == REFOCUS_OK) {
         extras.xmp = (struct refocus_blob){(uint8_t *)(uintptr_t)xmp.data, xmp.size};

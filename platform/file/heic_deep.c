@@ -51,11 +51,7 @@ int rf_heic_settle_light(struct rf_read *read, const struct heif_image_handle *h
     }
     status = rf_raster_to_light(read, &read->image, curve, primaries);
     if (status == REFOCUS_OK) {
-        rf_note(read->info, "%s: the curve of %s%s, read as linear light", read->info->container,
-                curve == RF_CURVE_PQ    ? "PQ"
-                : curve == RF_CURVE_HLG ? "HLG"
-                                        : "linear light",
-                primaries == RF_PRIMARIES_BT2020 ? " with the primaries of BT.2020" : "");
+        rf_note_light(read, curve, primaries);
     }
     return status;
 }

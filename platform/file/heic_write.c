@@ -163,6 +163,9 @@ static int add_xmp(struct writer *writer)
         status = check(writer, heif_context_add_XMP_metadata(writer->context, writer->handle,
                                                              packet.data, (int)packet.size));
     }
+    if (status == REFOCUS_OK) {
+        rf_keep_warn_kind(photo, RF_KEPT_XMP, writer->reason);
+    }
     if (status == REFOCUS_OK && !writer->options->editable) {
         rf_keep_warn(photo, &writer->keep, writer->reason);
     }

@@ -158,6 +158,9 @@ static int put_kept(struct rf_store *store, struct rf_xmp_keep *keep,
     } else if (keep->count > 0) {
         put_packet(store, &keep->packet[0], reason);
     }
+    if (kept) {
+        rf_keep_warn_kind(options->keep, RF_KEPT_JPEG, reason);
+    }
     /* In an editable picture the gain map lies behind the original, if it could be read. */
     if (kept && !(editable && rf_photo_gain_map(options->keep)) &&
         !rf_behind_has_gain_map(behind)) {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "png_chunks.h"
+#include "png_colour.h"
 #include "read.h"
 #include "reason.h"
 #ifdef RF_HAVE_XMP
@@ -147,6 +148,24 @@ int rf_keep_xmp(const struct refocus_photo *photo, struct rf_xmp_keep *keep, int
              : kept.kind == RF_KEPT_PNG ? rf_xmp_keep_packet(keep, rf_png_xmp(bytes))
                                         : rf_xmp_keep_packet(keep, none);
     return status == REFOCUS_OK ? status : rf_fail_memory(reason);
+}
+
+void rf_keep_warn_kind(const struct refocus_photo *photo, enum rf_kept_kind written,
+                       struct refocus_reason *reason)
+{
+    const struct rf_kept *const kept = rf_kept_of(photo);
+    const struct rf_bytes bytes = {kept->bytes.data, kept->bytes.size};
+
+    if (kept->kind == RF_KEPT_PNG && written != RF_KEPT_PNG) {
+        const struct rf_png_colour colour = rf_png_colour_of(bytes, photo->icc.data != NULL);
+
+        if (colour.by) {
+            rf_leave_out(reason,
+                         "it is written without %s, by which the photo has other colours than "
+                         "sRGB; a PNG keeps them",
+                         colour.by);
+        }
+    }
 }
 
 void rf_keep_warn(const struct refocus_photo *photo, const struct rf_xmp_keep *keep,

@@ -22,6 +22,9 @@ void rf_kept_read(const struct refocus_photo *photo, struct rf_read *read,
  * for `cut`, `insert` and `insert_extended`; rf_xmp_keep_free() ends it, whatever is returned. */
 int rf_keep_xmp(const struct refocus_photo *photo, struct rf_xmp_keep *keep, int32_t width,
                 int32_t height, struct refocus_reason *reason);
+/* Say what else of the photo's file only its own kind holds and a file of that kind does not. */
+void rf_keep_warn_kind(const struct refocus_photo *photo, enum rf_kept_kind written,
+                       struct refocus_reason *reason);
 /* Say that the photo's gain map is left out, if it has one. */
 void rf_keep_warn(const struct refocus_photo *photo, const struct rf_xmp_keep *keep,
                   struct refocus_reason *reason);

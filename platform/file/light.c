@@ -110,3 +110,12 @@ int rf_raster_to_light(const struct rf_read *read, struct rf_raster *raster, int
     *raster = made;
     return REFOCUS_OK;
 }
+
+void rf_note_light(const struct rf_read *read, int curve, int primaries)
+{
+    rf_note(read->info, "%s: the curve of %s%s, read as linear light", read->info->container,
+            curve == RF_CURVE_PQ    ? "PQ"
+            : curve == RF_CURVE_HLG ? "HLG"
+                                    : "linear light",
+            primaries == RF_PRIMARIES_BT2020 ? " with the primaries of BT.2020" : "");
+}

@@ -21,5 +21,7 @@ bool rf_curve_is_hdr(int curve);
  * is 203 cd/m2 of PQ and 75 % of the signal of HLG (ITU-R BT.2408). */
 int rf_raster_to_light(const struct rf_read *read, struct rf_raster *raster, int curve,
                        int primaries);
+/* Note that the picture is light by such a curve. */
+void rf_note_light(const struct rf_read *read, int curve, int primaries);
 
 #endif

@@ -41,23 +41,27 @@ static bool is_one_of(const uint8_t *type, const char *types)
     return false;
 }
 
-/* Chunks that nobody here knows say by their fourth letter whether they hold for other pixels. */
-static bool holds(const struct rf_png_chunk *chunk)
+/* Colours of a picture that was read as light are sRGB when it is written.
+ * Chunks that nobody here knows say by their fourth letter whether they hold for other pixels. */
+static bool holds(const struct rf_png_chunk *chunk, bool is_light)
 {
+    if (is_light && is_one_of(chunk->type, "sRGBgAMAcHRMcICPmDCVmDCvcLLIcLLi")) {
+        return false;
+    }
     return is_one_of(chunk->type, "tEXtzTXtiTXttIMEpHYssRGBgAMAcHRMcICPmDCVcLLIoFFssCALpCAL") ||
            (chunk->type[0] & LOWER_CASE && chunk->type[3] & LOWER_CASE &&
             !is_one_of(chunk->type, "eXIfiCCPbKGDhISTtRNSsBITacTLfcTLfdAT"));
 }
 
 /* Bytes of the chunks that hold, copied to `out` unless that is NULL. */
-static size_t gather(struct rf_bytes file, uint8_t *out)
+static size_t gather(struct rf_bytes file, bool is_light, uint8_t *out)
 {
     struct rf_bytes rest = {file.data + SIGNATURE, file.size - SIGNATURE};
     struct rf_png_chunk chunk;
     size_t size = 0;
 
     while (rf_png_next_chunk(&rest, &chunk)) {
-        if (holds(&chunk)) {
+        if (holds(&chunk, is_light)) {
             const size_t n = chunk.content.size + AROUND;
 
             if (out) {
@@ -71,7 +75,8 @@ static size_t gather(struct rf_bytes file, uint8_t *out)
 
 int rf_png_keep(struct rf_read *read, struct rf_bytes file)
 {
-    const size_t size = gather(file, NULL);
+    const bool is_light = read->image.sample == REFOCUS_SAMPLE_F32;
+    const size_t size = gather(file, is_light, NULL);
     int status;
 
     if (!read->picture_always || size == 0) {
@@ -85,7 +90,7 @@ int rf_png_keep(struct rf_read *read, struct rf_bytes file)
     if (!read->kept.bytes.data) {
         return rf_fail_memory(read->reason);
     }
-    gather(file, read->kept.bytes.data);
+    gather(file, is_light, read->kept.bytes.data);
     read->kept.bytes.size = size;
     read->kept.kind = RF_KEPT_PNG;
     return REFOCUS_OK;

@@ -9,7 +9,9 @@
 
 #include "exif.h"
 #include "icc.h"
+#include "light.h"
 #include "png_chunks.h"
+#include "png_colour.h"
 #include "reason.h"
 
 struct reader {
@@ -246,6 +248,34 @@ int rf_png_decode(const struct rf_read *read, struct rf_bytes file, struct rf_ra
     return decode(read, file, raster, &alpha, NULL, NULL);
 }
 
+/* A photo of 16 bits by a curve of HDR becomes light, without a profile, which cICP goes before;
+ * other colours than sRGB are told. */
+static int settle_colour(struct rf_read *read, struct rf_bytes file, struct refocus_blob *icc)
+{
+    enum { SIGNATURE = 8 };
+    const struct rf_bytes chunks = {file.data + SIGNATURE, file.size - SIGNATURE};
+    const struct rf_png_colour colour = rf_png_colour_of(chunks, icc->data != NULL);
+    int status;
+
+    if (!colour.by || !read->picture_always) {
+        return REFOCUS_OK;
+    }
+    if (!rf_curve_is_hdr(colour.curve) || !colour.whole_range ||
+        read->image.sample != REFOCUS_SAMPLE_U16 || read->image.channels != 3) {
+        rf_note(read->info, "PNG: other colours than sRGB by %s, which results in PNG keep",
+                colour.by);
+        return REFOCUS_OK;
+    }
+    read->info->stored_bits = 16;
+    status = rf_raster_to_light(read, &read->image, colour.curve, colour.primaries);
+    if (status == REFOCUS_OK) {
+        rf_note_light(read, colour.curve, colour.primaries);
+        free(icc->data);
+        *icc = (struct refocus_blob){NULL, 0};
+    }
+    return status;
+}
+
 int rf_read_png(struct rf_read *read, struct rf_bytes file)
 {
     struct refocus_blob exif = {NULL, 0}, icc = {NULL, 0};
@@ -263,6 +293,9 @@ int rf_read_png(struct rf_read *read, struct rf_bytes file)
     }
     if (status == REFOCUS_OK) {
         status = rf_exif_take(read, (struct rf_bytes){exif.data, exif.size}, true);
+    }
+    if (status == REFOCUS_OK) {
+        status = settle_colour(read, file, &icc);
     }
     if (status == REFOCUS_OK) {
         status = rf_icc_take(read, &icc);

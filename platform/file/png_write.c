@@ -211,6 +211,7 @@ int rf_write_png(struct rf_store *store, const struct rf_rows *rows,
     writer.status = rf_keep_xmp(options->keep, &writer.keep, rows->width, rows->height, reason);
     if (writer.status == REFOCUS_OK) {
         rf_keep_warn(options->keep, &writer.keep, reason);
+        rf_keep_warn_kind(options->keep, RF_KEPT_PNG, reason);
         encode(&writer);
     }
     rf_xmp_keep_free(&writer.keep);

@@ -579,6 +579,33 @@ class Png(Keep):
         out = chunks(self.rendered('in.png', '--depth', 'depth.pgm', out='out.png'))
         self.assertEqual([part for part in out if part[0] not in (b'IHDR', b'IDAT', b'IEND')], stay)
 
+    def test_colours(self):
+        """A PNG keeps what a PNG says; light is written as sRGB; other formats leave it out."""
+        adobe = struct.pack('>8I', 31270, 32900, 64000, 33000, 21000, 71000, 15000, 6000)
+        linear, bt2020_pq = (b'gAMA', struct.pack('>I', 100000)), (b'cICP', b'\x09\x10\0\1')
+        says = ' by which the photo has other colours than sRGB; a PNG keeps them'
+        rows = [b''.join(struct.pack('>3H', 900 * x, 700 * x + 80 * y, 500) for x in range(W))
+                for y in range(H)]
+        for more, by in ([linear], 'gAMA and cHRM'), ([(b'cHRM', adobe)], 'gAMA and cHRM'), (
+                [bt2020_pq, linear], 'cICP'), ([linear, (b'sRGB', b'\0')], None):
+            self.png('in.png', more + [(b'tEXt', b'Title\0Leaves')])
+            out = chunks(self.rendered('in.png', '--depth', 'depth.pgm', out='out.png'))
+            self.assertEqual([part for part in out if part in more], more)
+            if HAS_JPEG:
+                call = ('render', 'in.png', '--depth', 'depth.pgm', '-o', 'out.jpg')
+                if by:
+                    self.warns('out.jpg: it is written without %s,%s' % (by, says), *call)
+                else:
+                    self.succeeds(*call)
+        pictures.png('deep.png', W, H, rows, depth=16)
+        whole = pictures.read_bytes('deep.png')
+        with open('deep.png', 'wb') as file:
+            file.write(whole[:33] + chunk(*bt2020_pq) + chunk(b'mDCV', bytes(24)) + whole[33:])
+        for name in ('out.png', 'out.jpg') if HAS_JPEG else ('out.png',):
+            self.rendered('deep.png', '--depth', 'depth.pgm', out=name)
+        out = chunks(self.rendered('deep.png', '--depth', 'depth.pgm', out='out.png'))
+        self.assertEqual([part[0] for part in out if part[0] in (b'cICP', b'mDCV')], [])
+
     @unittest.skipUnless(HAS_JPEG and HAS_XMP, 'needs TurboJPEG and expat')
     def test_xmp_goes_from_png_to_jpeg_and_back(self):
         self.png('in.png', [(b'iTXt', self.XMP + packet(TITLE))])

@@ -205,6 +205,115 @@ static void png_absurd(void **state)
     read_photo(png_of_size(8, 8), REFOCUS_ERR_FORMAT);
 }
 
+/* A PNG with a chunk behind its header. */
+static struct bytes with_chunk(struct bytes png, const char *type, const void *data, size_t size)
+{
+    enum { HEADER = 33 };
+    struct bytes whole = bytes_copy(png.data, HEADER);
+
+    png_chunk(&whole, type, data, size);
+    bytes_add(&whole, png.data + HEADER, png.size - HEADER);
+    bytes_free(&png);
+    return whole;
+}
+
+static bool tells(const struct refocus_photo *photo, const char *words)
+{
+    for (int i = 0; i < photo->info->evidence_count; i++) {
+        if (strstr(photo->info->evidence[i], words)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* White of PQ, 203 cd/m2, is the code .580689 (ITU-R BT.2408), and 1000 cd/m2 are .751827; white of
+ * HLG is .75; a linear code is light. */
+static void code_points_of_hdr_are_light(void **state)
+{
+    static const struct {
+        uint8_t curve;
+        uint16_t code;
+        double light;
+    } kinds[] = {{16, 38055, 1}, {16, 49271, 1000.0 / 203}, {18, 49151, 1}, {8, 16384, 0.25}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        const uint8_t code_points[4] = {9, kinds[i].curve, 0, 1};
+        uint8_t samples[6];
+        struct refocus_photo *photo;
+
+        for (int c = 0; c < 3; c++) {
+            samples[2 * c] = (uint8_t)(kinds[i].code >> 8);
+            samples[2 * c + 1] = (uint8_t)kinds[i].code;
+        }
+        photo =
+            read_photo(with_chunk(make_png_raw(1, 1, 2, 16, samples, NULL), "cICP", code_points, 4),
+                       REFOCUS_OK);
+        assert_int_equal(photo->info->stored_bits, 16);
+        assert_true(tells(photo, "read as linear light"));
+        assert_int_equal(photo->deep->format, REFOCUS_FORMAT_RGB_FLOAT);
+        for (int c = 0; c < 3; c++) {
+            float light;
+
+            memcpy(&light, photo->deep->plane[0] + 4 * c, 4);
+            assert_true(fabs((double)light / kinds[i].light - 1) < 0.001);
+        }
+        refocus_photo_free(&photo);
+    }
+}
+
+/* All other colours are codes as before, and told; a depth map has no colours. */
+static void other_colours_are_told(void **state)
+{
+    static const struct {
+        int type, bits;
+        const char *chunk;
+        const char *content;
+        size_t size;
+        bool told;
+    } kinds[] = {{2, 8, "cICP", "\x09\x10\0\1", 4, true},
+                 {0, 16, "cICP", "\x09\x10\0\1", 4, true},
+                 {2, 16, "cICP", "\x09\x10\0\0", 4, true},
+                 {2, 16, "cICP", "\x0c\x0d\0\1", 4, true},
+                 {2, 16, "cICP", "\1\x0d\0\1", 4, false},
+                 {2, 16, "cICP", "\x09\x10\0", 3, false},
+                 {2, 8, "gAMA", "\0\1\x86\xa0", 4, true},
+                 {2, 8, "gAMA", "\0\0\xb1\x8e", 4, false},
+                 {2, 8, "cHRM",
+                  "\0\0\x7a\x26\0\0\x80\x84\0\0\xfa\0\0\0\x80\xe8"
+                  "\0\0\x52\x08\0\1\x15\x58\0\0\x3a\x98\0\0\x17\x70",
+                  32, true},
+                 {2, 8, "cHRM",
+                  "\0\0\x7a\x26\0\0\x80\x84\0\0\xfa\0\0\0\x80\xe8"
+                  "\0\0\x75\x30\0\0\xea\x60\0\0\x3a\x98\0\0\x17\x70",
+                  32, false}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        const int type = kinds[i].type, bits = kinds[i].bits;
+        struct refocus_photo *photo =
+                                 read_photo(with_chunk(make_png(7, 5, type, bits), kinds[i].chunk,
+                                                       kinds[i].content, kinds[i].size),
+                                            REFOCUS_OK),
+                             *plain = read_photo(make_png(7, 5, type, bits), REFOCUS_OK);
+
+        assert_int_equal(tells(photo, "other colours than sRGB"), kinds[i].told);
+        assert_int_equal(photo->deep->format, plain->deep->format);
+        assert_memory_equal(photo->image->plane[0], plain->image->plane[0], 3 * 7 * 5);
+        refocus_photo_free(&plain);
+        refocus_photo_free(&photo);
+    }
+    {
+        struct refocus_photo *map = read_depth(
+            with_chunk(make_png(7, 5, 0, 16), "cICP", "\x09\x10\0\1", 4), NULL, REFOCUS_OK);
+
+        assert_int_equal(map->depth->sample, REFOCUS_SAMPLE_U16);
+        assert_int_equal(sample_at(map->depth, 3, 2), pattern(3, 2, 0, 65535));
+        refocus_photo_free(&map);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -214,6 +323,8 @@ int main(void)
         cmocka_unit_test(png_depth),
         cmocka_unit_test(transparent_samples_are_unknown),
         cmocka_unit_test(png_absurd),
+        cmocka_unit_test(code_points_of_hdr_are_light),
+        cmocka_unit_test(other_colours_are_told),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
