@@ -221,6 +221,25 @@ size_t rf_exif_directory(struct rf_bytes exif, uint32_t tag, uint32_t base, uint
                : 0;
 }
 
+bool rf_exif_has_maker_note(struct rf_bytes exif)
+{
+    struct copy copy = {.from = exif};
+    struct entry entry;
+    uint32_t directory, count;
+    bool found = false;
+
+    if (!find(&copy, TAG_SETTINGS, &entry) || entry.bytes != 4) {
+        return false;
+    }
+    directory = entry.value;
+    count = entries(&copy, directory);
+    for (uint32_t i = 0; i < count; i++) {
+        get(&copy, directory, i, &entry); /* a note of any size counts */
+        found |= entry.tag == TAG_MAKER_NOTE;
+    }
+    return found;
+}
+
 bool rf_exif_text(struct rf_bytes exif, uint32_t tag, char *to, size_t room)
 {
     struct copy copy = {.from = exif};

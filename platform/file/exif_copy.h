@@ -20,6 +20,9 @@ size_t rf_exif_of_tiff(struct rf_bytes tiff, uint8_t *to);
  * same byte order in which it begins at `base`. Returns its bytes; 0: there is none. */
 size_t rf_exif_directory(struct rf_bytes exif, uint32_t tag, uint32_t base, uint8_t *to);
 
+/* Whether it has a maker's note, which copies lack. */
+bool rf_exif_has_maker_note(struct rf_bytes exif);
+
 /* A text of the main directory, cut to the room; false: there is none. */
 bool rf_exif_text(struct rf_bytes exif, uint32_t tag, char *to, size_t room);
 

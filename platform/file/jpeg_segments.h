@@ -7,7 +7,13 @@
 
 /* Payload of a segment: 65535 less the 2 bytes of its length. */
 enum { RF_JPEG_SEGMENT_MAX = 65533 };
-enum { RF_JPEG_APP0 = 0xe0, RF_JPEG_APP1 = 0xe1, RF_JPEG_APP2 = 0xe2, RF_JPEG_APP14 = 0xee };
+enum {
+    RF_JPEG_APP0 = 0xe0,
+    RF_JPEG_APP1 = 0xe1,
+    RF_JPEG_APP2 = 0xe2,
+    RF_JPEG_APP13 = 0xed,
+    RF_JPEG_APP14 = 0xee
+};
 enum { RF_JPEG_APP15 = 0xef, RF_JPEG_COM = 0xfe, RF_JPEG_SOS = 0xda };
 
 /* The payload is the head and then the body, within RF_JPEG_SEGMENT_MAX in sum. */

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "jpeg_segments.h"
+#include "jpeg_walk.h"
 #include "png_chunks.h"
 #include "png_colour.h"
 #include "read.h"
@@ -150,12 +152,38 @@ int rf_keep_xmp(const struct refocus_photo *photo, struct rf_xmp_keep *keep, int
     return status == REFOCUS_OK ? status : rf_fail_memory(reason);
 }
 
+/* Name the segments of a JPEG that no other format takes. */
+static void warn_segments(struct rf_bytes jpeg, struct refocus_reason *reason)
+{
+    static const char photoshop[14] = "Photoshop 3.0"; /* whose resources hold IPTC */
+    bool iptc = false, comments = false;
+    struct rf_jpeg_walk walk;
+    struct rf_bytes rest;
+
+    if (!rf_jpeg_walk_begin(&walk, jpeg)) {
+        return;
+    }
+    while (rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT && walk.marker != RF_JPEG_SOS) {
+        comments |= walk.marker == RF_JPEG_COM;
+        iptc |= walk.marker == RF_JPEG_APP13 &&
+                rf_jpeg_after(walk.segment, photoshop, sizeof photoshop, &rest);
+    }
+    if (iptc || comments) {
+        rf_leave_out(reason, "it is written without the photo's %s%s%s; a JPEG keeps them",
+                     iptc ? "IPTC" : "", iptc && comments ? " and " : "",
+                     comments ? "comments" : "");
+    }
+}
+
 void rf_keep_warn_kind(const struct refocus_photo *photo, enum rf_kept_kind written,
                        struct refocus_reason *reason)
 {
     const struct rf_kept *const kept = rf_kept_of(photo);
     const struct rf_bytes bytes = {kept->bytes.data, kept->bytes.size};
 
+    if (kept->kind == RF_KEPT_JPEG && written != RF_KEPT_JPEG) {
+        warn_segments(bytes, reason);
+    }
     if (kept->kind == RF_KEPT_PNG && written != RF_KEPT_PNG) {
         const struct rf_png_colour colour = rf_png_colour_of(bytes, photo->icc.data != NULL);
 

@@ -220,6 +220,9 @@ int rf_tiff_write(struct refocus_blob *file, const struct rf_rows *rows,
     }
     if (big && extras->exif.size > 0) {
         rf_leave_out(reason, "EXIF is not written into a TIFF of more than 4 GiB");
+    } else if (exif &&
+               rf_exif_has_maker_note((struct rf_bytes){extras->exif.data, extras->exif.size})) {
+        rf_leave_out(reason, "the maker's note of EXIF is not written into a TIFF");
     }
     return REFOCUS_OK;
 }

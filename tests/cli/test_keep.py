@@ -606,6 +606,38 @@ class Png(Keep):
         out = chunks(self.rendered('deep.png', '--depth', 'depth.pgm', out='out.png'))
         self.assertEqual([part[0] for part in out if part[0] in (b'cICP', b'mDCV')], [])
 
+    @unittest.skipUnless(HAS_JPEG, 'needs TurboJPEG')
+    def test_what_a_jpeg_alone_holds_is_told(self):
+        """By all formats but JPEG and those that hold nothing; a TIFF has no maker's note either."""
+        self.succeeds('render', 'photo.ppm', '--depth', 'depth.pgm', '--blur', '0', '-o', 'x.jpg')
+        plain = pictures.read_bytes('x.jpg')
+        note = (b'Exif\0\0MM\0*\0\0\0\x08\0\1\x87\x69\0\4\0\0\0\1\0\0\0\x1a\0\0\0\0'
+                b'\0\1\x92\x7c\0\7\0\0\0\4note\0\0\0\0')
+        iptc, comment = (0xed, b'Photoshop 3.0\0' + b'8BIM\4\4\0\0\0\0\0\0'), (0xfe, b'by hand')
+        endings = [e for e, name in (('.png', ' PNG '), ('.tif', ' TIFF '), ('.heic', ' HEIC '))
+                   if name in VERSION]
+        for parts, words in ([iptc], 'IPTC'), ([comment], 'comments'), (
+                [iptc, comment], 'IPTC and comments'), ([(0xed, b'Other')], None):
+            with open('in.jpg', 'wb') as file:
+                file.write(plain[:2] + segment(0xe1, note) +
+                           b''.join(segment(*part) for part in parts) + plain[2:])
+            out = segments(self.rendered('in.jpg', '--depth', 'depth.pgm', out='out.jpg'))
+            self.assertEqual([part for part in out if part in parts], parts)
+            self.rendered('in.jpg', '--depth', 'depth.pgm', out='out.ppm')
+            for ending in endings:
+                told = []
+                if words:
+                    told.append("it is written without the photo's %s; a JPEG keeps them" % words)
+                if ending == '.tif':
+                    told.append("the maker's note of EXIF is not written into a TIFF")
+                call = ('render', 'in.jpg', '--depth', 'depth.pgm', '--no-editable', '-o',
+                        'out' + ending)
+                if told:
+                    self.warns('out%s: %s' % (ending, '; '.join(told)), *call)
+                else:
+                    self.succeeds(*call)
+                    self.assertIn(b'note', pictures.read_bytes('out' + ending))
+
     @unittest.skipUnless(HAS_JPEG and HAS_XMP, 'needs TurboJPEG and expat')
     def test_xmp_goes_from_png_to_jpeg_and_back(self):
         self.png('in.png', [(b'iTXt', self.XMP + packet(TITLE))])

@@ -46,7 +46,8 @@ static const struct option options[] = {
     OUTPUT_OPTION(
         struct settings, output,
         "the picture to write: " OUTPUT_PICTURES "; keeps what else the photo's file says: EXIF, "
-        "colour profile, XMP, IPTC, comments. A folder, or a name with {name}, {ext}, {n} (number) "
+        "colour profile and XMP, a JPEG also a JPEG's IPTC and comments, a PNG a PNG's chunks; "
+        "OpenEXR, PPM and PFM keep nothing. A folder, or a name with {name}, {ext}, {n} (number) "
         "or the name of an option such as {f-number}, for several photos; --depth and "
         "--matte take {name}, too. - is standard output"),
     KEEP_OPTIONS(struct settings, keep),

@@ -57,6 +57,7 @@ static uint32_t number(const uint8_t *from, int size, bool high_first)
 }
 
 static uint8_t copied[RF_EXIF_COPY_ROOM + 1];
+static bool had_note; /* in what was copied last */
 
 /* The copy, read at the end of a page. */
 static size_t copy(const struct block *from)
@@ -70,6 +71,8 @@ static size_t copy(const struct block *from)
     memcpy(place, from->bytes.data, from->bytes.size);
     copied[RF_EXIF_COPY_ROOM] = 0x77;
     size = rf_exif_of_tiff((struct rf_bytes){place, from->bytes.size}, copied);
+    had_note = rf_exif_has_maker_note((struct rf_bytes){place, from->bytes.size});
+    assert_false(size > 0 && rf_exif_has_maker_note((struct rf_bytes){copied, size}));
     assert_true(size <= RF_EXIF_COPY_ROOM && copied[RF_EXIF_COPY_ROOM] == 0x77);
     guarded_destroy(&guarded);
     return size;
@@ -185,6 +188,7 @@ static void settings(void **state)
         bytes_number(&from.bytes, 18, 4, high);
         bytes_number(&from.bytes, 10, 4, high);
         assert_true(copy(&from) > 0);
+        assert_int_equal(had_note, way == 0);
         directory = main_directory(high);
         assert_int_equal(number(copied + directory, 2, high), is_good ? 2 : 1);
         assert_int_equal(number(find(directory, TURN, high) + 8, 2, high), 3);
