@@ -2,6 +2,8 @@
 """`refocus render` from standard input and to standard output, and the size and the quality of what
 it writes. Usage: test_standard.py REFOCUS [unittest arguments]"""
 import os
+import resource
+import signal
 import subprocess
 import unittest
 
@@ -113,6 +115,31 @@ class Standard(Case):
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment)
         self.assertEqual((result.returncode, result.stdout), (1, b''))
         self.assertRegex(result.stderr.decode(), '^refocus: standard output: .*\n$')
+
+    def test_its_name_in_messages(self):
+        """The temporary file is nobody's business: neither where it cannot be written, nor in what is
+        told of the picture."""
+        old = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100, old[1]))
+        try:
+            for restore in False, True:  # an error of the write, and a signal
+                result = subprocess.run([REFOCUS, 'render', 'photo.ppm', *BLUR, '-o', '-'],
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                        restore_signals=restore)
+                self.assertEqual((result.returncode, result.stdout, result.stderr), (
+                    -signal.SIGXFSZ if restore else 1, b'',
+                    b'refocus: standard output: cannot write it: File too large\n'))
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, old)
+
+    def test_its_name_in_warnings(self):
+        jpeg = self.file('commented.jpg')
+        jpeg = jpeg[:2] + b'\xff\xfe\0\6Leaf' + jpeg[2:]
+        result = subprocess.run([REFOCUS, 'render', '-', *BLUR, '-o', '-', '--format', 'png'],
+                                input=jpeg, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.assertEqual((result.returncode, result.stderr), (
+            0, b"refocus: standard output: it is written without the photo's comments; a JPEG "
+            b'keeps them\n'))
 
     def test_nobody_else_reads_it(self):
         os.mkdir('temporary')

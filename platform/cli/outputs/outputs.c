@@ -202,6 +202,12 @@ struct refocus_write_options output_keeps(const struct refocus_photo *of)
 int output_write_image(const char *path, const struct refocus_image *image,
                        const struct refocus_write_options *options)
 {
+    return output_write_image_as(path, path, image, options);
+}
+
+int output_write_image_as(const char *path, const char *name, const struct refocus_image *image,
+                          const struct refocus_write_options *options)
+{
     struct refocus_reason reason = {""};
     int status;
 
@@ -210,8 +216,8 @@ int output_write_image(const char *path, const struct refocus_image *image,
                               : refocus_image_write(path, image, options, &reason);
     interrupt_hold(false);
     if (status == REFOCUS_ERR_CANCELLED)
-        return report_failure(EXIT_FAILED, path, "interrupted; nothing was written");
-    return written(status, path, &reason);
+        return report_failure(EXIT_FAILED, name, "interrupted; nothing was written");
+    return written(status, name, &reason);
 }
 
 int output_write_gray16(const char *path, const uint16_t *samples, int width, int height)

@@ -41,6 +41,9 @@ bool output_is_picture(const char *path);
 struct refocus_write_options output_keeps(const struct refocus_photo *of);
 int output_write_image(const char *path, const struct refocus_image *image,
                        const struct refocus_write_options *options);
+/* Write a temporary file, which messages call by another name. */
+int output_write_image_as(const char *path, const char *name, const struct refocus_image *image,
+                          const struct refocus_write_options *options);
 int output_write_file(const char *path, const void *bytes, size_t size);
 int output_write_gray16(const char *path, const uint16_t *samples, int width, int height);
 

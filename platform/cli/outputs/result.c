@@ -75,12 +75,15 @@ static void remove_file(void *path)
     unlink(path);
 }
 
+/* What messages call the temporary file behind it. */
+static const char standard_output[] = "standard output";
+
 static int read_whole(const char *path, struct refocus_blob *bytes)
 {
     struct refocus_reason reason = {""};
 
     if (refocus_file_read(path, UINT64_MAX, bytes, &reason) != REFOCUS_OK)
-        return report_failure(EXIT_FAILED, path, "%s", reason.text);
+        return report_failure(EXIT_FAILED, standard_output, "%s", reason.text);
     return EXIT_DONE;
 }
 
@@ -107,9 +110,9 @@ static int write_standard(const char *output, const struct refocus_image *pictur
     snprintf(beside, sizeof beside, "%s/refocus%s", folder && *folder ? folder : "/tmp",
              strrchr(output, '.'));
     if (make_temporary(beside, &path, &reason) != REFOCUS_OK)
-        return report_failure(EXIT_FAILED, "standard output", "%s", reason.text);
+        return report_failure(EXIT_FAILED, standard_output, "%s", reason.text);
     interrupt_clean_up(remove_file, path);
-    status = output_write_image(path, picture, options);
+    status = output_write_image_as(path, standard_output, picture, options);
     if (status == EXIT_DONE)
         status = read_whole(path, &bytes);
     unlink(path);
