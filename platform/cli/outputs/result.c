@@ -75,7 +75,7 @@ static void remove_file(void *path)
     unlink(path);
 }
 
-/* What messages call the temporary file behind it. */
+/* Messages call the temporary file behind it by this name. */
 static const char standard_output[] = "standard output";
 
 static int read_whole(const char *path, struct refocus_blob *bytes)
