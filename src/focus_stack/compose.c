@@ -198,32 +198,61 @@ void rf_stack_compose_row(const struct refocus_stack *s, uint8_t *out, const uin
     }
 }
 
-/* Apertures have fewer samples than pixels: a pixel gets the depth of the four samples around it,
- * weighted by how near they are and how alike in colour (Kopf et al. 2007). */
-static void upsample_row(const struct refocus_stack *s, uint16_t *depth, int y)
+/* The frame that shows a sample in focus. */
+static int frame_of(const struct refocus_stack *s, size_t at)
+{
+    return s->kind == REFOCUS_STACK_FOCUS ? (s->depth[at] / s->sub + 128) >> 8 : s->still;
+}
+
+/* How much a pixel has of the depth of each of the four samples around it, which are fewer than
+ * pixels: by how near they are and how alike in colour (Kopf et al. 2007). */
+static void weigh(const struct refocus_stack *s, int x, int y, size_t at[4], uint64_t weight[4])
 {
     enum { EDGE = 8 * 8, MOST = 1 << 12 }; /* squared codes that halve a weight; the greatest */
-    const uint8_t *pixel = s->frame[0].rgb + 3 * (ptrdiff_t)y * s->width;
-    const int py = (2 * y + 1) * 128 / s->reduced - 128; /* Q8 samples */
+    const int px = (2 * x + 1) * 128 / s->reduced - 128; /* Q8 samples */
+    const int py = (2 * y + 1) * 128 / s->reduced - 128;
+    uint8_t pixel[3];
+    int shown = -1;
 
-    for (int x = 0; x < s->width; x++, pixel += 3) {
-        const int px = (2 * x + 1) * 128 / s->reduced - 128;
-        uint64_t sum = 0, weights = 0;
+    for (int i = 0; i < 4; i++) {
+        const int u = i & 1 ? px & 255 : 256 - (px & 255);
+        const int v = i & 2 ? py & 255 : 256 - (py & 255);
+        const int column = rf_stack_clamp((px >> 8) + (i & 1), s->columns - 1);
+        const int row = rf_stack_clamp((py >> 8) + (i >> 1), s->rows - 1);
 
-        for (int i = 0; i < 4; i++) {
-            const int u = i & 1 ? px & 255 : 256 - (px & 255);
-            const int v = i & 2 ? py & 255 : 256 - (py & 255);
-            const int column = rf_stack_clamp((px >> 8) + (i & 1), s->columns - 1);
-            const int row = rf_stack_clamp((py >> 8) + (i >> 1), s->rows - 1);
-            const size_t at = (size_t)row * (size_t)s->columns + (size_t)column;
-            const int d = rf_stack_difference(pixel, s->guide + 3 * at);
-            const uint64_t weight =
-                (uint64_t)(u * v + 1) * (uint64_t)(MOST * EDGE / (EDGE + d * d));
+        at[i] = (size_t)row * (size_t)s->columns + (size_t)column;
 
-            sum += weight * s->depth[at];
-            weights += weight;
-        }
-        depth[x] = (uint16_t)(sum / weights);
+        const int k = frame_of(s, at[i]);
+
+        if (k != shown && !rf_stack_pixel(s, k, x, y, pixel))
+            rf_stack_pixel(s, s->still, x, y, pixel);
+        shown = k;
+
+        const int d = rf_stack_difference(pixel, s->guide + 3 * at[i]);
+
+        weight[i] = (uint64_t)(u * v + 1) * (uint64_t)(MOST * EDGE / (EDGE + d * d));
+    }
+}
+
+/* A pixel of a focus stack is on one surface: between two, other frames would be in focus. */
+static void upsample_row(const struct refocus_stack *s, uint16_t *depth, int y)
+{
+    const int near = s->kind == REFOCUS_STACK_FOCUS ? 256 * s->sub : UINT16_MAX;
+
+    for (int x = 0; x < s->width; x++) {
+        uint64_t weight[4], sum = 0, weights = 0;
+        size_t at[4];
+        int best = 0;
+
+        weigh(s, x, y, at, weight);
+        for (int i = 1; i < 4; i++)
+            best = weight[i] > weight[best] ? i : best;
+        for (int i = 0; i < 4; i++)
+            if (abs(s->depth[at[i]] - s->depth[at[best]]) <= near) {
+                sum += weight[i] * s->depth[at[i]];
+                weights += weight[i];
+            }
+        depth[x] = (uint16_t)(sum / weights / (uint64_t)s->sub);
     }
 }
 
@@ -238,6 +267,6 @@ void rf_stack_depth_row(const struct refocus_stack *s, uint16_t *depth, uint8_t 
         depth[x] = (uint16_t)(in[column] / s->sub);
         sure[x] = s->sure[(size_t)row * (size_t)s->columns + (size_t)column];
     }
-    if (s->kind != REFOCUS_STACK_FOCUS && s->reduced > 1)
+    if (s->reduced > 1)
         upsample_row(s, depth, y);
 }
