@@ -527,6 +527,20 @@ class DepthOfAStack(Case):
         for name in *names, 'x.pgm':
             os.remove(name)
 
+    def test_bits_of_frames_are_told_once(self):
+        names = [f'deep{k}.png' for k in range(FRAMES)]
+        for k, name in enumerate(names):
+            grey = pictures.read_pnm(f'{k}.ppm')[2]
+            pictures.png(name, W, H, [struct.pack('>%dH' % (3 * W), *(
+                257 * v for v in grey[3 * W * y:3 * W * (y + 1)])) for y in range(H)], depth=16)
+        command = ('depth', '--align', 'none', '-o', 'd.pgm', '--focal-stack')
+        self.warns(f'{names[1]}: it has 16 bits a channel; 8 are taken, dithered', *command, *names)
+        # Also where the photo itself has 8, and is read first.
+        self.warns(f'{names[0]}: it has 16 bits a channel; 8 are taken, dithered', *command, names[0],
+                   self.frames[1], names[2])
+        for name in (*names, 'd.pgm'):
+            os.remove(name)
+
     def test_what_is_no_stack(self):
         out = ('-o', 'x.pgm')
         self.fails(2, '0.ppm: one frame is no focus stack; give two at least',

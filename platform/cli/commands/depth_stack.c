@@ -83,10 +83,10 @@ static const char *name_of(const struct stack_frames *frames, int k)
     return frames->called ? frames->called : frames->file[k];
 }
 
-static int add(struct refocus_stack *stack, const struct stack_frames *frames, int k)
+static int add(struct refocus_stack *stack, struct stack_frames *frames, int k)
 {
     struct input other;
-    int status = input_read_photo(&other, frames->file[k], "a photo");
+    int status = stack_frames_photo(frames, k, &other);
 
     if (status == EXIT_DONE) {
         status = refocus_stack_add(stack, other.photo->image, frames->position[k]);
@@ -104,7 +104,7 @@ static int add(struct refocus_stack *stack, const struct stack_frames *frames, i
     return status;
 }
 
-static int add_all(struct refocus_stack *stack, const struct stack_frames *frames,
+static int add_all(struct refocus_stack *stack, struct stack_frames *frames,
                    const struct input *input)
 {
     for (int k = 0; k < frames->count; k++) {
@@ -347,7 +347,7 @@ int input_read_stack(struct input *input, const char *const *files,
         return status;
     frames.reference =
         isnan(how->reference) ? stack_frames_reference(&frames) : (int)how->reference - 1;
-    status = input_read_photo(input, files[frames.reference], "a photo");
+    status = stack_frames_photo(&frames, frames.reference, input);
     if (status != EXIT_DONE)
         return status;
     begin(input);

@@ -207,7 +207,18 @@ int stack_frames_reference(const struct stack_frames *frames)
     return wanted;
 }
 
-int stack_frames_settle(const struct stack_frames *frames, struct input *input)
+int stack_frames_photo(struct stack_frames *frames, int k, struct input *input)
+{
+    const int status = input_take_photo(input, frames->file[k], "a photo");
+
+    if (status == EXIT_DONE && !frames->bits_told) {
+        input_tell_bits(input->photo, frames->file[k]);
+        frames->bits_told = input->photo->info->stored_bits > 8;
+    }
+    return status;
+}
+
+int stack_frames_settle(struct stack_frames *frames, struct input *input)
 {
     const int k = input->stack.reference - 1;
     struct refocus_photo *const photo = input->photo;
@@ -216,7 +227,7 @@ int stack_frames_settle(const struct stack_frames *frames, struct input *input)
 
     if (k == frames->reference || standard_is(frames->file[k]))
         return EXIT_DONE;
-    status = input_read_photo(&other, frames->file[k], "a photo");
+    status = stack_frames_photo(frames, k, &other);
     for (int y = 0; status == EXIT_DONE && y < input->height; y++)
         memcpy(other.photo->image->plane[0] + y * other.photo->image->stride[0],
                photo->image->plane[0] + y * photo->image->stride[0], 3 * (size_t)input->width);

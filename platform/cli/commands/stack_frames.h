@@ -24,9 +24,11 @@ struct stack_frames {
     double position[REFOCUS_STACK_MOST_FRAMES]; /* see refocus_stack_add() */
     bool no_unit;                               /* positions are not dioptres */
     bool of_files;                              /* positions are distances of EXIF, or f-numbers */
+    bool bits_told; /* a frame has more than 8 bits, and a line says so */
 };
 
-/* Sets all but `reference` and `called` of frames whose files are counted. `text` is that of
+/* Sets all but `reference`, `called` and `bits_told` of frames whose files are counted. `text` is
+ * that of
  * --positions, or NULL. Returns an exit code and prints why. */
 int stack_frames_read(struct stack_frames *frames, const char *text, int in_focus);
 
@@ -34,8 +36,12 @@ int stack_frames_read(struct stack_frames *frames, const char *text, int in_focu
  * library counts, or that of the smallest aperture. */
 int stack_frames_reference(const struct stack_frames *frames);
 
+/* Read frame k, ended by input_free(), also after an error: what takes 8 bits of more is told once.
+ * Returns an exit code and prints why. */
+int stack_frames_photo(struct stack_frames *frames, int k, struct input *input);
+
 /* Take what the file says whose geometry the result has, where that is another one than the photo
  * was read from. Returns an exit code and prints why. */
-int stack_frames_settle(const struct stack_frames *frames, struct input *input);
+int stack_frames_settle(struct stack_frames *frames, struct input *input);
 
 #endif

@@ -133,7 +133,7 @@ void input_tell_bits(const struct refocus_photo *photo, const char *name)
                        strcmp(photo->info->container, "HEIC") == 0 ? "rounded" : "dithered");
 }
 
-static int read_photo(struct input *input, const char *photo, const char *instead)
+int input_take_photo(struct input *input, const char *photo, const char *instead)
 {
     struct refocus_reason reason = {""};
     int status;
@@ -154,7 +154,7 @@ static int read_photo(struct input *input, const char *photo, const char *instea
 
 int input_read_photo(struct input *input, const char *photo, const char *instead)
 {
-    const int status = read_photo(input, photo, instead);
+    const int status = input_take_photo(input, photo, instead);
 
     if (status == EXIT_DONE)
         input_tell_bits(input->photo, photo);
@@ -284,7 +284,7 @@ struct refocus_scene input_scene(const struct input *input, const struct refocus
 
 int input_read(struct input *input, const char *photo, const struct depth_settings *settings)
 {
-    int status = read_photo(input, photo, "the photo, and this file to --depth");
+    int status = input_take_photo(input, photo, "the photo, and this file to --depth");
 
     if (status != EXIT_DONE)
         return status;

@@ -122,6 +122,8 @@ int input_check_depth(const struct depth_settings *settings);
 /* Read a photo into a new input, which it names; ended by input_free(), also after an
  * error. What to give instead of a depth map ends the words of that error. */
 int input_read_photo(struct input *input, const char *photo, const char *instead);
+/* Likewise, without the line of input_tell_bits(). */
+int input_take_photo(struct input *input, const char *photo, const char *instead);
 
 /* Print one line where a photo has more than the 8 bits a channel that are rendered. */
 void input_tell_bits(const struct refocus_photo *photo, const char *name);
