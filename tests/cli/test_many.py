@@ -50,7 +50,7 @@ class Many(Case):
 
     def test_patterns(self):
         self.renders(3, 0, '-o', 'out/{n}-{name}-{blur}-{quality}-{{x}.png', '--jobs', '2')
-        self.assertEqual(self.written(), ['%d-%s-4-standard-{x}.png' % (i + 1, name)
+        self.assertEqual(self.written(), ['%d-%s-4-auto-{x}.png' % (i + 1, name)
                                           for i, name in enumerate('abc')])
         self.succeeds(*self.many('-o', 'out/{name}.{ext}', photos=['a.ppm']))
         self.assertIn('a.ppm', self.written())
