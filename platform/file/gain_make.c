@@ -150,6 +150,21 @@ static void set_values(struct rf_gain_values *values, double least, double great
     values->other_headroom = floor(fmax(fmax(greatest, headroom), 0) * UNITS) / UNITS;
 }
 
+/* Whether one range and one pair of offsets hold for all channels. */
+static bool is_of_one_range(const struct rf_gain_map *map)
+{
+    const struct rf_gain_values *const v = &map->values;
+    bool is = true;
+
+    for (int c = 1; c < 3; c++) {
+        is = is && v->base_offset[c] == v->base_offset[0] &&
+             v->other_offset[c] == v->other_offset[0] &&
+             (map->samples.channels > 1 ||
+              memcmp(map->gain[c], map->gain[0], sizeof map->gain[0]) == 0);
+    }
+    return is;
+}
+
 int rf_gain_copy(struct rf_gain_map *copy, const struct rf_gain_map *map)
 {
     const struct rf_gain_values *const old = &map->values;
@@ -158,6 +173,9 @@ int rf_gain_copy(struct rf_gain_map *copy, const struct rf_gain_map *map)
     float scale;
 
     memset(copy, 0, sizeof *copy);
+    if (!is_of_one_range(map)) {
+        return REFOCUS_ERR_UNSUPPORTED;
+    }
     copy->samples = map->samples;
     copy->samples.pixels = malloc(count);
     if (!copy->samples.pixels) {

@@ -12,8 +12,9 @@ bool rf_gain_can_make(const struct rf_rows *base, const struct refocus_image *li
  * `headroom` where that is more. REFOCUS_OK or REFOCUS_ERR_MEMORY. */
 int rf_gain_make(struct rf_gain_map *map, const struct rf_rows *base,
                  const struct refocus_image *light, double headroom);
-/* Copy a map into one range for all channels, which gain_write.h writes; its first channel's
- * offsets stand for all. As rf_gain_make() otherwise. */
+/* Copy a map into one range for all channels, which gain_write.h writes. REFOCUS_ERR_UNSUPPORTED,
+ * and nothing to free, where channels have other offsets, or gains of one sample. As rf_gain_make()
+ * otherwise. */
 int rf_gain_copy(struct rf_gain_map *copy, const struct rf_gain_map *map);
 
 #endif

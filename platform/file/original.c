@@ -165,9 +165,14 @@ static int put_gain_map(struct rf_store *store, const struct rf_gain_map *map,
 {
     struct rf_gain_map copy;
     struct refocus_blob jpeg = {NULL, 0};
-    int status;
+    int status = rf_gain_copy(&copy, map);
 
-    if (rf_gain_copy(&copy, map) != REFOCUS_OK) {
+    if (status == REFOCUS_ERR_UNSUPPORTED) {
+        rf_leave_out(reason, "its original is written without the photo's HDR gain map, whose "
+                             "channels differ");
+        return REFOCUS_OK;
+    }
+    if (status != REFOCUS_OK) {
         return rf_fail_memory(reason);
     }
     status = rf_gain_write(&jpeg, &copy, reason);

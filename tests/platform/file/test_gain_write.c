@@ -244,35 +244,104 @@ static void other_light(void **state)
 }
 
 #ifdef RF_HAVE_PNG
-/* The original that the result of a HEIC holds is a JPEG, with gain map and matte behind it. */
-static void original_of_heic(void **state)
-{
-    static const uint16_t disparity[4] = {0, 1000, 40000, 65535};
-    static const int32_t values[] = {0, 3000, -1000, 3000, 2000, 16, 32};
-    struct refocus_write_options options = refocus_write_options_default();
-    struct refocus_editable editable = refocus_editable_default();
-    struct refocus_depth_write depth = refocus_depth_write_default();
-    struct bytes parts[2] = {
-        make_jpeg(32, 16, true, false),
-        make_auxiliary("urn:com:apple:photo:2018:aux:portraiteffectsmatte", NULL)};
-    struct bytes iso = make_gain_iso(1, values);
-    struct refocus_photo *photo, *again;
+static const uint16_t disparity[4] = {0, 1000, 40000, 65535};
 
-    (void)state;
+/* A photo as a HEIC is read, with a gain map of one or three channels and a matte. */
+static struct refocus_photo *heic(bool grey, int channels, const int32_t *values)
+{
+    struct bytes parts[2] = {
+        make_jpeg(32, 16, grey, false),
+        make_auxiliary("urn:com:apple:photo:2018:aux:portraiteffectsmatte", NULL)};
+    struct bytes iso = make_gain_iso(channels, values);
+    struct refocus_photo *photo;
+
     jpeg_insert(&parts[0], 0xe2, "urn:iso:std:iso:ts:21496:-1", 28, iso.data, iso.size);
     bytes_free(&iso);
     photo = read_photo(make_mpf(make_jpeg(64, 32, false, false), parts, 2, true), REFOCUS_OK);
+    assert_non_null(rf_photo_gain_map(photo));
     ((struct rf_photo *)(void *)photo)->kept.kind = RF_KEPT_NOTHING;
     strcpy(((struct rf_photo *)(void *)photo)->info.container, "HEIC");
+    return photo;
+}
+
+/* The editable result of a photo, read again. */
+static struct refocus_photo *edited(const struct refocus_photo *photo,
+                                    struct refocus_reason *reason)
+{
+    struct refocus_write_options options = refocus_write_options_default();
+    struct refocus_editable editable = refocus_editable_default();
+    struct refocus_depth_write depth = refocus_depth_write_default();
+    struct refocus_photo *again;
+
     depth.disparity = disparity;
     depth.width = depth.height = 2;
     depth.stride = 4;
     editable.depth = &depth;
     options.keep = photo;
     options.editable = &editable;
-    assert_int_equal(refocus_image_write(path, photo->image, &options, NULL), REFOCUS_OK);
+    assert_int_equal(refocus_image_write(path, photo->image, &options, reason), REFOCUS_OK);
     assert_int_equal(refocus_photo_read(&again, path, NULL, NULL), REFOCUS_OK);
     assert_int_equal(again->info->original_used, 1);
+    return again;
+}
+
+/* Three channels of one pair of offsets have their gains again; where offsets differ, or the gains
+ * of one sample, the map is left out. */
+static void channels_that_differ(void **state)
+{
+    static const struct {
+        bool grey, is_kept;
+        int32_t values[17];
+    } kinds[] = {
+        {false,
+         true,
+         {0, 3000, -1000, 3000, 1000, 16, 32, 0, 2000, 2000, 16, 32, 0, 1000, 500, 16, 32}},
+        {false,
+         false,
+         {0, 3000, 0, 3000, 1000, 16, 32, 0, 3000, 1000, 17, 32, 0, 3000, 1000, 16, 32}},
+        {false,
+         false,
+         {0, 3000, 0, 3000, 1000, 16, 32, 0, 3000, 1000, 16, 32, 0, 3000, 1000, 16, 31}},
+        {true,
+         false,
+         {0, 3000, 0, 3000, 1000, 16, 32, 0, 3000, 1000, 16, 32, 0, 3000, 900, 16, 32}},
+        {true,
+         true,
+         {0, 3000, 0, 3000, 1000, 16, 32, 0, 3000, 1000, 16, 32, 0, 3000, 1000, 16, 32}}};
+
+    (void)state;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        struct refocus_reason reason;
+        struct refocus_photo *photo = heic(kinds[i].grey, 3, kinds[i].values);
+        struct refocus_photo *again = edited(photo, &reason);
+        const struct rf_gain_map *const maps[2] = {rf_photo_gain_map(photo),
+                                                   rf_photo_gain_map(again)};
+        const int channels = kinds[i].grey ? 1 : 3;
+
+        assert_int_equal(maps[1] != NULL, kinds[i].is_kept);
+        assert_string_equal(reason.text, kinds[i].is_kept
+                                             ? ""
+                                             : "its original is written without the photo's HDR "
+                                               "gain map, whose channels differ");
+        for (int j = 0; maps[1] && j < channels * 32 * 16; j++) {
+            const float a = maps[0]->gain[j % channels][maps[0]->samples.pixels[j]];
+            const float b = maps[1]->gain[j % channels][maps[1]->samples.pixels[j]];
+
+            assert_true(fabsf(a - b) < 0.1f);
+        }
+        refocus_photo_free(&again);
+        refocus_photo_free(&photo);
+    }
+}
+
+/* The original that the result of a HEIC holds is a JPEG, with gain map and matte behind it. */
+static void original_of_heic(void **state)
+{
+    static const int32_t values[] = {0, 3000, -1000, 3000, 2000, 16, 32};
+    struct refocus_photo *photo = heic(true, 1, values);
+    struct refocus_photo *again = edited(photo, NULL);
+
+    (void)state;
     assert_non_null(photo->matte->samples);
     assert_non_null(again->matte->samples);
     for (int i = 0; i < 4; i++) { /* the depth lies as the picture does */
@@ -334,7 +403,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(refused),
 #ifdef RF_HAVE_PNG
-        cmocka_unit_test(original_of_heic),
+        cmocka_unit_test(original_of_heic), cmocka_unit_test(channels_that_differ),
 #endif
         cmocka_unit_test(either_metadata),  cmocka_unit_test(places),
         cmocka_unit_test(headroom),         cmocka_unit_test(other_light),
