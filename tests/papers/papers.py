@@ -83,7 +83,7 @@ LISTED = """\
   Outside of the volume each pixel reads both pyramids, and what lies before the focus is composited
   over the rest. In the paper it reads its own side's alone and the original picture shows where that
   does not cover, which shines through sharply (fence, K = 40: 20.5 dB so, 25.9 dB ours). Where
-  `foveated` still scores below `blur` at K = 40, tabletop by 0.06 dB, we do not know the cause.
+  `foveated` still scores below `blur` at K = 40, tabletop by 0.04 dB, we do not know the cause.
 - Kosloff: layers come from a renderer there; ours are cut from one picture, so the hidden
   background at an edge is not known, and is filled with the colours beside it: a layer below counts
   as whole wherever 5 % of it came by diffusion, and is divided by what came. Places are x, y and
