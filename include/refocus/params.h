@@ -313,6 +313,24 @@ struct refocus_render_params {
     uint32_t dither;  /**< enum refocus_dither; default ordered */
 };
 
+/**
+ * Rays of the sweep for a still, which has the time. Rays lie apart in proportion to the blur, and
+ * the blurred edge of a bright thing has as many steps as there are rays: the first of 64, in
+ * linear light and before black, is 34 of 255 codes. Thread-safe.
+ *
+ * @param max_blur_radius  pixels; anything
+ *
+ * @return 64 up to a blur of 20 pixels, as many as lie as close up to 40, and 256 beyond
+ */
+static inline int32_t refocus_still_rays(float max_blur_radius)
+{
+    const float rays = max_blur_radius * max_blur_radius * 64 / 400;
+
+    if (!(rays > 64))
+        return 64;
+    return rays < 256 ? (int32_t)rays + ((float)(int32_t)rays < rays) : 256;
+}
+
 /** Sweep, 64 rays, plain averages in linear light of what is in the photo, a disc, the whole
  *  picture. */
 static inline struct refocus_render_params refocus_render_params_default(float focus_disparity,

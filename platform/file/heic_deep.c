@@ -51,7 +51,7 @@ int rf_heic_settle_light(struct rf_read *read, const struct heif_image_handle *h
     }
     status = rf_raster_to_light(read, &read->image, curve, primaries);
     if (status == REFOCUS_OK) {
-        rf_note_light(read, curve, primaries);
+        rf_note_curve(read, curve, primaries);
     }
     return status;
 }

@@ -111,7 +111,7 @@ int rf_raster_to_light(const struct rf_read *read, struct rf_raster *raster, int
     return REFOCUS_OK;
 }
 
-void rf_note_light(const struct rf_read *read, int curve, int primaries)
+void rf_note_curve(const struct rf_read *read, int curve, int primaries)
 {
     rf_note(read->info, "%s: the curve of %s%s, read as linear light", read->info->container,
             curve == RF_CURVE_PQ    ? "PQ"

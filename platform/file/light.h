@@ -22,6 +22,6 @@ bool rf_curve_is_hdr(int curve);
 int rf_raster_to_light(const struct rf_read *read, struct rf_raster *raster, int curve,
                        int primaries);
 /* Note that the picture is light by such a curve. */
-void rf_note_light(const struct rf_read *read, int curve, int primaries);
+void rf_note_curve(const struct rf_read *read, int curve, int primaries);
 
 #endif

@@ -269,7 +269,7 @@ static int settle_colour(struct rf_read *read, struct rf_bytes file, struct refo
     read->info->stored_bits = 16;
     status = rf_raster_to_light(read, &read->image, colour.curve, colour.primaries);
     if (status == REFOCUS_OK) {
-        rf_note_light(read, colour.curve, colour.primaries);
+        rf_note_curve(read, colour.curve, colour.primaries);
         free(icc->data);
         *icc = (struct refocus_blob){NULL, 0};
     }

@@ -47,6 +47,7 @@ static GType quality_type(void)
         {0, "Preview: 32 rays a pixel", "preview"},
         {1, "Standard: 64 rays, thin structures", "standard"},
         {2, "Best: 128 rays, texture behind what is in front", "best"},
+        {RF_GEGL_STILL, "Auto: standard, with up to 256 rays where the blur is large", "auto"},
         {0, NULL, NULL}};
     static gsize type;
 
@@ -127,7 +128,7 @@ static const struct row rows[] = {
     {NUMBER, "fringe", AT(fringe), -0.5, 0.5, 0, 0, 0, PLAIN, NULL, "Fringe",
      "Longitudinal colour: by how much the blur of red and blue behind the focus, and of green "
      "before it, is smaller; below 0 the other way round"},
-    {CHOICE, "quality", AT(quality), 0, 0, 1, 0, 0, PLAIN, quality_type, "Quality",
+    {CHOICE, "quality", AT(quality), 0, 0, RF_GEGL_STILL, 0, 0, PLAIN, quality_type, "Quality",
      "Time against smoothness"},
     {CHOICE, "depth-unit", AT(unit), 0, 0, RF_GEGL_DISPARITY, 0, 0, PLAIN, unit_type, "Depth unit",
      "The meaning of the depth map: disparity (near is white), inverse (far is white), or m"},

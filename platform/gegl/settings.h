@@ -31,6 +31,8 @@ enum rf_gegl_light {
     RF_GEGL_SCENE,
 };
 
+enum { RF_GEGL_STILL = 3 }; /* quality: standard, with the rays of a still */
+
 struct rf_gegl_settings {
     double focus, focus_x, focus_y; /* a place counts before the disparity */
     double focus_width, focus_transition;

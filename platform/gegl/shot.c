@@ -15,6 +15,7 @@ static const struct {
     {32, 0, REFOCUS_INPAINT_SMOOTH},
     {64, 1, REFOCUS_INPAINT_SMOOTH},
     {128, 1, REFOCUS_INPAINT_TEXTURED},
+    [RF_GEGL_STILL] = {64, 1, REFOCUS_INPAINT_SMOOTH},
 };
 
 /* Disparities, and where samples had no value a byte for each that says how sure it is. */
@@ -128,7 +129,9 @@ static struct refocus_settings params_of(const struct rf_gegl_shot *shot)
     struct refocus_settings params =
         refocus_settings_default((float)settings->focus, (float)settings->blur);
 
-    params.render.rays = qualities[settings->quality].rays;
+    params.render.rays = settings->quality == RF_GEGL_STILL
+                             ? refocus_still_rays((float)settings->blur)
+                             : qualities[settings->quality].rays;
     params.render.inpaint = qualities[settings->quality].inpaint;
     params.thin.enabled = qualities[settings->quality].thin;
     params.focus.half_width = (float)settings->focus_width;

@@ -190,12 +190,16 @@ static void without_renderer(void)
 {
     const struct refocus_render_params params = RETURNS(refocus_render_params_default, 0.5f, 5);
     const struct refocus_settings settings = RETURNS(refocus_settings_default, 0.5f, 5);
+    static const float blurs[] = {NAN, -INFINITY, 0, 20, 30, 40, INFINITY};
+    static const int32_t rays[] = {64, 256, 64, 64, 144, 256, 256};
     const struct refocus_image photo = misuse_photo();
     const struct refocus_disparity map = misuse_map();
     struct refocus_renderer_info info = TAKES_NOTHING(refocus_renderer_info_default);
     uint16_t view[W * H];
 
     REFUSED(refocus_prepare, NULL, &photo, &map);
+    for (size_t i = 0; i < sizeof blurs / sizeof *blurs; i++)
+        assert_int_equal(RETURNS(refocus_still_rays, blurs[i]), rays[i]);
     TAKES_NOTHING(refocus_highlight_params_default);
     TAKES_NOTHING(refocus_thin_params_default);
     TAKES_NOTHING(refocus_look_params_default);

@@ -126,14 +126,12 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
 
 void engine_set_blur(struct engine *engine, const struct engine_settings *settings, double blur)
 {
-    enum { DENSE_TO = 20, MOST_RAYS = 256 };
     struct refocus_render_params *const params = &engine->params.render;
-    const double rays = qualities[QUALITY_AUTO].rays * blur * blur / (DENSE_TO * DENSE_TO);
 
     params->max_blur_radius = (float)blur;
     if (settings->quality == QUALITY_AUTO && isnan(settings->rays) &&
         params->method == REFOCUS_METHOD_SWEEP)
-        params->rays = (int32_t)fmin(fmax(ceil(rays), qualities[QUALITY_AUTO].rays), MOST_RAYS);
+        params->rays = refocus_still_rays(params->max_blur_radius);
 }
 
 static int interrupted(const struct engine *engine)
