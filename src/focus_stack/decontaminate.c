@@ -9,7 +9,7 @@
  * each spread over its circle of confusion. The photo in focus everywhere has their colours, so
  * B = (I - F) / (1 - A) is the background alone. Foreground that hides most of a pixel leaves too
  * little of it: there B is not taken. Clipped foreground has more light than the photo knows: such
- * a pixel is taken from the frame that is focused on the foreground.
+ * a pixel is taken from the frame that is focused on the foreground, the less the less is clipped.
  *
  * The blur radius is not known. Away from depth edges a frame is the photo blurred by
  *
@@ -30,17 +30,17 @@
 #include "colour/transfer.h"
 
 enum {
-    PART = 40,      /* the largest K is this part of the longer side */
-    RADII = 10,     /* the number of K that are tried, each the last by the root of 2 */
-    ACROSS = 48,    /* places along the longer side where they are */
-    TAPS = 10,      /* pixels of the aperture along a radius of K, at the most */
-    LEAST = 2 << 8, /* radii below this are no foreground's, Q8 pixels */
-    ONE = 1 << 16,  /* all of a pixel */
-    MOST = 3 << 14, /* coverage beyond which too little of the background is left */
-    FEW = 1 << 8,   /* coverage below which there is nothing to take out */
-    CLIPPED = 250,  /* codes from here on */
-    KEPT = 4,       /* a channel keeps 1 / KEPT of its light */
-    TILE = 8,       /* samples of a side */
+    PART = 40,            /* the largest K is this part of the longer side */
+    RADII = 10,           /* the number of K that are tried, each the last by the root of 2 */
+    ACROSS = 48,          /* places along the longer side where they are */
+    TAPS = 10,            /* pixels of the aperture along a radius of K, at the most */
+    LEAST = 2 << 8,       /* radii below this are no foreground's, Q8 pixels */
+    ONE = 1 << 16,        /* all of a pixel */
+    MOST = 3 << 14,       /* coverage beyond which too little of the background is left */
+    FEW = 1 << 8,         /* coverage below which there is nothing to take out */
+    HIGHLIGHT = ONE / 60, /* clipped coverage from which on none of it is taken out */
+    KEPT = 4,             /* a channel keeps 1 / KEPT of its light */
+    TILE = 8,             /* samples of a side */
     SIZE = 2 * TAPS + 1,
 };
 
@@ -104,7 +104,7 @@ static bool is_known(const struct refocus_stack *s, const struct rf_stack_photo 
 {
     for (int v = y - reach; v <= y + reach; v++)
         for (int u = x - reach; u <= x + reach; u++)
-            if (pixel(photo, s, u, v)[1] >= CLIPPED)
+            if (pixel(photo, s, u, v)[1] >= RF_STACK_WHITE)
                 return false;
     return true;
 }
@@ -257,41 +257,63 @@ struct spill {         /* light of what is nearer, over a pixel */
     uint32_t bright;   /* the coverage of that: single pixels of grain are no highlight */
 };
 
-/* Adds up what lies over a pixel that is seen at a focus; K is Q8 pixels. */
-static void spill_of(const struct refocus_stack *s, const struct rf_stack_photo *photo,
-                     const struct disc *disc, int most, int focus, int x, int y,
-                     struct spill *spill)
+struct lifting {
+    const struct refocus_stack *stack;
+    const struct rf_stack_photo *photo; /* written */
+    struct rf_stack_photo before;       /* pixels as they were */
+    const uint16_t *nearest;            /* disparity, of tiles */
+    struct disc disc;
+    struct rf_stack_clipped clipped;
+    int most; /* K, Q8 pixels */
+};
+
+/* The radius, in Q4 taps, of what is nearer by so much. */
+static int taps_of(const struct lifting *l, int nearer)
 {
+    return (int)((int64_t)l->most * nearer >> 20) / l->disc.apart;
+}
+
+/* K is known to a quarter: no disc of what is clipped is to remain. */
+static void add_clipped(const struct lifting *l, int disparity, uint32_t part, int focus, int i,
+                        int j, struct spill *spill)
+{
+    const uint32_t wide = share_of(&l->disc, taps_of(l, disparity - focus) * 5 / 4, i, j);
+
+    spill->bright += (uint32_t)((uint64_t)wide * part / RF_STACK_CLIPPED);
+    if (wide && disparity > spill->clipped)
+        spill->clipped = disparity;
+}
+
+/* Adds up what lies over a pixel that is seen at a focus. */
+static void spill_of(const struct lifting *l, int focus, int x, int y, struct spill *spill)
+{
+    const struct refocus_stack *s = l->stack;
+    const struct disc *disc = &l->disc;
+    const struct rf_stack_photo *photo = &l->before;
     /* Exact for columns below 2^16, as no sample is as wide as 2^8 pixels. */
     const uint64_t by = (1 << 24) / (uint32_t)s->reduced + 1;
-    const int least = focus + (int)(((int64_t)LEAST << 16) / most);
+    const int least = focus + (int)(((int64_t)LEAST << 16) / l->most);
 
     memset(spill, 0, sizeof *spill);
     for (int j = -disc->taps; j <= disc->taps; j++) {
         const int v = rf_stack_clamp(y + j * disc->apart, s->height - 1);
-        const uint16_t *row = s->moved + sample_at(s, 0, v);
+        const size_t row = sample_at(s, 0, v);
         const uint8_t *rgb = photo->rgb + v * photo->stride;
 
         for (int i = -disc->taps; i <= disc->taps; i++) {
             const int u = rf_stack_clamp(x + i * disc->apart, s->width - 1);
-            const int here = row[(uint64_t)u * by >> 24];
+            const size_t at = row + ((uint64_t)u * by >> 24);
+            const int here = s->moved[at];
 
+            if (l->clipped.disparity[at] > least)
+                add_clipped(l, l->clipped.disparity[at], l->clipped.share[at], focus, i, j, spill);
             if (here <= least)
                 continue;
 
-            /* Q4 taps. K is known to a quarter: no disc of what is clipped is to remain. */
-            const int radius = (int)((int64_t)most * (here - focus) >> 20) / disc->apart;
             const uint8_t *p = rgb + 3 * (ptrdiff_t)u;
-            const uint32_t share = share_of(disc, radius, i, j);
+            const uint32_t share = share_of(disc, taps_of(l, here - focus), i, j);
 
             spill->coverage += share;
-            if (p[0] >= CLIPPED || p[1] >= CLIPPED || p[2] >= CLIPPED) {
-                const uint32_t wide = share_of(disc, radius * 5 / 4, i, j);
-
-                spill->bright += wide;
-                if (wide && here > spill->clipped)
-                    spill->clipped = here;
-            }
             for (int c = 0; c < 3; c++)
                 spill->light[c] += share * (uint64_t)s->transfer->to_light[p[c]];
         }
@@ -347,14 +369,23 @@ static void look_past(const struct refocus_stack *s, int disparity, int x, int y
     rf_stack_pixel(s, best, x, y, p);
 }
 
-struct lifting {
-    const struct refocus_stack *stack;
-    const struct rf_stack_photo *photo; /* written */
-    struct rf_stack_photo before;       /* pixels as they were */
-    const uint16_t *nearest;            /* disparity, of tiles */
-    struct disc disc;
-    int most; /* K, Q8 pixels */
-};
+/* Takes out of a pixel what lies over it: the more of that is clipped, the more it becomes what the
+ * other frame shows. */
+static void clean(const struct lifting *l, int focus, int x, int y, uint8_t *p)
+{
+    uint8_t past[3] = {p[0], p[1], p[2]};
+    struct spill spill;
+    int share;
+
+    spill_of(l, focus, x, y, &spill);
+    share = rf_stack_clamp(256 * (int)spill.bright / HIGHLIGHT, 256);
+    if (share > 0)
+        look_past(l->stack, spill.clipped, x, y, past);
+    if (share < 256)
+        lift(l->stack, &spill, p);
+    for (int c = 0; c < 3; c++)
+        p[c] = (uint8_t)((p[c] * (256 - share) + past[c] * share + 128) >> 8);
+}
 
 static void lift_row(void *context, int y, int worker)
 {
@@ -371,15 +402,10 @@ static void lift_row(void *context, int y, int worker)
         const size_t at = sample_at(s, x, y);
         const int tile =
             (int)(at / (size_t)s->columns) / TILE * across + (int)(at % (size_t)s->columns) / TILE;
-        struct spill spill;
 
-        if ((int64_t)l->most * (l->nearest[tile] - focus) >> 16 < LEAST)
-            continue; /* nothing near is nearer */
-        spill_of(s, &l->before, &l->disc, l->most, focus, x, y, &spill);
-        if (spill.bright > ONE / 100)
-            look_past(s, spill.clipped, x, y, row + 3 * (ptrdiff_t)x);
-        else
-            lift(s, &spill, row + 3 * (ptrdiff_t)x);
+        /* Else nothing near is nearer. */
+        if ((int64_t)l->most * (l->nearest[tile] - focus) >> 16 >= LEAST)
+            clean(l, focus, x, y, row + 3 * (ptrdiff_t)x);
     }
 }
 
@@ -399,6 +425,7 @@ void rf_stack_decontaminate(struct refocus_stack *s, const struct rf_stack_photo
         memcpy(s->before + (size_t)y * line, photo->rgb + y * photo->stride, line);
     lifting.most = (int)(radius * 256);
     make_disc(&lifting.disc, radius * 5 / 4);
+    lifting.clipped = rf_stack_find_clipped(s, &lifting.before, lifting.disc.apart);
     lifting.nearest = nearest_of_tiles(s, lifting.disc.taps * lifting.disc.apart);
     rf_pool_run(s->pool, lift_row, &lifting, s->height);
 }

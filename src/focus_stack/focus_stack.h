@@ -26,6 +26,8 @@ enum {
     RF_STACK_MEASURED = 128, /* confidence of depth, of 255, from which on it counts as measured */
     RF_STACK_STRIDE = 13,    /* samples from one that is looked at to the next, in statistics */
     RF_STACK_NOISE = 1600,   /* squared sharpness of 20 codes: texture that noise hides */
+    RF_STACK_WHITE = 250,    /* codes from which on a pixel is clipped */
+    RF_STACK_CLIPPED = 1 << 15, /* all of the pixels that a tap stands for */
 };
 
 struct rf_transfer;
@@ -217,6 +219,15 @@ bool rf_stack_pixel(const struct refocus_stack *stack, int k, int x, int y, uint
 uint16_t rf_stack_disparity(const struct refocus_stack *stack, int depth);
 /* Takes the light of blurred foreground out of the background beside it. */
 void rf_stack_decontaminate(struct refocus_stack *stack, const struct rf_stack_photo *photo);
+/* How much is clipped, of RF_STACK_CLIPPED, of the pixels that a tap stands for at each sample, and
+ * the largest disparity of these (0: none is). */
+struct rf_stack_clipped {
+    uint16_t *share, *disparity;
+};
+/* Finds that for taps that are so many pixels apart, in the memory of the costs; `moved` is the
+ * disparity of the samples. */
+struct rf_stack_clipped rf_stack_find_clipped(struct refocus_stack *stack,
+                                              const struct rf_stack_photo *photo, int apart);
 /* Places in a frame of the places of a row of the reference: x + i dx, Q32 pixels. */
 struct rf_stack_line {
     int64_t x, y, dx, dy;
@@ -254,6 +265,11 @@ static inline uint32_t rf_stack_squared(uint16_t sharpness)
 static inline int rf_stack_clamp(int v, int most)
 {
     return v < 0 ? 0 : v > most ? most : v;
+}
+
+static inline bool rf_stack_is_clipped(const uint8_t *p)
+{
+    return p[0] >= RF_STACK_WHITE || p[1] >= RF_STACK_WHITE || p[2] >= RF_STACK_WHITE;
 }
 
 /* The largest difference of two samples of the guide in a channel. */
