@@ -179,10 +179,6 @@ int64_t rf_median(const int64_t *value, int n)
     return left[n / 2];
 }
 
-/* A longer shift has to gain so much more a pixel: there are more of them, so that one of them may
- * fit as well by chance, such as along the line within the rim of a glass. */
-static const double LENGTH_COSTS = 0.06;
-
 /* The shift that one block wants. */
 struct wish {
     struct rf_shift shift;
@@ -204,7 +200,7 @@ static struct wish ask_block(const struct rf_blocks *b, ptrdiff_t block)
     middle = (double)rf_median(support, b->shifts) / count + 16;
     for (int i = 0; i < b->shifts; i++) {
         const double times = (double)support[i] / count / middle;
-        const double worth = times - LENGTH_COSTS * b->length[i];
+        const double worth = times - 0.02 * b->length[i];
 
         if (worth > most) {
             most = worth;

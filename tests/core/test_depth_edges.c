@@ -518,41 +518,6 @@ static void specks_of_map(void **state)
     end(&p);
 }
 
-/* A thing before the wall below eight of the discs, with a rim of 4 pixels. */
-enum { DISCS_END = 115, RIM_TOP = 145, RIM = 4 };
-static struct seen rimmed(double x, double y)
-{
-    if (y >= RIM_TOP)
-        return (struct seen){0.9, 0};
-    return y < DISCS_END ? discs(x, y) : (struct seen){0.2, 0};
-}
-
-static struct seen parted_discs_and_rim(double x, double y)
-{
-    return y < DISCS_END ? parted_discs(x, y) : rimmed(x, y);
-}
-
-/* In the photo the line below the rim is a little stronger than the one above, by 57 codes to 50:
- * the edge of the map, which is in place, stays there while discs return. */
-static void rim_stays(void **state)
-{
-    struct picture p = make(WIDTH, HEIGHT);
-    int off = 0;
-
-    (void)state;
-    draw(&p, rimmed, 1);
-    for (int i = 3 * RIM_TOP * WIDTH; i < 3 * HEIGHT * WIDTH; i++)
-        p.rgb[i] = (uint8_t)(p.rgb[i] + (i < 3 * (RIM_TOP + RIM) * WIDTH ? 50 : 107));
-    displace(&p, parted_discs_and_rim, 0, 0);
-    assert_true(share_within(&p, p.map, 0) < 0.965);
-    assert_true(place(&p).bent == 1);
-    for (int i = DISCS_END * WIDTH; i < HEIGHT * WIDTH; i++)
-        off += p.out[i] != p.exact[i];
-    assert_int_equal(off, 0);
-    assert_true(share_within(&p, p.out, 0) >= 0.995);
-    end(&p);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -573,7 +538,6 @@ int main(void)
         cmocka_unit_test(displaced_points_return),
         cmocka_unit_test(displaced_returns),
         cmocka_unit_test(bent_returns),
-        cmocka_unit_test(rim_stays),
         cmocka_unit_test(specks_of_map),
     };
 
