@@ -189,7 +189,7 @@ static void read_settings(struct rf_tiff *tiff, size_t directory, struct rf_exif
     }
     exif->is_portrait = strncmp(exif->camera, "Apple", 5) == 0 &&
                         (custom == APPLE_PORTRAIT || custom == APPLE_PORTRAIT_HDR);
-    if (strstr(lens, "front")) { /* it may be mirrored, which nothing says */
+    if (strstr(lens, "front")) { /* A front camera may mirror its photos. */
         exif->subject.held = 0;
     }
     rf_subject_read(tiff, &area, &width, &height, &exif->subject);

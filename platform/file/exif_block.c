@@ -156,7 +156,7 @@ static void erase_thumbnail(struct eraser *eraser, size_t thumbnail)
 void rf_tiff_drop_thumbnail(struct rf_tiff *tiff, size_t directory)
 {
     const int count = rf_tiff_count(tiff, directory);
-    const size_t link = directory + 2 + (size_t)count * 12; /* it follows the entries */
+    const size_t link = directory + 2 + (size_t)count * 12; /* The link follows the entries. */
 
     if (count == (int)rf_tiff_get16(tiff, directory) && tiff->size - link >= 4) {
         struct eraser eraser = {tiff, directory, link + 4, tiff->size};

@@ -22,7 +22,7 @@ struct reader {
     png_infop info;
     struct rf_raster raster;
     struct refocus_blob exif, icc;
-    bool alpha; /* it stays beside the samples */
+    bool alpha; /* Alpha is kept beside the samples. */
     int status; /* status for errors that are not libpng's own */
 };
 

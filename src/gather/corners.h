@@ -19,7 +19,7 @@
 
 /* The corners of a tile, rows first; those that hardly differ across or down are one. */
 struct rf_corners {
-    bool across, down; /* whether they differ */
+    bool across, down; /* Corners differ from column to column, from row to row. */
     int count;         /* 1, 2 or 4 */
     int blur[4];       /* as blurs are stored */
 };

@@ -127,8 +127,8 @@ class Renderer:
 
     The arguments are fields of `RendererParams`. One thread at a time may call into a renderer
     (others get `BusyError`), but `cancel()`, which any may call; Python's lock is released while
-    the library works, and Ctrl-C ends its work. A child by
-    fork() cannot use the renderers of its parent, unless they have `threads=1`. Ends with `close()` or at the end of `with`.
+    the library works, and Ctrl-C ends its work. A child by fork() cannot use the renderers of its
+    parent, unless they have `threads=1`. Ends with `close()` or at the end of `with`.
 
         with refocus.Renderer(720, 540, max_blur_radius=20) as renderer:
             renderer.prepare(photo, disparity)
@@ -239,7 +239,7 @@ QUALITIES = {'preview': (32, 0, Inpaint.SMOOTH), 'standard': (64, 1, Inpaint.SMO
 
 
 def _rays_of(quality: str, blur: float, method: int) -> int:
-    """Those of 'auto' lie as close at a blur of 40 pixels as at one of 20, at four times as many."""
+    """Rays of a quality; 'auto' has those of `refocus_still_rays()` in refocus/params.h."""
     rays = QUALITIES[quality][0]
     if quality != 'auto' or method != Method.SWEEP:
         return rays
@@ -256,7 +256,8 @@ def render(photo: Image | Buffer, depth: Buffer, *,
            blur: float | None = None, f_number: float | None = None,
            focal_length_mm: float | None = None, sensor_width_mm: float | None = None,
            near_m: float = 0.0, far_m: float = 0.0, quality: str = 'auto',
-           highlights: str | float | HighlightParams | dict[str, typing.Any] = 'auto', depth_edges: DepthEdges = DepthEdges.AUTO,
+           highlights: str | float | HighlightParams | dict[str, typing.Any] = 'auto',
+           depth_edges: DepthEdges = DepthEdges.AUTO,
            matte: Buffer | None = None, confidence: Buffer | None = None,
            aperture: Aperture | None = None, out: Image | Buffer | None = None,
            order: str = 'rgb', threads: int = 0, **fields: typing.Any) -> typing.Any:
@@ -264,14 +265,15 @@ def render(photo: Image | Buffer, depth: Buffer, *,
 
     `depth` are disparities, uint8 or uint16, bright near; `depth_to_disparity()` makes them of
     distances and floats, and with `Photo.disparity()` the `confidence` that counts where a map is
-    brought to the photo's size: 255 for samples as measured, 0 for guesses. One of `focus` (disparity, 0 farthest to 1), `focus_at` (a pixel, x and
-    y) and `focus_distance` (metres) says what is sharp; `blur` (pixels) or `f_number` by how much
-    the rest is not. Metres and f-numbers need `near_m` and `far_m`, the distances of disparities
-    1 and 0, and an f-number `focal_length_mm`: `sensor_width_mm` is what the width of the photo
-    shows, by default so much that its larger side shows 36 mm. (The command takes the focal length
-    of the file where none is given, `photo.info.focal_length_35mm`, as equal on the diagonal.)
-    `highlights` is 'auto', 'off' or a gain. Further arguments are those of `Settings`; structs and
-    dictionaries for `focus` and `highlights` are, too: then `focus_disparity` can say what is sharp.
+    brought to the photo's size: 255 for samples as measured, 0 for guesses. One of `focus`
+    (disparity, 0 farthest to 1), `focus_at` (a pixel, x and y) and `focus_distance` (metres) says
+    what is sharp; `blur` (pixels) or `f_number` by how much the rest is not. Metres and f-numbers
+    need `near_m` and `far_m`, the distances of disparities 1 and 0, and an f-number
+    `focal_length_mm`: `sensor_width_mm` is what the width of the photo shows, by default so much
+    that its larger side shows 36 mm. (The command takes the focal length of the file where none is
+    given, `photo.info.focal_length_35mm`, as equal on the diagonal.) `highlights` is 'auto', 'off'
+    or a gain. Further arguments are those of `Settings`; structs and dictionaries for `focus` and
+    `highlights` are, too: then `focus_disparity` can say what is sharp.
     """
     image = as_image(photo, order)
     if _is_struct(focus):
