@@ -39,7 +39,6 @@
 #include "support/pool.h"
 
 enum {
-    RF_EDGE_BAND = 16,   /* rows of a work item */
     RF_EDGE_STEP = 1966, /* 0.03: surfaces that are farther apart have an edge between them */
     RF_EDGE_SHIFT = 5,   /* pixels that the edges of a map may be off */
 };
@@ -115,11 +114,6 @@ struct rf_edges {
     struct rf_edge_blocks blocks;
     const struct rf_last_edges *last; /* NULL: there is none */
 };
-
-static inline int rf_edge_bands(const struct rf_edges *e)
-{
-    return (e->height + RF_EDGE_BAND - 1) / RF_EDGE_BAND;
-}
 
 static inline int rf_edge_blocks_across(const struct rf_edges *e)
 {

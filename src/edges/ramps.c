@@ -57,18 +57,14 @@ void rf_find_rough_blocks(struct rf_edges *e, const uint16_t *plane)
 
 /* ----- ramps ----- */
 
-static void find_steepest(void *context, int band, int worker)
+static void find_steepest(void *context, int y, int worker)
 {
     const struct rf_edges *e = context;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+    const uint16_t *here = e->map + y * e->stride;
+    const uint16_t *const row[3] = {here - e->stride, here, here + e->stride};
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        const uint16_t *here = e->map + y * e->stride;
-        const uint16_t *const row[3] = {here - e->stride, here, here + e->stride};
-
-        e->kernels->steepest(e->steepest + y * e->stride, row, e->width);
-    }
+    e->kernels->steepest(e->steepest + y * e->stride, row, e->width);
 }
 
 /* Ways up or down from all pixels of rough cells, a step at a time. */
@@ -198,7 +194,7 @@ void rf_find_steepest(struct rf_edges *e)
 {
     repeat_sides(e);
     rf_find_rough_blocks(e, e->map);
-    rf_pool_run(e->pool, find_steepest, e, rf_edge_bands(e));
+    rf_pool_run(e->pool, find_steepest, e, e->height);
 }
 
 /* Each way is gone twice, as the first time the ramp's largest step is not known yet. */
@@ -238,24 +234,22 @@ static void choose(const struct choice *choice, ptrdiff_t at, int n)
     }
 }
 
-static void choose_band(void *context, int band, int worker)
+static void choose_row(void *context, int y, int worker)
 {
     const struct choice *choice = context;
     const struct rf_edges *e = choice->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++)
-        for (int x = 0; x < e->width; x += RF_EDGE_BLOCK) {
-            const ptrdiff_t at = y * e->stride + x;
-            const int n = rf_smaller(RF_EDGE_BLOCK, e->width - x);
-            uint16_t *const out[3] = {e->near + at, e->far + at, e->label + at};
+    for (int x = 0; x < e->width; x += RF_EDGE_BLOCK) {
+        const ptrdiff_t at = y * e->stride + x;
+        const int n = rf_smaller(RF_EDGE_BLOCK, e->width - x);
+        uint16_t *const out[3] = {e->near + at, e->far + at, e->label + at};
 
-            if (rf_edge_is_rough(e, x, y))
-                choose(choice, at, n);
-            for (int i = 0; i < 3 && !rf_edge_is_rough(e, x, y); i++)
-                memcpy(out[i], e->map + at, (size_t)n * sizeof *e->map);
-        }
+        if (rf_edge_is_rough(e, x, y))
+            choose(choice, at, n);
+        for (int i = 0; i < 3 && !rf_edge_is_rough(e, x, y); i++)
+            memcpy(out[i], e->map + at, (size_t)n * sizeof *e->map);
+    }
 }
 
 void rf_find_ramps(struct rf_edges *e, struct rf_ramp_limits limits)
@@ -263,7 +257,7 @@ void rf_find_ramps(struct rf_edges *e, struct rf_ramp_limits limits)
     struct choice choice = {e, limits};
 
     follow_ramps(e, limits.steps);
-    rf_pool_run(e->pool, choose_band, &choice, rf_edge_bands(e));
+    rf_pool_run(e->pool, choose_row, &choice, e->height);
 }
 
 /* ----- softness ----- */

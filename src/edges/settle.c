@@ -21,46 +21,38 @@ struct settle {
     struct rf_vote_shape shape;
 };
 
-static void find_contrast(void *context, int band, int worker)
+static void find_contrast(void *context, int y, int worker)
 {
     const struct settle *settle = context;
     const struct rf_edges *e = settle->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+    const ptrdiff_t at = y * e->stride;
+    bool rough;
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        const ptrdiff_t at = y * e->stride;
-        bool rough;
-
-        memset(settle->contrast + at, 0, (size_t)e->width * sizeof *e->near);
-        for (int x = 0, n; x < e->width; x += n) {
-            n = rf_edge_run(e, x, y, &rough);
-            for (ptrdiff_t i = at + x; i < at + x + n && rough; i++)
-                if (rf_is_between(e, i, e->map[i]))
-                    settle->contrast[i] = (uint16_t)(e->near[i] - e->far[i]);
-        }
+    memset(settle->contrast + at, 0, (size_t)e->width * sizeof *e->near);
+    for (int x = 0, n; x < e->width; x += n) {
+        n = rf_edge_run(e, x, y, &rough);
+        for (ptrdiff_t i = at + x; i < at + x + n && rough; i++)
+            if (rf_is_between(e, i, e->map[i]))
+                settle->contrast[i] = (uint16_t)(e->near[i] - e->far[i]);
     }
 }
 
 /* Cores are the pixels beyond bands, from which the others take their disparity. */
-static void find_cores(void *context, int band, int worker)
+static void find_cores(void *context, int y, int worker)
 {
     const struct settle *settle = context;
     const struct rf_edges *e = settle->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+    uint16_t *core = settle->core + y * e->stride;
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        uint16_t *core = settle->core + y * e->stride;
+    for (int x = 0; x < e->width; x++) {
+        const ptrdiff_t at = y * e->stride + x;
 
-        for (int x = 0; x < e->width; x++) {
-            const ptrdiff_t at = y * e->stride + x;
-
-            core[x] = settle->contrast[at] ? 0 : (uint16_t)rf_larger(e->map[at], 1);
-        }
-        for (int x = e->width; x < RF_MOST_VOTE_COLUMNS; x++)
-            core[x] = 0;
+        core[x] = settle->contrast[at] ? 0 : (uint16_t)rf_larger(e->map[at], 1);
     }
+    for (int x = e->width; x < RF_MOST_VOTE_COLUMNS; x++)
+        core[x] = 0;
 }
 
 static struct rf_core_sums look(const struct settle *settle, int x, int y)
@@ -84,27 +76,25 @@ static struct rf_core_sums look(const struct settle *settle, int x, int y)
     return e->kernels->core_sums(&window);
 }
 
-static void settle_band(void *context, int band, int worker)
+static void settle_row(void *context, int y, int worker)
 {
     const struct settle *settle = context;
     struct rf_edges *e = settle->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++)
-        for (int x = 0; x < e->width; x++) {
-            const ptrdiff_t at = y * e->stride + x;
-            struct rf_core_sums sums;
+    for (int x = 0; x < e->width; x++) {
+        const ptrdiff_t at = y * e->stride + x;
+        struct rf_core_sums sums;
 
-            e->is_wide[at] = !settle->contrast[at];
-            if (e->is_wide[at])
-                continue;
-            sums = look(settle, x, y);
-            if (sums.count < FEWEST || sums.weight == 0)
-                continue;
-            e->is_wide[at] = true;
-            e->label[at] = (uint16_t)(sums.value / sums.weight);
-        }
+        e->is_wide[at] = !settle->contrast[at];
+        if (e->is_wide[at])
+            continue;
+        sums = look(settle, x, y);
+        if (sums.count < FEWEST || sums.weight == 0)
+            continue;
+        e->is_wide[at] = true;
+        e->label[at] = (uint16_t)(sums.value / sums.weight);
+    }
 }
 
 void rf_settle(struct rf_edges *e, double softness)
@@ -116,8 +106,8 @@ void rf_settle(struct rf_edges *e, double softness)
         .shape = rf_vote_shape(softness, 0.35),
     };
 
-    rf_pool_run(e->pool, find_contrast, &settle, rf_edge_bands(e));
+    rf_pool_run(e->pool, find_contrast, &settle, e->height);
     rf_widen(e, settle.contrast, e->spare, (int)(0.7 * softness + 1));
-    rf_pool_run(e->pool, find_cores, &settle, rf_edge_bands(e));
-    rf_pool_run(e->pool, settle_band, &settle, rf_edge_bands(e));
+    rf_pool_run(e->pool, find_cores, &settle, e->height);
+    rf_pool_run(e->pool, settle_row, &settle, e->height);
 }

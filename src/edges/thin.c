@@ -79,30 +79,26 @@ static void part_window(const struct thin *thin, int x, int y)
     thin->other[at] = (uint16_t)((uint64_t)sums.other / sums.all);
 }
 
-static void part_band(void *context, int band, int worker)
+static void part_row(void *context, int y, int worker)
 {
     const struct thin *thin = context;
     const struct rf_edges *e = thin->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++)
-        for (int x = 0; x < e->width; x++)
-            if (thin->is_looked_at[y * e->stride + x])
-                part_window(thin, x, y);
+    for (int x = 0; x < e->width; x++)
+        if (thin->is_looked_at[y * e->stride + x])
+            part_window(thin, x, y);
 }
 
 /* Marks what is looked at to explain pixels of thin surfaces. */
-static void mark_thin(void *context, int band, int worker)
+static void mark_thin(void *context, int y, int worker)
 {
     const struct thin *thin = context;
     const struct rf_edges *e = thin->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++)
-        for (int x = 0; x < e->width; x++)
-            thin->is_looked_at[y * e->stride + x] = !e->is_wide[y * e->stride + x];
+    for (int x = 0; x < e->width; x++)
+        thin->is_looked_at[y * e->stride + x] = !e->is_wide[y * e->stride + x];
 }
 
 /* Wide surfaces around a pixel, by how much they differ from it. */
@@ -159,21 +155,17 @@ static uint16_t explain(const struct thin *thin, int x, int y)
     return (uint16_t)(value < 0 ? 0 : value < WHOLE ? value : WHOLE - 1);
 }
 
-static void explain_band(void *context, int band, int worker)
+static void explain_row(void *context, int y, int worker)
 {
     const struct thin *thin = context;
     const struct rf_edges *e = thin->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+    const ptrdiff_t at = y * e->stride;
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        const ptrdiff_t at = y * e->stride;
-
-        memcpy(e->spare + at, e->label + at, (size_t)e->width * sizeof *e->label);
-        for (int x = 0; x < e->width; x++)
-            if (!e->is_wide[at + x])
-                e->spare[at + x] = explain(thin, x, y);
-    }
+    memcpy(e->spare + at, e->label + at, (size_t)e->width * sizeof *e->label);
+    for (int x = 0; x < e->width; x++)
+        if (!e->is_wide[at + x])
+            e->spare[at + x] = explain(thin, x, y);
 }
 
 void rf_restore_thin(struct rf_edges *e, double softness)
@@ -187,9 +179,9 @@ void rf_restore_thin(struct rf_edges *e, double softness)
     thin.columns = 2 * thin.reach < RF_VOTE_COLUMNS ? RF_VOTE_COLUMNS : RF_MOST_VOTE_COLUMNS;
     thin.near_by = rf_larger(thin.reach, 3);
     make_gauss(&thin, spread);
-    rf_pool_run(e->pool, mark_thin, &thin, rf_edge_bands(e));
+    rf_pool_run(e->pool, mark_thin, &thin, e->height);
     rf_widen(e, thin.is_looked_at, e->spare, thin.near_by);
-    rf_pool_run(e->pool, part_band, &thin, rf_edge_bands(e));
-    rf_pool_run(e->pool, explain_band, &thin, rf_edge_bands(e));
+    rf_pool_run(e->pool, part_row, &thin, e->height);
+    rf_pool_run(e->pool, explain_row, &thin, e->height);
     rf_copy_plane(e, e->label, e->spare);
 }

@@ -29,29 +29,25 @@ struct vote {
 };
 
 /* Columns beyond the right side of a narrow map do not vote. */
-static void find_voters(void *context, int band, int worker)
+static void find_voters(void *context, int y, int worker)
 {
     const struct vote *vote = context;
     const struct rf_edges *e = vote->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+    const ptrdiff_t at = y * e->stride;
+    uint16_t *voter = vote->voter + at;
+    bool rough;
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        const ptrdiff_t at = y * e->stride;
-        uint16_t *voter = vote->voter + at;
-        bool rough;
-
-        for (int x = 0; x < e->width; x++)
-            voter[x] = (uint16_t)(e->label[at + x] + (e->label[at + x] == 0));
-        for (int x = 0, n; x < e->width; x += n) {
-            n = rf_edge_run(e, x, y, &rough);
-            for (int u = x; u < x + n && rough; u++)
-                if (rf_is_between(e, at + u, e->map[at + u]))
-                    voter[u] = 0;
-        }
-        for (int x = e->width; x < RF_MOST_VOTE_COLUMNS; x++)
-            voter[x] = 0;
+    for (int x = 0; x < e->width; x++)
+        voter[x] = (uint16_t)(e->label[at + x] + (e->label[at + x] == 0));
+    for (int x = 0, n; x < e->width; x += n) {
+        n = rf_edge_run(e, x, y, &rough);
+        for (int u = x; u < x + n && rough; u++)
+            if (rf_is_between(e, at + u, e->map[at + u]))
+                voter[u] = 0;
     }
+    for (int x = e->width; x < RF_MOST_VOTE_COLUMNS; x++)
+        voter[x] = 0;
 }
 
 static struct rf_votes ask(const struct vote *vote, int x, int y)
@@ -108,48 +104,40 @@ static uint16_t decide(const struct vote *vote, int x, int y)
                            : mean_of(votes.far_value, votes.far, least, e->far[at]);
 }
 
-static void decide_band(void *context, int band, int worker)
+static void decide_row(void *context, int y, int worker)
 {
     const struct vote *vote = context;
     struct rf_edges *e = vote->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+    const ptrdiff_t at = y * e->stride;
+    bool rough;
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        const ptrdiff_t at = y * e->stride;
-        bool rough;
-
-        memcpy(e->spare + at, e->label + at, (size_t)e->width * sizeof *e->label);
-        for (int x = 0, n; x < e->width; x += n) {
-            n = rf_edge_run(e, x, y, &rough);
-            for (int u = x; u < x + n && rough; u++)
-                if (!vote->voter[at + u])
-                    e->spare[at + u] = decide(vote, u, y);
-        }
+    memcpy(e->spare + at, e->label + at, (size_t)e->width * sizeof *e->label);
+    for (int x = 0, n; x < e->width; x += n) {
+        n = rf_edge_run(e, x, y, &rough);
+        for (int u = x; u < x + n && rough; u++)
+            if (!vote->voter[at + u])
+                e->spare[at + u] = decide(vote, u, y);
     }
 }
 
 /* Single pixels that were given to the other side than all around them are put right. */
-static void clean_band(void *context, int band, int worker)
+static void clean_row(void *context, int y, int worker)
 {
     const struct vote *vote = context;
     struct rf_edges *e = vote->e;
-    const int end = rf_smaller((band + 1) * RF_EDGE_BAND, e->height);
+    const ptrdiff_t at = y * e->stride;
+    bool rough;
 
     (void)worker;
-    for (int y = band * RF_EDGE_BAND; y < end; y++) {
-        const ptrdiff_t at = y * e->stride;
-        bool rough;
-
-        memcpy(e->label + at, e->spare + at, (size_t)e->width * sizeof *e->label);
-        if (y == 0 || y == e->height - 1)
-            continue;
-        for (int x = 0, n; x < e->width; x += n) {
-            n = rf_edge_run(e, x, y, &rough);
-            for (int u = rf_larger(x, 1); u < rf_smaller(x + n, e->width - 1) && rough; u++)
-                if (!vote->voter[at + u])
-                    e->label[at + u] = rf_median_of_nine(e->spare + at + u, e->stride);
-        }
+    memcpy(e->label + at, e->spare + at, (size_t)e->width * sizeof *e->label);
+    if (y == 0 || y == e->height - 1)
+        return;
+    for (int x = 0, n; x < e->width; x += n) {
+        n = rf_edge_run(e, x, y, &rough);
+        for (int u = rf_larger(x, 1); u < rf_smaller(x + n, e->width - 1) && rough; u++)
+            if (!vote->voter[at + u])
+                e->label[at + u] = rf_median_of_nine(e->spare + at + u, e->stride);
     }
 }
 
@@ -157,7 +145,7 @@ void rf_vote(struct rf_edges *e, double softness)
 {
     struct vote vote = {.e = e, .voter = e->largest, .shape = rf_vote_shape(softness, 0.75)};
 
-    rf_pool_run(e->pool, find_voters, &vote, rf_edge_bands(e));
-    rf_pool_run(e->pool, decide_band, &vote, rf_edge_bands(e));
-    rf_pool_run(e->pool, clean_band, &vote, rf_edge_bands(e));
+    rf_pool_run(e->pool, find_voters, &vote, e->height);
+    rf_pool_run(e->pool, decide_row, &vote, e->height);
+    rf_pool_run(e->pool, clean_row, &vote, e->height);
 }
