@@ -32,11 +32,13 @@ def pfm_colour(path, width, height, value):
         file.write(b'PF\n%d %d\n-1.0\n' % (width, height) + b''.join(reversed(rows)))
 
 
-def png(path, width, height, rows, depth=8, colour=2):
-    def chunk(name, data):
-        return (struct.pack('>I', len(data)) + name + data +
-                struct.pack('>I', zlib.crc32(name + data)))
+def chunk(kind, content):
+    """One of a PNG."""
+    return struct.pack('>I', len(content)) + kind + content + \
+        struct.pack('>I', zlib.crc32(kind + content))
 
+
+def png(path, width, height, rows, depth=8, colour=2):
     with open(path, 'wb') as file:
         file.write(b'\x89PNG\r\n\x1a\n' +
                    chunk(b'IHDR', struct.pack('>IIBBBBB', width, height, depth, colour,

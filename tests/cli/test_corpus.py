@@ -12,8 +12,8 @@ import unittest
 import photo_files
 import pictures
 from case import Case
-from test_keep import (EXTENDED, GDEPTH, HAS_JPEG, HAS_PNG, HAS_XMP, OTHERS, STANDARD, TITLE,
-                       VERSION, exif, extended, mpf, packet, segment)
+from jpeg_files import (EXTENDED, GDEPTH, HAS_JPEG, HAS_PNG, HAS_XMP, OTHERS, STANDARD, TITLE,
+                        VERSION, exif, extended, mpf, packet, segment)
 
 W, H = 96, 64  # of the photo as it is stored
 BRIEF = 'REFOCUS_BRIEF' in os.environ

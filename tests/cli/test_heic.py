@@ -10,8 +10,8 @@ import unittest
 import heif_files
 import pictures
 from case import Case, H, W
-from test_keep import (GDEPTH, HAS_JPEG, HAS_PNG, HAS_XMP, OTHERS, STANDARD, TITLE, VERSION, exif,
-                       extended, packet, segment)
+from jpeg_files import (GDEPTH, HAS_JPEG, HAS_PNG, HAS_XMP, OTHERS, STANDARD, TITLE, VERSION, exif,
+                        extended, packet, segment)
 
 GAIN_BASE = 140, 120, 100
 PROFILE = b'\0' * 12 + b'mntrRGB ' + bytes(16) + b'acsp' + bytes(88)
