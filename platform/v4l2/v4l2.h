@@ -69,6 +69,15 @@ int rf_v4l2_dequeue(struct rf_v4l2 *device, struct rf_v4l2_done *done);
 /* Called before and after the processor reads exported buffers. */
 void rf_v4l2_sync(const struct rf_v4l2_buffer *buffer, bool begin);
 
+/* modes.c, where the state of the source begins with the device -------------------- */
+
+/* A function of struct rf_source_ops. */
+int rf_v4l2_get_mode(struct refocus_source *source, int index, struct refocus_source_mode *mode);
+/* Set the format and size that the configuration asks for, else those that there are. */
+int rf_v4l2_choose_format(struct refocus_source *source, struct refocus_reason *reason);
+/* Set frames a second, or 0: leave them. Returns what the device says, 0 when it does not. */
+double rf_v4l2_set_rate(const struct rf_v4l2 *device, double fps);
+
 /* lens.c: functions of struct rf_source_ops; the state of the source begins with the device. */
 int rf_v4l2_get_lens(struct refocus_source *source, struct refocus_source_lens *lens,
                      struct refocus_reason *reason);
