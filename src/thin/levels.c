@@ -50,10 +50,12 @@ static int splat_blur_of(const struct rf_thin_pass *t, int level)
     return t->splat_blur + t->splat_blur * level / 64;
 }
 
-/* Q7.8: how much a matted structure may be blurred, and how much its background must. */
+/* Q7.8: how much a matted structure may be blurred, and how much its background must. All levels
+ * are below half a pixel: beyond, what is near casts rays, which pass through the matted pixels
+ * beside it, as these have the blur of the far surface. */
 static int matte_blur(int level)
 {
-    return 112 + 9 * level;
+    return 64 + 4 * level;
 }
 
 static int far_blur(int level)

@@ -95,7 +95,7 @@ struct rf_thin_list {
  *
  *     splat_blur (1 + k / 64)
  *
- * before the focus on, and matted up to (112 + 9 k) / 256 pixels of their own blur, before what is
+ * before the focus on, and matted up to (64 + 4 k) / 256 pixels of their own blur, before what is
  * blurred by (384 + 32 k) / 256 pixels and more.
  */
 

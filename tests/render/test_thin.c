@@ -204,6 +204,43 @@ static void matted(void **state)
     picture_free(&share);
 }
 
+/* A stem a little out of focus is as dense with its rims matted as without: rays of what is inside
+ * do not pass through the matted pixels beside it. */
+static void dense(void **state)
+{
+    static uint8_t matted[MOST], rays[MOST];
+    struct picture p = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){235, 235, 235}, FAR), share;
+    struct setting s = plain;
+    int worst = 0;
+
+    (void)state;
+    share = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){0, 0, 0}, FAR);
+    picture_line(&p, 60, 0, 0.7, 1, 7, 70);
+    picture_line(&share, 60, 0, 0.7, 1, 7, 255);
+    for (int step = -10; step <= 10; step++) {
+        s.focus = NEAR / 65535.0f + (float)step / 10 / K;
+        s.thin = 1;
+        render_fresh(&p, true, &s, matted);
+        s.thin = 0;
+        render_fresh(&p, true, &s, rays);
+        for (int i = 2 * WIDTH + 2; i < WIDTH * (HEIGHT - 2) - 2; i++) {
+            bool inside = true;
+
+            for (int y = -1; y <= 1; y++)
+                for (int x = -1; x <= 1; x++)
+                    inside &= share.rgb[3 * (i + y * WIDTH + x)] == 255;
+            for (int c = 0; c < 3 && inside; c++)
+                worst = abs(matted[3 * i + c] - rays[3 * i + c]) > worst
+                            ? abs(matted[3 * i + c] - rays[3 * i + c])
+                            : worst;
+        }
+    }
+    printf("dense: %d codes from what rays make of it\n", worst);
+    assert_true(worst <= 8);
+    picture_free(&p);
+    picture_free(&share);
+}
+
 /* Where it has nothing to do, or may not, nothing changes. */
 static void elsewhere(void **state)
 {
@@ -395,9 +432,9 @@ static void memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wire),      cmocka_unit_test(matted),          cmocka_unit_test(strands),
-        cmocka_unit_test(elsewhere), cmocka_unit_test(same_everywhere), cmocka_unit_test(regions),
-        cmocka_unit_test(sequence),  cmocka_unit_test(memory),
+        cmocka_unit_test(wire),    cmocka_unit_test(matted),    cmocka_unit_test(strands),
+        cmocka_unit_test(dense),   cmocka_unit_test(elsewhere), cmocka_unit_test(same_everywhere),
+        cmocka_unit_test(regions), cmocka_unit_test(sequence),  cmocka_unit_test(memory),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
