@@ -25,13 +25,12 @@ static_assert(2 * RF_UNIT_RADIUS * 256 <= MOST_SPREAD && RF_UNIT_RADIUS << RF_MA
                   RF_FINE + 5 * RF_OCTAVE <= 127,
               "blurs with a unit have few bins, and slabs of any width");
 
-/* Limits of a tile, beyond which more is merged. */
+/* How slabs of noise are merged. */
 enum {
     NOISE_TIMES = 3, /* slabs of noise are so many times as wide as rf_bins has it: it overlaps by
                         2.5 standard deviations, and nearly all of it lies within 7 */
     NOISY_SLABS = 8, /* slabs of noise alone; then they grow, up to LARGEST_RATIO */
     LARGEST_RATIO = 8,
-    MOST_SLABS = 32, /* slabs; then all are merged as if they were noise */
 };
 
 /* How slabs are merged. */
@@ -40,7 +39,6 @@ struct merging {
     int ratio; /* the far side of one is at most 1 + ratio times as far out of focus as the near one
                 */
     int widest; /* blurs within the tile hit no wider slab modulo 2^16, with what it overlaps */
-    bool all;   /* whatever the noise */
 };
 
 static bool has(const uint64_t word[RF_BINS / 64], int bin)
@@ -112,7 +110,7 @@ static int end_of_noise(const struct rf_bins_in_reach *reach, struct rf_bin_scal
         until = scale.focus;
     for (int b = bin; b < until; b++) {
         gap = has(reach->all.word, b) ? 0 : gap + 1;
-        if (!merging->all && (has(reach->sure, b) || gap >= most_gap))
+        if (has(reach->sure, b) || gap >= most_gap)
             return rf_larger(b, end);
     }
     return rf_larger(until, end);
@@ -207,7 +205,9 @@ static int cover(const struct rf_bins_in_reach *reach, struct rf_bin_scale scale
     return noisy;
 }
 
-/* Covers the occupied bins by as few slabs as a tile may have. */
+/* Covers the occupied bins: where they are noise, by as few slabs as a tile may have. Others are
+ * never merged for their number, which the growing width of slabs bounds: tiles beside each other
+ * would differ in what occludes what. */
 static void cover_bounded(const struct rf_bins_in_reach *reach, struct rf_bin_scale scale,
                           struct rf_tile_plan *plan)
 {
@@ -224,9 +224,6 @@ static void cover_bounded(const struct rf_bins_in_reach *reach, struct rf_bin_sc
         merging.ratio *= 2;
         noisy = cover(reach, scale, &merging, plan);
     }
-    merging = (struct merging){INT16_MAX, 1, merging.widest, true};
-    for (; plan->slabs > MOST_SLABS && merging.ratio <= LARGEST_RATIO; merging.ratio *= 2)
-        cover(reach, scale, &merging, plan);
 }
 
 void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,

@@ -1,6 +1,6 @@
 /* test_slabs.c: slabs of a tile cover all blurs that reach it, and what is far out of focus shares
- * a slab with the same blurs in every tile. However many blurs there are, there are few slabs, and
- * fewer where they are noise. */
+ * a slab with the same blurs in every tile. The number of
+ * slabs is bounded, the more where they are noise. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,7 +12,7 @@
 
 #include "tiles/tiles.h"
 
-enum { BLURS = 12, SETS = 400 };
+enum { BLURS = 12, SETS = 400, MOST = 71 /* slabs of a tile with all blurs */ };
 
 struct set {
     int16_t blur[BLURS];
@@ -115,6 +115,38 @@ static void same_slabs(void **state)
     }
 }
 
+/* Blurs beyond 16 pixels share a slab with the same ones in a tile that has all of them: what is in
+ * one slab does not occlude each other, so that the border of the tile would show. */
+static void crowded_tiles(void **state)
+{
+    static const int K[] = {30, 60, 127};
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        const float largest = (float)K[i];
+        struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
+        struct rf_tile_plan all, two;
+
+        for (int blur = -128 * K[i]; blur <= 128 * K[i]; blur++)
+            add_blur(&bins, largest, blur);
+        plan_bins(&bins, largest, &all);
+        for (int k = 0; k + 1 < all.slabs; k++) {
+            const struct rf_slab slab = all.slab[k], next = all.slab[k + 1];
+            const struct set within = {
+                {(int16_t)(slab.low + slab.width / 4), (int16_t)(slab.low + slab.width / 4 * 3)},
+                2};
+            const struct set beside = {{slab.centre, next.centre}, 2};
+
+            if (abs(slab.centre) < 18 * 256 || abs(next.centre) < 18 * 256)
+                continue;
+            plan_of(&within, largest, &two);
+            assert_int_equal(two.slabs, 1);
+            plan_of(&beside, largest, &two);
+            assert_int_equal(two.slabs, 2);
+        }
+    }
+}
+
 /* The plan of a tile with all blurs from `least` to `most` and so much noise. Each blur is in a
  * slab, whose ends are not beyond 16 bits. */
 static int slabs_of_range(float largest, int least, int most, int16_t noise)
@@ -146,9 +178,9 @@ static void few_slabs(void **state)
     for (int K = 10; K <= 127; K += 9) {
         const float largest = (float)K;
 
-        assert_in_range(slabs_of_range(largest, -128 * K, 128 * K, 0), 1, 32);
-        assert_in_range(slabs_of_range(largest, -256 * K, 0, 0), 1, 32);
-        assert_in_range(slabs_of_range(largest, 0, 256 * K, 0), 1, 32);
+        assert_in_range(slabs_of_range(largest, -128 * K, 128 * K, 0), 1, MOST);
+        assert_in_range(slabs_of_range(largest, -256 * K, 0, 0), 1, MOST);
+        assert_in_range(slabs_of_range(largest, 0, 256 * K, 0), 1, MOST);
         assert_in_range(slabs_of_range(largest, -128 * K, 128 * K, (int16_t)(256 * K)), 1, 11);
         assert_in_range(slabs_of_range(largest, -256 * K, 0, (int16_t)(256 * K)), 1, 11);
         assert_in_range(slabs_of_range(largest, 0, 256 * K, (int16_t)(256 * K)), 1, 11);
@@ -174,7 +206,8 @@ static void noise_is_merged(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_slabs), cmocka_unit_test(few_slabs),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(same_slabs),
+                                       cmocka_unit_test(crowded_tiles), cmocka_unit_test(few_slabs),
                                        cmocka_unit_test(noise_is_merged)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -9,7 +9,7 @@
 enum {
     MOST_BLUR = 127 * 256,
     SIDE = 9, /* side of the ranges that rays may see */
-    MOST_SLABS = 70,
+    MOST_SLABS = 72,
 };
 
 static int blur_noise(uint32_t *seed, int kind)

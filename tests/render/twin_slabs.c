@@ -281,7 +281,6 @@ static int end_of(int bin, double width)
 /* How slabs are merged; see src/tiles/slabs.c. */
 struct merging {
     double noise, ratio;
-    bool all;
 };
 
 /* Where a slab ends that begins with that bin and would end with `end`, if what follows is noise:
@@ -298,7 +297,7 @@ static int end_of_noise(const struct bins *bins, double width, const struct merg
         until = FOCUS_BIN;
     for (int b = bin; b < until && b < BINS; b++) {
         gap = bins->has[b] ? 0 : gap + 1;
-        if (!merging->all && (bins->sure[b] || gap >= end - bin))
+        if (bins->sure[b] || gap >= end - bin)
             return b > end ? b : end;
     }
     return until > end ? until : end;
@@ -357,12 +356,12 @@ static struct twin_plan cover(const struct bins *bins, double width, const struc
     return plan;
 }
 
-/* Slabs of noise get wider until there are at most 8 of them, all slabs until there are 32. */
+/* Slabs of noise get wider until there are at most 8 of them. */
 static struct twin_plan bounded_plan(const struct bins *bins, double width)
 {
     /* in whole 1/256 pixels, as the end of a slab may lie on an edge of a bin */
     const double noise = bins->noisy ? floor(256 * bins->noise / bins->noisy) / 256 : 0;
-    struct merging merging = {3 * noise, 1, false};
+    struct merging merging = {3 * noise, 1};
     int noisy;
     struct twin_plan plan = cover(bins, width, &merging, &noisy);
 
@@ -370,9 +369,6 @@ static struct twin_plan bounded_plan(const struct bins *bins, double width)
         merging.ratio *= 2;
         plan = cover(bins, width, &merging, &noisy);
     }
-    for (merging = (struct merging){1e9, 1, true}; plan.slabs > 32 && merging.ratio <= 8;
-         merging.ratio *= 2)
-        plan = cover(bins, width, &merging, &noisy);
     return plan;
 }
 
