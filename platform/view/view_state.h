@@ -48,6 +48,8 @@ struct rf_session_setup {
     const struct refocus_disparity
         *matte;                     /* matte of any size, or NULL; the caller's, until the end */
     struct refocus_settings params; /* the settings that the state does not hold */
+    bool still_rays; /* pictures that are saved have, by the sweep, the rays that a still of their
+                        blur takes; those that are shown have the rays of params */
     /* Set other parameters that follow from a focus that was found: it changes params, which have
      * it, the method and the blur already; lengths in pixels are the photo's. From the session's
      * thread; NULL: nothing. */

@@ -65,6 +65,7 @@ static bool is_same(float a, float b)
     return memcmp(&a, &b, sizeof a) == 0;
 }
 
+/* Rays do not count: a picture that was saved may be shown, too. */
 static bool same_lens(const struct refocus_settings *a, const struct refocus_settings *b)
 {
     /* Numbers that come from the same places: equal when nothing has changed. */
@@ -187,27 +188,24 @@ static int render_small(struct rf_session *s, const struct rf_view_state *state)
 }
 
 /* REFOCUS_ERR_CANCELLED when something newer came. */
-static int render_full(struct rf_session *s, const struct rf_view_state *state)
+static int render_full(struct rf_session *s, const struct refocus_settings *params)
 {
     const struct refocus_image *const photo = s->setup.photo;
-    const struct refocus_settings params = lens_of(s, state, true);
     const struct refocus_image out = refocus_image_packed(
         REFOCUS_FORMAT_RGB8, s->full_out, photo->width, photo->height, 3 * (ptrdiff_t)photo->width);
     const struct refocus_disparity map = refocus_disparity16(
         s->setup.disparity, photo->width, photo->height, 2 * (ptrdiff_t)photo->width);
     int status = REFOCUS_OK;
 
-    if (s->have_full && same_lens(&params, &s->full_of))
-        return REFOCUS_OK;
     s->have_full = false;
     if (!s->full_prepared)
         status = prepare(s, s->full, photo, &map);
     if (status != REFOCUS_OK)
         return status;
     s->full_prepared = true;
-    status = refocus_render_settings(s->full, &params, &out);
+    status = refocus_render_settings(s->full, params, &out);
     s->have_full = status == REFOCUS_OK;
-    s->full_of = params;
+    s->full_of = *params;
     return status;
 }
 
@@ -236,6 +234,7 @@ static void end_full(struct rf_session *s)
 static bool answer(struct rf_session *s, struct rf_view_state *state, uint64_t request)
 {
     const struct refocus_settings params = lens_of(s, state, true);
+    const bool has_it = s->have_full && same_lens(&params, &s->full_of);
     int status = REFOCUS_OK;
 
     if (state->mode != RF_VIEW_RESULT) {
@@ -246,7 +245,7 @@ static bool answer(struct rf_session *s, struct rf_view_state *state, uint64_t r
         publish(s, state, request, true);
         return true;
     }
-    if (!s->have_full || !same_lens(&params, &s->full_of)) {
+    if (!has_it) {
         status = render_small(s, state);
         if (status == REFOCUS_OK)
             publish(s, state, request, false);
@@ -256,7 +255,8 @@ static bool answer(struct rf_session *s, struct rf_view_state *state, uint64_t r
     if (status == REFOCUS_OK) {
         if (!begin_full(s, request))
             return false;
-        status = render_full(s, state);
+        if (!has_it)
+            status = render_full(s, &params);
         end_full(s);
         if (status == REFOCUS_ERR_CANCELLED)
             return false;
@@ -271,7 +271,7 @@ static bool answer(struct rf_session *s, struct rf_view_state *state, uint64_t r
 static void save(struct rf_session *s, const struct rf_view_state *state, uint32_t what)
 {
     const struct refocus_image *const photo = s->setup.photo;
-    const struct refocus_settings params = lens_of(s, state, true);
+    struct refocus_settings params = lens_of(s, state, true);
     const struct refocus_image picture = refocus_image_packed(
         REFOCUS_FORMAT_RGB8, s->full_out, photo->width, photo->height, 3 * (ptrdiff_t)photo->width);
     const struct rf_view_result result = {.what = what,
@@ -282,9 +282,12 @@ static void save(struct rf_session *s, const struct rf_view_state *state, uint32
     char words[RF_VIEW_WORDS] = "";
     int status = REFOCUS_OK;
 
+    if (s->setup.still_rays && params.render.method == REFOCUS_METHOD_SWEEP)
+        params.render.rays = refocus_still_rays(params.render.max_blur_radius);
     /* Nothing cancels this one: what is saved is what was asked for. */
-    if (what & RF_SAVE_PICTURE)
-        status = render_full(s, state);
+    if ((what & RF_SAVE_PICTURE) && !(s->have_full && same_lens(&params, &s->full_of) &&
+                                      params.render.rays == s->full_of.render.rays))
+        status = render_full(s, &params);
     if (status == REFOCUS_OK)
         s->setup.save(s->setup.save_user, &result, words);
     else

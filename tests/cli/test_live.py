@@ -244,6 +244,16 @@ class Pictures(Live):
                         '0.5', *SMALL, '-o', 'render.ppm'], check=True)
         self.assertEqual(content('live-0.ppm'), content('render.ppm'))
         self.assertNotEqual(content('live-0.ppm'), content('sharp-0.ppm'))
+        for quality in 'auto', 'standard':
+            subprocess.run([REFOCUS, 'render', 'sharp-0.ppm', '--depth', 'depth.pgm', '--focus',
+                            '0.5', '--blur', '40', '--quality', quality, '-o', quality + '.ppm'],
+                           check=True)
+            for given in ['--quality', quality], *([[]] if quality == 'standard' else []):
+                self.report('--camera', 'file:sharp-0.ppm', '--depth', 'depth.pgm', '--focus',
+                            '0.5', '--blur', '40', *given, '--frames', '1', '--out',
+                            'live-%d.ppm', common=[])
+                self.assertEqual(content('live-0.ppm'), content(quality + '.ppm'), given)
+        self.assertNotEqual(content('auto.ppm'), content('standard.ppm'))
 
     def test_the_looks_of_render(self):
         photo = bytes((x * 37 + y * 91 + x * y * 13) % 199 + (56 if x % 9 == 4 and y % 9 == 4 else 0)

@@ -72,6 +72,14 @@ class Papers(Case):
         self.succeeds('render', *small, '-o', 'small.ppm')
         report = self.reports('compare', *small, '--reference', 'small.ppm', '--methods', 'sweep')
         self.assertEqual(report['methods'][1]['rmse'], 0)
+        wide = ('compare', *common[:3], '--blur', '40', '--focus', '0.2', '--reference', 'gt.ppm',
+                '--border', '0', '--methods')
+        plain, auto, rays = self.reports(*wide, 'sweep,sweep:quality=auto,sweep:rays=256')[
+            'methods'][1:]
+        self.assertEqual(auto['rmse'], rays['rmse'])
+        self.assertNotEqual(auto['rmse'], plain['rmse'])
+        report = self.reports(*wide, 'sweep', '--quality', 'auto')
+        self.assertEqual((report['methods'][1]['rmse'], report['rays']), (auto['rmse'], 256))
         self.fails(2, "--methods: 'swep' is no method; did you mean 'sweep'?", 'compare', *common,
                    '--reference', 'gt.ppm', '--methods', 'blur,swep')
         self.fails(2, '--blur: unknown option within --methods; it is the same for all of them, so '

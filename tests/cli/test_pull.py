@@ -44,6 +44,12 @@ class Pull(Case):
                                            (.25, 3))):
             self.same(frames[i], self.rendered('--focus', str(focus), '--blur', str(blur)))
 
+    def test_rays_go_with_the_blur(self):
+        self.succeeds(*self.pull('-o', 'f-%02d.ppm', '--from', '0.2', '--to', '0.2', '--blur-to',
+                                 '40', '--seconds', '0.2', '--fps', '10', '--ease', 'linear'))
+        for frame, blur in zip(self.frames(3), ('6', '23', '40')):
+            self.same(frame, self.rendered('--focus', '0.2', '--blur', blur))
+
     def test_there_and_back(self):
         self.succeeds(*self.pull('-o', 'f-%02d.ppm', '--seconds', '0.3', '--fps', '10', '--back'))
         frames = self.frames(6)

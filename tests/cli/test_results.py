@@ -155,6 +155,9 @@ class Results(Case):
                          (64, 40, 2, 5.0))
         self.assertGreater(report['megapixels_per_second'], 0)
         self.assertEqual(report['photo'], None)
+        for more, rays in ((), 64), (('--quality', 'auto'), 144):
+            self.assertEqual(self.reports('bench', '--size', '64x40', '--repeat', '2', '--blur',
+                                          '30', *more)['rays'], rays)
         report = self.reports('bench', 'photo.ppm', '--depth', 'depth.pgm', '--repeat', '1')
         self.assertEqual((report['photo'], report['width']), ('photo.ppm', W))
         self.assertRegex(self.succeeds('bench', '--size', '1x1', '--repeat', '1'),

@@ -58,6 +58,9 @@ class Sheet(Case):
         for i, (k, f) in enumerate((k, f) for k in (2, 6) for f in (0, 0.2, 1)):
             self.same(cells[i], self.rendered('--blur', str(k), '--focus', str(f)), i)
         self.assertEqual(set(captions[0]), {16, 240})
+        cells = self.made('--focuses', '0.2', '--blurs', '30,40')[1]  # of 144 and of 256 rays
+        for i, k in enumerate(('30', '40')):
+            self.same(cells[i], self.rendered('--blur', k, '--focus', '0.2'))
         report = self.made('--blur', '8')[0]
         self.assertEqual(len(report['cells']), 15)
         self.assertEqual(report['cells'][0], 'focus 0  blur 2')

@@ -187,7 +187,7 @@ def with_settings(refocus, folder, display):
     pictures.pgm(grey, 60, 45, lambda x, y: 255 * (x > 20 and y > 15))
     saved, settings = folder + '/s.png', folder + '/s-settings.json'
     for number, (map_, tap, *options) in enumerate((
-            (depth, None, '--bokeh', 'vintage', '--focus-at', '400,200'),
+            (depth, None, '--bokeh', 'vintage', '--focus-at', '400,200', '--blur', '40'),
             (small, None, '--focus-at', '400,200', '--tilt-angle', '30', '--grain', '1', '--seed',
              '3'),
             (depth, (300, 330), '--tilt-angle', '-25', '--star', '6', '--star-length', '40'),

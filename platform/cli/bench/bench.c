@@ -38,7 +38,7 @@ static const struct option options[] = {
     FOCUS_OPTIONS(struct settings, lens),
     {.kind = OPTION_HEADING, .help = "How"},
     METHOD_OPTION(struct settings, engine),
-    METHOD_OPTIONS(struct settings, engine),
+    METHOD_OPTIONS(struct settings, engine, "standard"),
     {.kind = OPTION_FLAG,
      .name = "--rays",
      .offset = offsetof(struct settings, statistics),

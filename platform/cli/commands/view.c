@@ -292,6 +292,7 @@ static int show(struct viewing *v, view_run_fn *run_window)
     setup.session.disparity = v->input.disparity;
     setup.session.matte = v->input.matte.samples ? &v->input.matte : NULL;
     setup.session.params = v->engine.params;
+    setup.session.still_rays = v->engine.still_rays;
     setup.session.aim = aim;
     setup.session.aim_user = v;
     setup.session.threads =
@@ -422,7 +423,7 @@ const struct command view_command = {
              "picture, j its settings, w the depth, h or ? shows the keys, q quit.\n"
              "A tap is a new --focus-at: a plane of --tilt-angle then turns about it, "
              "and one of --focus-plane ends. What 's' saves is what render makes of "
-             "the settings that 'j' saves.",
+             "the settings that 'j' saves; the window shows --quality auto by 64 rays.",
     .options = options,
     .files_least = 1,
     .files_most = 1,

@@ -60,7 +60,7 @@ static const struct option options[] = {
     FOCUS_OPTIONS(struct settings, lens),
     LENS_OPTIONS(struct settings, lens),
     {.kind = OPTION_HEADING, .help = "Rendering"},
-    METHOD_OPTIONS(struct settings, engine),
+    METHOD_OPTIONS(struct settings, engine, "standard"),
     {.kind = OPTION_HEADING, .help = "Running"},
     RUN_OPTIONS(struct settings, engine),
     REPEAT_OPTION(struct settings, engine),
@@ -181,6 +181,7 @@ static int render_all(struct engine *engine, struct comparison *c, const struct 
         *params = variant->engine.params;
         params->render.focus_disparity = lens.render.focus_disparity;
         params->render.max_blur_radius = lens.render.max_blur_radius;
+        engine->still_rays = variant->engine.still_rays;
         engine->field_disparity = variant->engine.field_disparity;
         if (status == EXIT_DONE)
             status = papers_place(&variant->settings.papers, params, photo->width, photo->height);

@@ -8,7 +8,7 @@
 enum { WORDS_MOST = 32 }; /* options for one method */
 
 static const struct option options[] = {
-    METHOD_OPTIONS(struct variant, settings),
+    METHOD_OPTIONS(struct variant, settings, "standard"),
     PAPER_OPTIONS(struct variant, settings.papers, settings.method),
     {.help = NULL},
 };

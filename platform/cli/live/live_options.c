@@ -198,7 +198,7 @@ const struct option live_options[] = {
     BOKEH_OPTIONS(struct live_settings, engine.bokeh, engine.method),
     {.kind = OPTION_HEADING, .help = "Rendering"},
     METHOD_OPTION(struct live_settings, engine),
-    METHOD_OPTIONS(struct live_settings, engine),
+    METHOD_OPTIONS(struct live_settings, engine, "standard"),
     {.kind = OPTION_INTEGER,
      .name = "--threads",
      .argument = "N",

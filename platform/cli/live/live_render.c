@@ -146,6 +146,7 @@ static int refocus(struct live *live, const struct live_picture *picture,
     begin = live_now_ns();
     params.render.focus_disparity = (float)live->focus_disparity;
     params.render.max_blur_radius = (float)live->blur;
+    engine_suit_rays(live->engine, &params);
     params.highlights.steady = STEADY_LIGHT;
     if (live_look_aim(live, &picture->image, &params) != EXIT_DONE)
         return REFOCUS_ERR_ARGUMENT;

@@ -54,7 +54,7 @@ int serve_lens_of(const struct serving *s, const struct shot_settings *settings,
     double blur = 0;
     int status = input_blur(&s->input, &settings->lens, &blur);
 
-    engine_set_blur(engine, &settings->engine, blur);
+    params->render.max_blur_radius = (float)blur;
     if (status == EXIT_DONE)
         status = papers_place(&settings->engine.papers, params, photo->width, photo->height);
     if (status == EXIT_DONE)

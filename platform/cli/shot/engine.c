@@ -17,8 +17,8 @@ static const struct {
     {"standard", "64 rays, thin structures splatted", 64, true, false},
     {"best", "128 rays, thin structures splatted, texture continued behind them", 128, true, true},
     [QUALITY_AUTO] = {"auto",
-                      "standard; in stills more rays where they would lie farther apart than at a "
-                      "blur of 20 pixels, up to 256",
+                      "standard, but more rays, up to 256, where they would lie farther apart than "
+                      "at a blur of 20 pixels",
                       64, true, false}};
 
 static const struct {
@@ -92,6 +92,7 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
     params->render.blend = (uint32_t)settings->blend;
     params->render.rays =
         isnan(settings->rays) ? qualities[settings->quality].rays : (int32_t)settings->rays;
+    engine->still_rays = settings->quality == QUALITY_AUTO && isnan(settings->rays);
     if (!isnan(settings->iterations))
         params->search.iterations = (int32_t)settings->iterations;
     if (!isnan(settings->sigma))
@@ -124,14 +125,10 @@ int engine_begin(struct engine *engine, const struct engine_settings *settings)
     return status;
 }
 
-void engine_set_blur(struct engine *engine, const struct engine_settings *settings, double blur)
+void engine_suit_rays(const struct engine *engine, struct refocus_settings *params)
 {
-    struct refocus_render_params *const params = &engine->params.render;
-
-    params->max_blur_radius = (float)blur;
-    if (settings->quality == QUALITY_AUTO && isnan(settings->rays) &&
-        params->method == REFOCUS_METHOD_SWEEP)
-        params->rays = refocus_still_rays(params->max_blur_radius);
+    if (engine->still_rays && params->render.method == REFOCUS_METHOD_SWEEP)
+        params->render.rays = refocus_still_rays(params->render.max_blur_radius);
 }
 
 static int interrupted(const struct engine *engine)
@@ -307,6 +304,7 @@ int engine_render(struct engine *engine, const struct refocus_image *out, int re
     if (!times)
         return report_failure(EXIT_FAILED, "--repeat", "not enough memory; give less");
     cpu_times = times + repeat;
+    engine_suit_rays(engine, &engine->params);
     engine->params.field.disparity = isnan(engine->field_disparity)
                                          ? engine->params.render.focus_disparity
                                          : (float)engine->field_disparity;

@@ -51,7 +51,8 @@ const char *engine_blend_summary(uint32_t index);
         .summary = refocus_method_summary, .brief = "how it is rendered",                          \
         .help = "how it is rendered; default sweep"                                                \
     }
-#define METHOD_OPTIONS(type, member)                                                               \
+/* usual: the quality that is the default. */
+#define METHOD_OPTIONS(type, member, usual)                                                        \
     {.kind = OPTION_INTEGER,                                                                       \
      .name = "--rays",                                                                             \
      .argument = "N",                                                                              \
@@ -70,7 +71,7 @@ const char *engine_blend_summary(uint32_t index);
          .choice = engine_quality_name,                                                            \
          .summary = engine_quality_summary,                                                        \
          .brief = "time against smoothness",                                                       \
-         .help = "presets; default auto for stills, else standard; --rays overrules"},             \
+         .help = "presets; default " usual "; --rays overrules"},                                  \
         {.kind = OPTION_INTEGER,                                                                   \
          .name = "--iterations",                                                                   \
          .argument = "T",                                                                          \
@@ -174,6 +175,7 @@ struct engine {
     struct refocus_aperture *aperture;
     struct refocus_disparity field_map; /* samples NULL: none */
     struct controls controls;
+    bool still_rays;        /* each frame has the rays that its blur takes: --quality auto */
     bool has_sides;         /* the aperture's light differs before and behind the focus */
     bool has_matte;         /* the renderer is made for scenes with a matte */
     double field_disparity; /* NAN: that in focus */
@@ -212,8 +214,9 @@ void engine_add_grain(struct engine *engine, const struct engine_settings *setti
 /* The largest blur radius, in pixels, that the method of these settings renders. */
 double engine_most_blur(const struct engine_settings *settings);
 
-/* The largest blur radius, in pixels, and the rays that a still is given for it. */
-void engine_set_blur(struct engine *engine, const struct engine_settings *settings, double blur);
+/* Give parameters whose blur is known the rays that --quality auto has for it; engine_render()
+ * does so itself. */
+void engine_suit_rays(const struct engine *engine, struct refocus_settings *params);
 
 /* Renderer for photos of this size and blur; prepare; render settings->repeat times. */
 int engine_create(struct engine *engine, const struct engine_settings *settings, int width,

@@ -155,7 +155,7 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
         depth.no_dither ? REFOCUS_DITHER_OFF : REFOCUS_DITHER_ORDERED;
     status = engine_create(&shot->engine, &settings->engine, image->width, image->height,
                            fmax(blur, most_blur));
-    engine_set_blur(&shot->engine, &settings->engine, blur);
+    shot->engine.params.render.max_blur_radius = (float)blur;
     shot_suit_papers(&shot->input, &settings->lens, &settings->engine.papers, &shot->engine.params);
     if (status == EXIT_DONE)
         status = engine_prepare(&shot->engine, &scene);

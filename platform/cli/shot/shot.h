@@ -38,7 +38,7 @@ struct shot_settings {
         BOKEH_OPTIONS(type, member.engine.bokeh, member.engine.method)
 #define SHOT_METHOD_OPTIONS(type, member)                                                          \
     {.kind = OPTION_HEADING, .help = "Rendering"}, METHOD_OPTION(type, member.engine),             \
-        METHOD_OPTIONS(type, member.engine)
+        METHOD_OPTIONS(type, member.engine, "auto")
 #define SHOT_PAPER_OPTIONS(type, member)                                                           \
     PAPER_OPTIONS(type, member.engine.papers, member.engine.method)
 

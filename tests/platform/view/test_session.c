@@ -23,7 +23,7 @@ static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t came = PTHREAD_COND_INITIALIZER;
 static int frames;
 static uint32_t saved_what;
-static int saved_width;
+static int saved_width, saved_rays;
 static uint16_t saved_depth;
 
 static void on_frame(void *user)
@@ -41,6 +41,7 @@ static void on_save(void *user, const struct rf_view_result *result, char words[
     pthread_mutex_lock(&lock);
     saved_what |= result->what;
     saved_width = result->picture->width;
+    saved_rays = result->params->render.rays;
     saved_depth = result->disparity[H / 2 * W + W / 2];
     strcpy(words, "saved");
     pthread_cond_signal(&came);
@@ -278,6 +279,14 @@ static void test_modes(void **unused)
     rf_session_destroy(&session);
 }
 
+static void wait_for_saved(uint32_t what)
+{
+    pthread_mutex_lock(&lock);
+    while (saved_what != what)
+        pthread_cond_wait(&came, &lock);
+    pthread_mutex_unlock(&lock);
+}
+
 static void test_saving(void **unused)
 {
     struct rf_session *session = begin();
@@ -290,10 +299,7 @@ static void test_saving(void **unused)
     saved_what = 0;
     rf_session_save(session, RF_SAVE_DEPTH);
     rf_session_save(session, RF_SAVE_PICTURE | RF_SAVE_SETTINGS);
-    pthread_mutex_lock(&lock);
-    while (saved_what != (RF_SAVE_PICTURE | RF_SAVE_SETTINGS | RF_SAVE_DEPTH))
-        pthread_cond_wait(&came, &lock);
-    pthread_mutex_unlock(&lock);
+    wait_for_saved(RF_SAVE_PICTURE | RF_SAVE_SETTINGS | RF_SAVE_DEPTH);
     assert_int_equal(saved_depth, 50000);
     assert_int_equal(saved_width, W);
     while (!rf_session_words(session, words))
@@ -301,6 +307,36 @@ static void test_saving(void **unused)
     assert_string_equal(words, "saved");
     rf_session_destroy(&session);
     rf_session_destroy(&session);
+}
+
+/* Where rays go by the blur, the sweep has them in what is saved, and not in what is shown. */
+static void test_still_rays(void **unused)
+{
+    static const struct {
+        float blur;
+        uint32_t method;
+        int rays;
+    } saved[] = {{30, REFOCUS_METHOD_SWEEP, 144},
+                 {20, REFOCUS_METHOD_SWEEP, 64},
+                 {30, REFOCUS_METHOD_SEARCH, 64}};
+    struct rf_view_state state = whole(0.2f, 0);
+    struct rf_session *session;
+
+    (void)unused;
+    setup.still_rays = true;
+    session = begin();
+    for (size_t i = 0; i < sizeof saved / sizeof *saved; i++) {
+        state.blur = saved[i].blur;
+        state.method = saved[i].method;
+        expect_render(wait_for(session, rf_session_show(session, &state), true), state.method, 0.2f,
+                      state.blur);
+        saved_what = 0;
+        rf_session_save(session, RF_SAVE_PICTURE);
+        wait_for_saved(RF_SAVE_PICTURE);
+        assert_int_equal(saved_rays, saved[i].rays);
+    }
+    rf_session_destroy(&session);
+    setup.still_rays = false;
 }
 
 /* A matte, of a size of its own, is part of the scene. */
@@ -324,7 +360,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_full_is_render), cmocka_unit_test(test_nobody_waits),
         cmocka_unit_test(test_hold),           cmocka_unit_test(test_modes),
-        cmocka_unit_test(test_saving),         cmocka_unit_test(test_matte)};
+        cmocka_unit_test(test_saving),         cmocka_unit_test(test_still_rays),
+        cmocka_unit_test(test_matte)};
     int failed;
 
     make_scene();
