@@ -7,6 +7,7 @@ saying so, where Xvfb or xdotool is missing. With REFOCUS_VIEW_SHOTS=FOLDER scre
 there as PPM files."""
 import json
 import os
+import random
 import shutil
 import subprocess
 import sys
@@ -234,6 +235,23 @@ def with_settings(refocus, folder, display):
     check(viewer.end()['method'] == 'blur', 'jittered knows no tilt')
 
 
+def with_noise(refocus, folder, display):
+    """Noise that blur averages away is put back as `render` does it."""
+    random_ = random.Random(5)
+    noisy, saved = folder + '/noisy.ppm', folder + '/noisy.png'
+    with open(noisy, 'wb') as file:
+        file.write(b'P6 %d %d 255\n' % (W, H) + bytes(
+            value for _ in range(W * H) for value in [round(random_.gauss(120, 4))] * 3))
+    options = '--depth', SCENE + 'disparity.png', '--focus', '0.3', '--blur', '12'
+    viewer = Viewer(refocus, folder, display, noisy, *options, '-o', saved)
+    viewer.key('s')
+    viewer.until(lambda: os.path.exists(saved), 'the noisy picture')
+    viewer.end()
+    for more in (), ('--grain', 'off'):
+        run(refocus, 'render', noisy, *options, *more, '-o', folder + '/r.png')
+        check((read_png8(saved) == read_png8(folder + '/r.png')) == (not more), ('noise', more))
+
+
 def with_strokes(refocus, folder, display):
     """--strokes paint before the window opens."""
     photo, depth = SCENE + 'allfocus.png', SCENE + 'disparity.png'
@@ -340,6 +358,7 @@ def main():
             looked_at(refocus, folder, display)
             text(refocus, folder, display)
             with_settings(refocus, folder, display)
+            with_noise(refocus, folder, display)
             with_strokes(refocus, folder, display)
         finally:
             server.terminate()

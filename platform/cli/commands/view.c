@@ -362,6 +362,7 @@ static int open_photo(struct viewing *v, const char *photo)
     if (!module_load(&window, &run_window, why))
         return report_failure(EXIT_FAILED, photo, "%s", why);
     status = engine_begin(&v->engine, &v->settings.shot.engine);
+    engine_add_grain(&v->engine, &v->settings.shot.engine);
     v->engine.name = photo;
     if (status == EXIT_DONE) {
         report_progress("reading", 0);
