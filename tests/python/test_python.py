@@ -65,6 +65,38 @@ class Pictures(Case):
                 self.same(refocus.photo_read(out).image,
                           refocus.render(photo, depth, blur=12, **arguments))
 
+    @unittest.skipUnless(COMMAND, 'no command in this build')
+    def test_the_noise_of_the_command(self):
+        noise = numpy.random.default_rng(5).normal(120, 4, (120, 160, 1))
+        photo = numpy.repeat(noise.round().astype(numpy.uint8), 3, 2)
+        disparity = numpy.where(numpy.arange(160) < 80, 10280, 51400).astype(numpy.uint16)
+        disparity = numpy.tile(disparity, (120, 1))
+        expected = {}
+        with tempfile.TemporaryDirectory() as temporary:
+            noisy, depth, out = (pathlib.Path(temporary) / name
+                                 for name in ('noisy.ppm', 'noisy.pgm', 'out.ppm'))
+            refocus.image_write(noisy, photo)
+            refocus.gray16_write(depth, disparity)
+            for options in (), ('--grain', 'off'), ('--fringe', '0.2'):
+                subprocess.run([COMMAND, 'render', noisy, '--depth', depth, '--focus', '1',
+                                '--blur', '12', *options, '-o', out], check=True)
+                expected[options] = refocus.photo_read(out).image.copy()
+
+        def rendered(picture=photo, **fields):
+            return refocus.render(picture, disparity, focus=1, blur=12, **fields)
+        self.same(rendered(), expected[()])
+        self.same(rendered(look={'fringe': 0.2}), expected['--fringe', '0.2'])
+        for plain in {'look': {'grain': 0}}, {'look': refocus.LookParams()}:
+            self.same(rendered(**plain), expected['--grain', 'off'])
+        self.assertGreater(numpy.mean(expected[()] != expected['--grain', 'off']), 0.4)
+        alpha = numpy.full((120, 160, 1), 255, numpy.uint8)
+        self.same(rendered(numpy.concatenate([photo, alpha], 2))[:, :, :3], expected[()])
+        deep = photo.astype(numpy.uint16) * 257  # deep photos and frames have none
+        self.same(rendered(deep), rendered(deep, look={'grain': 0}))
+        frame = refocus.Image.empty(refocus.Format.NV12, 160, 120)
+        frame.planes[0][:], frame.planes[1][:] = photo[:, :, 0], 128
+        self.assertEqual(rendered(frame).format, refocus.Format.NV12)
+
     def test_rows_anywhere_in_memory(self):
         wide = numpy.zeros((HEIGHT, WIDTH + 5, 3), numpy.uint8)
         wide[:, 2:2 + WIDTH] = self.photo

@@ -13,7 +13,7 @@ from ._optics import disparity_of_depth, max_blur_radius
 from ._struct import Struct, made
 from ._structs import (
     ApertureParams, DepthEdges, DepthEdgesReport, DepthRange, DiffusionParams, FieldParams,
-    FocusParams, FoveatedParams, HighlightParams, Inpaint, InterpolatedParams, JitteredParams, Lens,
+    FocusParams, Format, FoveatedParams, HighlightParams, Inpaint, InterpolatedParams, JitteredParams, Lens,
     LookParams, Method, RendererInfo, RendererParams, RenderParams, ScatterParams, SearchParams,
     ThinParams, View)
 
@@ -246,6 +246,11 @@ def _rays_of(quality: str, blur: float, method: int) -> int:
     return min(max(math.ceil(rays * blur * blur / 400), rays), 256)
 
 
+def _has_grain(photo: Image, goal: Image | None) -> bool:
+    """Whether the noise that blur averages away is put back: in 8 bits of R, G and B."""
+    return all(image.format <= Format.BGRA8 for image in (photo, goal) if image is not None)
+
+
 def _is_struct(value: typing.Any) -> bool:
     return isinstance(value, (Struct, dict))
 
@@ -272,8 +277,10 @@ def render(photo: Image | Buffer, depth: Buffer, *,
     `focal_length_mm`: `sensor_width_mm` is what the width of the photo shows, by default so much
     that its larger side shows 36 mm. (The command takes the focal length of the file where none is
     given, `photo.info.focal_length_35mm`, as equal on the diagonal.) `highlights` is 'auto', 'off'
-    or a gain. Further arguments are those of `Settings`; structs and dictionaries for `focus` and
-    `highlights` are, too: then `focus_disparity` can say what is sharp.
+    or a gain. Where photo and result have 8 bits, noise is put back into what is blurred unless
+    `look={'grain': 0}` leaves it out. Further arguments are those of `Settings`; structs and
+    dictionaries for `focus` and `highlights` are, too: then `focus_disparity` can say what is
+    sharp.
     """
     image = as_image(photo, order)
     if _is_struct(focus):
@@ -303,8 +310,9 @@ def render(photo: Image | Buffer, depth: Buffer, *,
     assert blur is not None
     _, thin, inpaint = QUALITIES[quality]
     rays = _rays_of(quality, blur, fields.get('method', Method.SWEEP))
+    goal = None if out is None else as_image(out, order)
     settings = Settings(0.0, blur, aperture=aperture, rays=rays, inpaint=inpaint,
-                        thin={'enabled': thin},
+                        thin={'enabled': thin}, look={'grain': int(_has_grain(image, goal))},
                         highlights=highlights if _is_struct(highlights) else
                         {'estimate': 1} if highlights == 'auto' else
                         {'gain': 1 if highlights == 'off' else highlights})
@@ -312,7 +320,6 @@ def render(photo: Image | Buffer, depth: Buffer, *,
     if settings.render.method not in iter(Method):
         raise ArgumentError(f'method is one of Method, not {settings.render.method!r}')
     method = int(settings.render.method)
-    goal = None if out is None else as_image(out, order)
     with Renderer(image.width, image.height, blur, threads=threads,
                   methods=1 << method, thin=int(settings.thin.enabled or matte is not None),
                   textured=int(settings.render.inpaint), depth_edges=int(depth_edges),
