@@ -8,6 +8,8 @@ import unittest
 
 from living import DEPTH, REFOCUS, SLOW, SMALL, Live, content, live
 
+ROOT = os.environ.get('REFOCUS_SOURCE_ROOT', os.path.join(os.path.dirname(__file__), '../..'))
+
 
 class Pictures(Live):
     def test_every_frame_is_rendered_and_paired(self):
@@ -231,7 +233,6 @@ class Pictures(Live):
                              (12, 'YUYV' if form == 'UYVY' else form))
             self.assertIsNotNone(r['stages_ms']['steady'])
         self.fails(2, '--steady', '--camera', 'replay:', '--depth', DEPTH, '--steady', '0.99')
-        self.fails(2, '--fill', '--camera', 'replay:', '--depth', DEPTH, '--fill', 'textured')
 
     def test_live_is_what_render_makes(self):
         self.report('--camera', 'replay::format RGB24;size 64x48;frames 1', '--depth', DEPTH,
@@ -244,6 +245,19 @@ class Pictures(Live):
                         '0.5', *SMALL, '-o', 'render.ppm'], check=True)
         self.assertEqual(content('live-0.ppm'), content('render.ppm'))
         self.assertNotEqual(content('live-0.ppm'), content('sharp-0.ppm'))
+        fence = os.path.join(ROOT, 'examples/data/fence')
+        common = ('--depth', fence + '/disparity.png', '--focus', '0.3', '--blur', '15')
+        for quality in 'standard', 'best':
+            self.report('--camera', 'file:' + fence + '/allfocus.png', *common, '--quality',
+                        quality, '--frames', '1', '--out', 'live-%d.ppm', common=[])
+            for thin in [['--no-thin'], *([[]] if quality == 'standard' else [])]:
+                subprocess.run([REFOCUS, 'render', fence + '/allfocus.png', *common, '--quality',
+                                quality, '--depth-edges', 'as-given', '--fill', 'smooth', '--grain',
+                                'off', *thin, '-o', 'render.ppm'], check=True)
+                self.assertEqual(content('live-0.ppm') == content('render.ppm'), bool(thin), thin)
+        for option in ['--no-thin'], ['--fill', 'smooth']:  # frames have no thin structures
+            self.fails(2, option[0] + ': unknown option', '--camera', 'replay:', '--depth', DEPTH,
+                       *option)
         for quality in 'auto', 'standard':
             subprocess.run([REFOCUS, 'render', 'sharp-0.ppm', '--depth', 'depth.pgm', '--focus',
                             '0.5', '--blur', '40', '--quality', quality, '-o', quality + '.ppm'],

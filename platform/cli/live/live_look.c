@@ -21,9 +21,6 @@ int live_look_check(struct live_settings *settings)
         status = controls_check(&settings->engine.controls, input_focus_is_given(lens));
     if (status != EXIT_DONE)
         return status;
-    if (settings->engine.fill == FILL_TEXTURED)
-        return report_failure(EXIT_WRONG, "--fill",
-                              "texture takes too long for live; give smooth, or leave it out");
     if (!isnan(settings->engine.controls.focus_plane[0]))
         return report_failure(EXIT_WRONG, "--focus-plane",
                               "what is seen at three pixels changes in live; give --tilt-angle and "
@@ -34,6 +31,8 @@ int live_look_check(struct live_settings *settings)
     if (live_look_needs_metres(settings) && live_estimate_is_meant(settings->depth.file))
         return report_failure(EXIT_WRONG, settings->depth.file, "%s", live_look_no_metres);
     settings->engine.bokeh.f_number = lens->f_number;
+    settings->engine.no_thin = true; /* stills alone have the time for these two */
+    settings->engine.fill = FILL_SMOOTH;
     return EXIT_DONE;
 }
 

@@ -25,6 +25,13 @@ static const char *format_name(uint32_t index)
     return index == 0 ? "any" : refocus_frame_format_name(index);
 }
 
+/* Frames of a camera have no thin structures splatted, nor texture continued. */
+static const char *quality_summary(uint32_t index)
+{
+    static const char *const rays[] = {"32 rays", "64 rays", "128 rays"};
+    return index < sizeof rays / sizeof *rays ? rays[index] : engine_quality_summary(index);
+}
+
 const struct option live_options[] = {
     {.kind = OPTION_HEADING, .help = "In and out"},
     {.kind = OPTION_TEXT,
@@ -198,7 +205,8 @@ const struct option live_options[] = {
     BOKEH_OPTIONS(struct live_settings, engine.bokeh, engine.method),
     {.kind = OPTION_HEADING, .help = "Rendering"},
     METHOD_OPTION(struct live_settings, engine),
-    METHOD_OPTIONS(struct live_settings, engine, "standard"),
+    RAY_OPTIONS(struct live_settings, engine, "standard", quality_summary),
+    BLEND_OPTIONS(struct live_settings, engine),
     {.kind = OPTION_INTEGER,
      .name = "--threads",
      .argument = "N",

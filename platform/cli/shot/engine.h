@@ -51,8 +51,8 @@ const char *engine_blend_summary(uint32_t index);
         .summary = refocus_method_summary, .brief = "how it is rendered",                          \
         .help = "how it is rendered; default sweep"                                                \
     }
-/* usual: the quality that is the default. */
-#define METHOD_OPTIONS(type, member, usual)                                                        \
+/* usual: the quality that is the default; summaries: what each of them is. */
+#define RAY_OPTIONS(type, member, usual, summaries)                                                \
     {.kind = OPTION_INTEGER,                                                                       \
      .name = "--rays",                                                                             \
      .argument = "N",                                                                              \
@@ -69,7 +69,7 @@ const char *engine_blend_summary(uint32_t index);
          .argument = "NAME",                                                                       \
          .offset = offsetof(type, member.quality),                                                 \
          .choice = engine_quality_name,                                                            \
-         .summary = engine_quality_summary,                                                        \
+         .summary = summaries,                                                                     \
          .brief = "time against smoothness",                                                       \
          .help = "presets; default " usual "; --rays overrules"},                                  \
         {.kind = OPTION_INTEGER,                                                                   \
@@ -86,34 +86,35 @@ const char *engine_blend_summary(uint32_t index);
          .offset = offsetof(type, member.mirror),                                                  \
          .help = "search: where a ray is hidden take the mirrored pixel",                          \
          OF_METHODS(type, member.method, OF_SEARCH)},                                              \
-        {.kind = OPTION_FLAG,                                                                      \
-         .name = "--background",                                                                   \
-         .offset = offsetof(type, member.background),                                              \
-         .help = "search: where a ray is hidden take the background layer",                        \
-         OF_METHODS(type, member.method, OF_SEARCH)},                                              \
-        {.kind = OPTION_FLAG,                                                                      \
-         .name = "--no-thin",                                                                      \
-         .offset = offsetof(type, member.no_thin),                                                 \
-         .help = "sweep: gather thin structures far before the focus, and in it, by rays "         \
-                 "like everything else, instead of splatting them; so does quality preview",       \
-         OF_METHODS(type, member.method, OF_SWEEP)},                                               \
-        {.kind = OPTION_CHOICE,                                                                    \
-         .name = "--fill",                                                                         \
-         .argument = "HOW",                                                                        \
-         .offset = offsetof(type, member.fill),                                                    \
-         .choice = engine_fill_name,                                                               \
-         .summary = engine_fill_summary,                                                           \
-         .help = "sweep: how the background is made up that a blurred foreground uncovers",        \
-         OF_METHODS(type, member.method, OF_SWEEP)},                                               \
-        {.kind = OPTION_TEXT,                                                                      \
-         .name = "--aperture",                                                                     \
-         .argument = "SHAPE",                                                                      \
-         .offset = offsetof(type, member.aperture),                                                \
-         .choice = bokeh_figure_name,                                                              \
-         .summary = bokeh_figure_summary,                                                          \
-         .brief = "disc, polygon:6, heart, star, or a mask picture",                               \
-         .help = "disc (default), polygon:BLADES or polygon:BLADES:DEGREES with 3 to 16 "          \
-                 "blades, a mask picture of at most 255x255, white = open, or a figure:"},         \
+    {                                                                                              \
+        .kind = OPTION_FLAG, .name = "--background", .offset = offsetof(type, member.background),  \
+        .help = "search: where a ray is hidden take the background layer",                         \
+        OF_METHODS(type, member.method, OF_SEARCH)                                                 \
+    }
+#define LAYER_OPTIONS(type, member)                                                                \
+    {.kind = OPTION_FLAG,                                                                          \
+     .name = "--no-thin",                                                                          \
+     .offset = offsetof(type, member.no_thin),                                                     \
+     .help = "sweep: gather thin structures far before the focus, and in it, by rays "             \
+             "like everything else, instead of splatting them; so does quality preview",           \
+     OF_METHODS(type, member.method, OF_SWEEP)},                                                   \
+    {                                                                                              \
+        .kind = OPTION_CHOICE, .name = "--fill", .argument = "HOW",                                \
+        .offset = offsetof(type, member.fill), .choice = engine_fill_name,                         \
+        .summary = engine_fill_summary,                                                            \
+        .help = "sweep: how the background is made up that a blurred foreground uncovers",         \
+        OF_METHODS(type, member.method, OF_SWEEP)                                                  \
+    }
+#define BLEND_OPTIONS(type, member)                                                                \
+    {.kind = OPTION_TEXT,                                                                          \
+     .name = "--aperture",                                                                         \
+     .argument = "SHAPE",                                                                          \
+     .offset = offsetof(type, member.aperture),                                                    \
+     .choice = bokeh_figure_name,                                                                  \
+     .summary = bokeh_figure_summary,                                                              \
+     .brief = "disc, polygon:6, heart, star, or a mask picture",                                   \
+     .help = "disc (default), polygon:BLADES or polygon:BLADES:DEGREES with 3 to 16 "              \
+             "blades, a mask picture of at most 255x255, white = open, or a figure:"},             \
         {.kind = OPTION_CHOICE,                                                                    \
          .name = "--blend",                                                                        \
          .argument = "NAME",                                                                       \
@@ -139,6 +140,9 @@ const char *engine_blend_summary(uint32_t index);
                 "photo tells, the default; up to GAIN times white to small ones",                  \
         OF_METHODS(type, member.method, OF_SWEEP | OF_SEARCH)                                      \
     }
+#define METHOD_OPTIONS(type, member, usual)                                                        \
+    RAY_OPTIONS(type, member, usual, engine_quality_summary), LAYER_OPTIONS(type, member),         \
+        BLEND_OPTIONS(type, member)
 #define RUN_OPTIONS(type, member)                                                                  \
     {.kind = OPTION_INTEGER,                                                                       \
      .elsewhere = true,                                                                            \
