@@ -109,6 +109,14 @@ class Lens(Case):
         pictures.insert_xmp('photo.jpg', 'GDepth:Format="RangeInverse" GDepth:Mime="image/png" '
                             'GDepth:Data="%s" %s' % (data, attributes))
 
+    def test_the_focus_point_of_info(self):
+        """A point half a pixel into row 7 and column 7 is in those, as render takes it."""
+        self.gdepth('GDepth:Near="1" GDepth:Far="2" GFocus:FocalPointX="%r" '
+                    'GFocus:FocalPointY="%r"' % (7.5 / W, 7.5 / H))
+        self.assertIn('focus point   7,7\n', self.succeeds('info', 'photo.jpg'))
+        for name in ('photo.jpg', 'bars.png'):
+            os.remove(name)
+
     def test_f_number_by_the_files_own_blur(self):
         """Of Google's Lens Blur: a range without a unit, and BlurAtInfinity. By hand:
         K = 0.1 (1/20 - 1/100) 25 of 48 pixels = 4.8."""

@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "inputs/edges.h"
+#include "inputs/lens.h"
 #include "line/report.h"
 
 /* Put the meaning of a map's samples into words. */
@@ -94,6 +95,17 @@ static bool find_blur(const struct input *input, double *blur, char why[INPUT_WH
     return true;
 }
 
+/* The pixel of the file's point, as render takes it. */
+static void print_focus_point(const struct input *input)
+{
+    static const struct lens_settings none = LENS_SETTINGS_NONE;
+    double at[2];
+
+    input_focus_point(input, &none, at);
+    if (!isnan(at[0]))
+        printf("focus point   %.0f,%.0f\n", at[0], at[1]);
+}
+
 static void print_defaults(const struct input *input)
 {
     const struct refocus_photo_info *info = input->photo->info;
@@ -181,9 +193,8 @@ void info_print(const struct input *input, const struct info_findings *found)
                info->own_blur * (photo->image->width > photo->image->height
                                      ? photo->image->width
                                      : photo->image->height));
-    if (photo->image->plane[0] && has_focus_point(info))
-        printf("focus point   %.0f,%.0f\n", info->focus_x * photo->image->width,
-               info->focus_y * photo->image->height);
+    if (photo->image->plane[0])
+        print_focus_point(input);
     print_depth(input);
     print_edges(&input->edges);
     if (photo->matte->samples)
