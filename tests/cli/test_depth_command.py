@@ -120,7 +120,7 @@ class DepthAndInfo(Case):
                                  r'small|this build has no OpenCV)'),
                    'depth', 'photo.ppm', 'depth.pgm', '-o', 'd.png')
         self.fails(2, 'photo.ppm: its depth is given twice; give one of RIGHT, --side-by-side, '
-                   '--stereo-file, '
+                   '--stereo-file, --focal-stack, '
                    '--estimate and --depth', 'depth', 'photo.ppm', 'photo.ppm', '-o', 'd.png',
                    '--depth', 'depth.pgm')
         self.fails(1, re.compile(r'^refocus: photo.ppm: (it is no stereo file|this build)'),

@@ -14,6 +14,9 @@ import pictures
 from case import Case, H, W
 
 FRAMES = 3
+# All that struct refocus_stack_result says of a stack.
+STACK_WORDS = sorted(('alike', 'blur', 'by_rows', 'direction', 'disorder', 'exposure', 'matched',
+                      'measured', 'moved', 'moving', 'order', 'order_margin', 'reference'))
 
 
 def noise(x, y):
@@ -500,6 +503,9 @@ class DepthOfAStack(Case):
         report = self.reports(*command, *names)
         self.assertRegex(report['evidence'][1], '^focus stack: frames of another exposure or white '
                          r'are matched to frame 3: \d, the farthest of 0\.[56]\d times its light$')
+        self.assertIn(': %d, the farthest of %.2f' % (
+            report['stack']['matched'], report['stack']['exposure']), report['evidence'][1])
+        self.assertEqual(sorted(report['stack']), STACK_WORDS)
         # The light gets another colour on either side.
         def tinted(x, y, k, gain):
             checks = 80 + 60 * (x // 16 + y // 12 & 1)

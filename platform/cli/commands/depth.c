@@ -201,7 +201,7 @@ static int check(const struct depth_command_settings *settings, const char *cons
                                    1)
         return report_failure(EXIT_WRONG, files[0],
                               "its depth is given twice; give one of RIGHT, "
-                              "--side-by-side, --stereo-file, "
+                              "--side-by-side, --stereo-file, --focal-stack, "
                               "--estimate and --depth");
     if (status == EXIT_DONE && is_made(settings, files) && output_is_jpeg(settings->output) &&
         settings->side_by_side && settings->view == VIEW_NONE)
@@ -295,7 +295,8 @@ const struct command depth_command = {
              "--strokes; with --focal-stack give all frames of a focus stack. Samples without a "
              "value are filled from those around them, "
              "from the farther side where two surfaces meet, or from behind a thin thing at the "
-             "border, and counted.",
+             "border, and counted. In --json, 'stack' is what was found of a focus stack, in the "
+             "words of struct refocus_stack_result (refocus/stack.h).",
     .options = options,
     .files_least = 1,
     .files_most = REFOCUS_STACK_MOST_FRAMES,

@@ -39,13 +39,13 @@ static json_t *stack_json(const struct refocus_stack_result *stack)
     order = json_array();
     for (int i = 0; order && i < REFOCUS_STACK_MOST_FRAMES && stack->order[i]; i++)
         json_array_append_new(order, json_integer(stack->order[i]));
-    return json_pack("{s:i, s:o, s:f, s:f, s:b, s:f, s:f, s:f, s:f, s:f, s:f}", "reference",
-                     (int)stack->reference, "order", order, "order_margin",
-                     (double)stack->order_margin, "direction", (double)stack->direction, "by_rows",
-                     stack->by_rows != 0, "measured", (double)stack->measured, "moved",
-                     (double)stack->moved, "moving", (double)stack->moving, "alike",
-                     (double)stack->alike, "disorder", (double)stack->disorder, "blur",
-                     (double)stack->blur);
+    return json_pack(
+        "{s:i, s:o, s:f, s:f, s:b, s:f, s:f, s:f, s:f, s:f, s:f, s:i, s:f}", "reference",
+        (int)stack->reference, "order", order, "order_margin", (double)stack->order_margin,
+        "direction", (double)stack->direction, "by_rows", stack->by_rows != 0, "measured",
+        (double)stack->measured, "moved", (double)stack->moved, "moving", (double)stack->moving,
+        "alike", (double)stack->alike, "disorder", (double)stack->disorder, "blur",
+        (double)stack->blur, "matched", (int)stack->matched, "exposure", (double)stack->exposure);
 }
 
 int depth_output_report(const struct depth_command_settings *settings, const struct input *input)
