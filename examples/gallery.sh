@@ -5,6 +5,7 @@
 # pictures side by side. Then the page gallery.html, or with `page` that alone, here or in FOLDER, which needs
 # nothing but the command.
 set -eu -o pipefail
+[ $# -ge 1 ] || { sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2; }
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$(cd "$1" && pwd)
 out=$top/examples/gallery

@@ -66,6 +66,11 @@ class Gallery(unittest.TestCase):
         cls.text = PAGE.read_text(encoding='utf-8')
         cls.page = Reader(cls.text)
 
+    def test_usage(self):
+        done = subprocess.run([TOP / 'examples/gallery.sh'], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (2, ''))
+        self.assertRegex(done.stderr, r'^usage: gallery.sh BUILD \[page \[FOLDER\]\]\nMakes .*')
+
     def test_made_by_the_script(self):
         with tempfile.TemporaryDirectory() as folder:
             command = pathlib.Path(folder, 'build/platform/cli/refocus')
