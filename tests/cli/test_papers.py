@@ -66,6 +66,18 @@ class Papers(Case):
                 return
         self.fail((first['cpu_ms'], second['cpu_ms']))
 
+    def test_compare_gives_each_method_its_own(self):
+        """Texture and thin structures of one entry, whatever the others and the quality beside are."""
+        scene = os.path.join(ROOT, 'examples/data/portrait/')
+        common = (scene + 'allfocus.png', '--depth', scene + 'disparity.png', '--focus', '0.689',
+                  '--blur', '20')
+        self.succeeds('render', *common, '--quality', 'best', '--grain', 'off', '-o', 'best.ppm')
+        methods = self.reports('compare', *common, '--reference', 'best.ppm', '--quality',
+                               'preview', '--methods', 'sweep,sweep:quality=best')['methods']
+        self.assertGreater(methods[1]['rmse'], 0)
+        self.assertEqual(methods[2]['rmse'], 0)
+        os.remove('best.ppm')
+
     def test_compare(self):
         common = ('photo.ppm', '--depth', 'depth.pgm', '--blur', '4', '--focus', '0.2')
         self.succeeds('render', *common, '-o', 'gt.ppm')

@@ -127,6 +127,7 @@ static uint64_t memory_of(const struct engine *engine, const struct refocus_imag
     params.methods = REFOCUS_METHOD_BIT(method);
     params.thin = engine->params.thin.enabled || engine->has_matte;
     params.deep = engine->deep;
+    params.textured = engine->params.render.inpaint == REFOCUS_INPAINT_TEXTURED;
     return refocus_renderer_memory(&params);
 }
 
@@ -178,6 +179,15 @@ static void warm_up(const struct engine *engine)
     params.render.focus_disparity += params.render.focus_disparity > 0.5f ? -0.1f : 0.1f;
     params.render.region_width = params.render.region_height = 1;
     refocus_render_settings(engine->renderer, &params, &pixel);
+}
+
+/* The renderer is made for what any of the methods asks for. */
+static void suit_renderer(struct engine *engine, const struct engine *variant)
+{
+    engine->methods |= variant->methods;
+    engine->params.thin.enabled |= variant->params.thin.enabled;
+    if (variant->params.render.inpaint == REFOCUS_INPAINT_TEXTURED)
+        engine->params.render.inpaint = REFOCUS_INPAINT_TEXTURED;
 }
 
 static int render_all(struct engine *engine, struct comparison *c, const struct variants *variants,
@@ -368,7 +378,7 @@ static int run(int argc, char **argv)
     if (status == EXIT_DONE)
         status = variants_begin(&variants, settings.methods, &settings.engine);
     for (int i = 0; i < variants.count; i++)
-        engine.methods |= variants.variant[i].engine.methods;
+        suit_renderer(&engine, &variants.variant[i].engine);
     /* All methods are compared on the same photo. */
     settings.depth.light = true;
     for (int i = 0; i < variants.count; i++) {
