@@ -269,6 +269,16 @@ class Pictures(Live):
                 self.assertEqual(content('live-0.ppm'), content(quality + '.ppm'), given)
         self.assertNotEqual(content('auto.ppm'), content('standard.ppm'))
 
+    def test_the_report_is_described(self):
+        with open(os.path.join(ROOT, 'platform/README.md'), encoding='utf-8') as file:
+            described = file.read().split('### The report\n')[1].split('###')[0]
+        r = self.report('--camera', 'replay::size 64x48;frames 3', '--depth', DEPTH, '--fast',
+                        '--frames-policy', 'every', '--focus-rectangle', '9,9,20,20')
+        words = {*r, *r['colour'], *r['depth'], *r['tracked'], *r['stages_ms'], *r['latency_ms'],
+                 'stacks', 'error', 'autofocus', 'position', 'dioptres', 'least', 'greatest'}
+        self.assertEqual([word for word in words if '`%s`' % word not in described and
+                          '"%s"' % word not in described], [])
+
     def test_the_looks_of_render(self):
         photo = bytes((x * 37 + y * 91 + x * y * 13) % 199 + (56 if x % 9 == 4 and y % 9 == 4 else 0)
                       for y in range(48) for x in range(64) for _ in range(3))
