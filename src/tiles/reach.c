@@ -63,6 +63,8 @@ void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float larg
     for (int j = 0; !scale.unit && j <= reach->tiles; j++)
         for (int i = 0; i <= reach->tiles; i++)
             reach->table.kept[j][i] = kept_at(scale, gap_of(i), gap_of(j), square);
+    for (int wide = 0; wide < 2; wide++)
+        rf_slab_ends(scale, wide, reach->slab_end[wide]);
 }
 
 /* Adds the blurs of a tile that reach so far. */

@@ -96,6 +96,15 @@ static int end_of(struct rf_bin_scale scale, int bin, bool wide)
     return bin < scale.focus && end > scale.focus ? scale.focus : end;
 }
 
+void rf_slab_ends(struct rf_bin_scale scale, bool wide, uint16_t end[RF_BINS])
+{
+    for (int bin = 0, next = 0; bin < RF_BINS; bin++) {
+        if (bin == next)
+            next = end_of(scale, bin, wide);
+        end[bin] = (uint16_t)next;
+    }
+}
+
 /* Where a slab ends that begins with that bin and would end with `end`, if what follows is noise
  * too. A gap as wide as that slab ends it. */
 static int end_of_noise(const struct rf_bins_in_reach *reach, struct rf_bin_scale scale,
@@ -155,15 +164,15 @@ static void add_blurred_slab(struct rf_tile_plan *plan, struct rf_bin_scale scal
  *
  * Returns how many of the slabs are of noise.
  */
-static int cover(const struct rf_bins_in_reach *reach, struct rf_bin_scale scale,
+static int cover(const struct rf_bins_in_reach *in_reach, const struct rf_reach *reach,
                  const struct merging *merging, struct rf_tile_plan *plan)
 {
-    const struct rf_bins *const bins = &reach->all;
+    const struct rf_bins *const bins = &in_reach->all;
+    const struct rf_bin_scale scale = reach->scale;
     const int unit = scale.unit, half = HALF >> unit, closed = CLOSED >> unit;
     const int focus_end = scale.focus + scale.focus_bins;
-    const bool wide = bins->most - bins->least < MOST_SPREAD;
+    const uint16_t *const end_of_wide = reach->slab_end[bins->most - bins->least < MOST_SPREAD];
     int noisy = 0;
-    int cell = 0; /* the slab that `bin` is in, of those that cover all bins: where it begins */
 
     plan->slabs = 0;
     plan->reach = 0;
@@ -182,16 +191,13 @@ static int cover(const struct rf_bins_in_reach *reach, struct rf_bin_scale scale
             continue;
         }
         low = rf_edge_of(scale, bin);
-        while ((end = end_of(scale, cell, wide)) <= bin)
-            cell = end;
-        if (!unit && abs(low) < WIDE)
-            end = end_of(scale, bin, false);
+        end = unit || abs(low) >= WIDE ? end_of_wide[bin] : end_of(scale, bin, false);
         if (merging->noise)
-            end = end_of_noise(reach, scale, merging, bin, end);
+            end = end_of_noise(in_reach, scale, merging, bin, end);
         for (int b = bin; b < end && b < RF_BINS; b++) {
             if (has(bins->word, b))
                 last = b;
-            sure = sure || has(reach->sure, b);
+            sure = sure || has(in_reach->sure, b);
         }
         noisy += !sure;
         high = rf_edge_of(scale, last + 1) - 1;
@@ -208,21 +214,21 @@ static int cover(const struct rf_bins_in_reach *reach, struct rf_bin_scale scale
 /* Covers the occupied bins: where they are noise, by as few slabs as a tile may have. Others are
  * never merged for their number, which the growing width of slabs bounds: tiles beside each other
  * would differ in what occludes what. */
-static void cover_bounded(const struct rf_bins_in_reach *reach, struct rf_bin_scale scale,
+static void cover_bounded(const struct rf_bins_in_reach *in_reach, const struct rf_reach *reach,
                           struct rf_tile_plan *plan)
 {
-    const int spread = reach->all.most - reach->all.least;
+    const int spread = in_reach->all.most - in_reach->all.least;
     struct merging merging = {.ratio = 1,
                               .widest = (UINT16_MAX + 1 - spread) / 5 * 4 - 2 * OVERLAP};
-    const int noise = reach->noisy ? (int)(reach->noise / reach->noisy) : 0;
+    const int noise = in_reach->noisy ? (int)(in_reach->noise / in_reach->noisy) : 0;
     int noisy;
 
-    plan->noise = rf_in_pixels(noise, scale.unit);
+    plan->noise = rf_in_pixels(noise, reach->scale.unit);
     merging.noise = rf_smaller(NOISE_TIMES * noise, INT16_MAX);
-    noisy = cover(reach, scale, &merging, plan);
+    noisy = cover(in_reach, reach, &merging, plan);
     while (noisy > NOISY_SLABS && merging.ratio < LARGEST_RATIO) {
         merging.ratio *= 2;
-        noisy = cover(reach, scale, &merging, plan);
+        noisy = cover(in_reach, reach, &merging, plan);
     }
 }
 
@@ -231,7 +237,7 @@ void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,
 {
     const struct rf_bins_in_reach in_reach = rf_collect(view, bins, reach, tx, ty);
 
-    cover_bounded(&in_reach, reach->scale, plan);
+    cover_bounded(&in_reach, reach, plan);
     plan->highlight = rf_in_pixels(in_reach.all.highlight, reach->scale.unit);
     plan->undersampled = in_reach.all.undersampled > 0;
     plan->brightest = in_reach.all.brightest;

@@ -62,7 +62,8 @@ struct rf_reach {
         struct rf_kept kept[RF_REACH_TILES + 1][RF_REACH_TILES + 1]; /* [tiles down][across] */
         struct rf_kept far[RF_FAR_TILES];                            /* [tiles away], of blocks */
     } table;
-    const struct rf_bins *blocks; /* row by row, those that the window is in; only with a unit */
+    const struct rf_bins *blocks;  /* row by row, those that the window is in; only with a unit */
+    uint16_t slab_end[2][RF_BINS]; /* rf_slab_ends() of slabs of a pixel and of wide ones */
 };
 /* Blocks that a window has, at most, of so many tiles. */
 static inline int rf_blocks_across(int tiles)
@@ -81,6 +82,10 @@ int rf_block_rows(const struct rf_viewport *view);
  * axis. */
 void rf_reach_init(struct rf_reach *reach, struct rf_bin_scale scale, float largest_blur, int pad,
                    bool square);
+
+/* Tabulates where the slab ends that a bin is in, of those that cover all bins from the nearest on:
+ * slabs about a pixel wide or, with `wide`, wider from 16 pixels of blur on. */
+void rf_slab_ends(struct rf_bin_scale scale, bool wide, uint16_t end[RF_BINS]);
 
 /* Writes the bins of the tiles of row ty, whose cells are known (tiles/ranges.h). */
 void rf_bin_tiles(const struct rf_viewport *view, struct rf_bin_scale scale, struct rf_blur_q8 blur,
