@@ -46,7 +46,7 @@ AREAS = [
      r'aperture|depth.*|dequantise|focus.*|lens|mixed_pixels|noise|place_edges|strays|temporal|upsample|'
      r'sized|misuse|digest|render-(focus|optics)|fuzz-core.*'),
     (r'src/(?!tables).*\.c',
-     r'aperture|depth|slabs|pool|thread-faults|sized|misuse|digest|render-(?!parallel|deep_yuv).*|'
+     r'aperture|corners|depth|slabs|pool|thread-faults|sized|misuse|digest|render-(?!parallel|deep_yuv).*|'
      r'fuzz-core.*'),
     (r'platform/file/.*\.c', r'file-(?!symbols).*|fuzz-file-.*|misuse'),
     (r'platform/strokes/.*\.c', r'strokes.*|fuzz-strokes|misuse'),

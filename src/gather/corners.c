@@ -12,30 +12,29 @@ enum {
     WHOLE = SPAN * SPAN, /* the weights of a pixel */
 };
 
-static int blur_at(const struct rf_frame *f, int tx, int ty)
+/* The blurs of the hidden background of a tile and of those around it. */
+static void blurs_around(const struct rf_frame *f, int tx, int ty, int blur[3][3])
 {
-    const int x = rf_clamp(tx, 0, f->view->tiles_x - 1), y = rf_clamp(ty, 0, f->view->tiles_y - 1);
+    const int last_x = f->view->tiles_x - 1, last_y = f->view->tiles_y - 1;
 
-    return f->bins[(size_t)y * f->view->tiles_x + x].background_blur;
+    for (int j = 0; j < 3; j++) {
+        const struct rf_bins *row =
+            f->bins + (size_t)rf_clamp(ty + j - 1, 0, last_y) * f->view->tiles_x;
+
+        for (int i = 0; i < 3; i++)
+            blur[j][i] = row[rf_clamp(tx + i - 1, 0, last_x)].background_blur;
+    }
 }
 
-/* The mean of the tiles that meet in the upper left corner of one, without those that are in front
- * of the deepest: in the middle of a subject the hidden background has the blur of the subject. */
-static int corner_blur(const struct rf_frame *f, int tx, int ty)
+/* The mean of four tiles that meet in a corner, without those that are in front of the deepest: in
+ * the middle of a subject the hidden background has the blur of the subject. */
+static int corner_blur(const int above[2], const int below[2], int apart)
 {
-    const int apart = rf_layers_apart(f->params->max_blur_radius, f->blur.unit);
-    const int blur[4] = {blur_at(f, tx - 1, ty - 1), blur_at(f, tx, ty - 1), blur_at(f, tx - 1, ty),
-                         blur_at(f, tx, ty)};
-    int deepest = blur[0], sum = 0, count = 0;
+    const int a = above[0], b = above[1], c = below[0], d = below[1];
+    const int least = rf_larger(rf_larger(a, b), rf_larger(c, d)) - apart;
+    const int count = (a >= least) + (b >= least) + (c >= least) + (d >= least);
 
-    for (int k = 1; k < 4; k++)
-        deepest = rf_larger(deepest, blur[k]);
-    for (int k = 0; k < 4; k++)
-        if (deepest - blur[k] <= apart) {
-            sum += blur[k];
-            count++;
-        }
-    return sum / count;
+    return ((a >= least) * a + (b >= least) * b + (c >= least) * c + (d >= least) * d) / count;
 }
 
 /* Whether two blurs differ so that it shows: by more than a pixel and an eighth of the lesser one.
@@ -49,10 +48,12 @@ static bool differ(const struct rf_frame *f, int a, int b)
 
 void rf_find_corners(struct rf_corners *corners, const struct rf_frame *f, int tx, int ty)
 {
-    int blur[4];
+    const int apart = rf_layers_apart(f->params->max_blur_radius, f->blur.unit);
+    int around[3][3], blur[4];
 
+    blurs_around(f, tx, ty, around);
     for (int k = 0; k < 4; k++)
-        blur[k] = corner_blur(f, tx + k % 2, ty + k / 2);
+        blur[k] = corner_blur(&around[k / 2][k % 2], &around[k / 2 + 1][k % 2], apart);
     corners->across = differ(f, blur[0], blur[1]) || differ(f, blur[2], blur[3]);
     corners->down = differ(f, blur[0], blur[2]) || differ(f, blur[1], blur[3]);
     corners->count = 0;
@@ -66,10 +67,12 @@ void rf_find_corners(struct rf_corners *corners, const struct rf_frame *f, int t
         }
 }
 
-/* The weight of the right or lower corners at a sample, of SPAN: how far its centre is. */
-static uint32_t weight_at(int sample, int apart)
+/* The weight of a corner at a sample, of SPAN, by how far the centre of that is. */
+static uint16_t weight_at(int sample, int apart, bool differs, bool is_farther)
 {
-    return (uint32_t)((2 * sample + 1) * apart);
+    const int farther = (2 * sample + 1) * apart;
+
+    return (uint16_t)(!differs ? SPAN : is_farther ? farther : SPAN - farther);
 }
 
 void rf_add_corner(uint32_t *sum, const uint16_t *mean, const struct rf_corners *corners, int k,
@@ -77,17 +80,18 @@ void rf_add_corner(uint32_t *sum, const uint16_t *mean, const struct rf_corners 
 {
     const bool is_right = corners->across && k % 2;
     const bool is_below = corners->down && k / (1 + corners->across);
+    uint16_t column[RF_TILE];
 
+    for (int x = 0; x < RF_TILE; x++)
+        column[x] = weight_at(x / layout.across, layout.across, corners->across, is_right);
     for (int y = 0; y < RF_TILE / layout.down; y++) {
-        const uint32_t below = weight_at(y, layout.down);
-        const uint32_t row = !corners->down ? SPAN : is_below ? below : SPAN - below;
+        const uint16_t row = weight_at(y, layout.down, corners->down, is_below);
 
-        for (int x = 0; x < RF_TILE; x++) {
-            const uint32_t right = weight_at(x / layout.across, layout.across);
-            const uint32_t column = !corners->across ? SPAN : is_right ? right : SPAN - right;
+        for (int x = 0; x < RF_TILE; x++) { /* products of 16 bits each are what vectors have */
+            const uint16_t weight = (uint16_t)(row * column[x]);
             const int i = y * RF_TILE + x;
 
-            sum[i] = (k ? sum[i] : WHOLE / 2) + row * column * mean[i];
+            sum[i] = (k ? sum[i] : WHOLE / 2) + (uint32_t)weight * mean[i];
         }
     }
 }
