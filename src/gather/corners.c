@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "background/inpaint.h"
+#include "gather/tile_rows.h"
 #include "support/compare.h"
 
 enum {
@@ -65,6 +66,13 @@ void rf_find_corners(struct rf_corners *corners, const struct rf_frame *f, int t
                                                blur[2 * below + x] + blur[2 * below + right]) /
                                               4;
         }
+}
+
+bool rf_corner_repeats(const struct rf_corners *corners, int k, const struct rf_frame *f,
+                       const struct rf_tile_plan *plan, bool past_slabs)
+{
+    return k > 0 && !past_slabs &&
+           rf_least_blur(f, plan, corners->blur[k]) == rf_least_blur(f, plan, corners->blur[k - 1]);
 }
 
 /* The weight of a corner at a sample, of SPAN, by how far the centre of that is. */

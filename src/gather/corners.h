@@ -26,6 +26,11 @@ struct rf_corners {
 
 void rf_find_corners(struct rf_corners *corners, const struct rf_frame *f, int tx, int ty);
 
+/* Whether means are those of the corner before: no ray looks past all slabs, for which the blur of
+ * the hidden background would count, and the rows that are computed are the same. */
+bool rf_corner_repeats(const struct rf_corners *corners, int k, const struct rf_frame *f,
+                       const struct rf_tile_plan *plan, bool past_slabs);
+
 /* Means of a tile that are being interpolated: of pixels, or of chroma, whose samples are two
  * pixels apart across, U and V by turns, and `down` pixels from row to row. */
 struct rf_corner_layout {

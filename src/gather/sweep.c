@@ -106,6 +106,7 @@ struct share {
     alignas(64) struct lookups lookups;
     alignas(64) struct rf_sorted_rays sorted;
     alignas(64) uint32_t corners[3][LANES];
+    bool past_slabs; /* whether a ray of the tile looks past all slabs */
 };
 
 /* Where fine means lie in the share: splats, which come between, use what is before them. */
@@ -172,6 +173,7 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
     };
 
     f->exec->kernels->sort_rays(&share->sorted, &sort);
+    share->past_slabs = share->past_slabs || share->sorted.past_slabs;
     if (has_wide_sums(f))
         weighted((uint64_t *const[4]){run->weighted[0] + first, run->weighted[1] + first,
                                       run->weighted[2] + first, run->weighted[3] + first},
@@ -338,10 +340,13 @@ static void sweep_corners(const struct rf_frame *f, const struct rf_tile_plan *p
 {
     static const struct rf_corner_layout pixels = {1, 1};
 
+    share->past_slabs = false;
     for (int k = 0; k < corners->count && !rf_cancelled(f->exec); k++) {
-        if (rays->set->equal)
+        const bool repeats = rf_corner_repeats(corners, k, f, plan, share->past_slabs);
+
+        if (!repeats && rays->set->equal)
             sweep_means(f, plan, rays, corners->blur[k], tx, ty, share, mean, fine, from, to);
-        else
+        else if (!repeats)
             sweep_sums(f, plan, rays, corners->blur[k], tx, ty, share, mean, from, to);
         for (int c = from; c < to && corners->count > 1; c++)
             rf_add_corner(share->corners[c], mean[c], corners, k, pixels);

@@ -73,6 +73,7 @@ struct share {
     alignas(64) struct sums sums;
     alignas(64) struct lookups lookups;
     alignas(64) uint32_t corners[2][LANES]; /* luma, chroma */
+    bool past_slabs;                        /* whether a ray of the tile looks past all slabs */
 };
 
 uint64_t rf_sweep_yuv_share(void)
@@ -206,6 +207,7 @@ static void sweep_rays(const struct tile *tile, struct share *share)
         rays[0] += lookups->rays;
         rays[1] += shared;
         sort_rays(tile, lookups, shared);
+        share->past_slabs = share->past_slabs || lookups->sorted.past_slabs;
         sweep_plane(tile, false, &lookups->sorted, sums);
         sweep_plane(tile, true, &lookups->sorted, sums);
         if (!set->equal && (end == set->count || set->ray[end].weight != weight)) {
@@ -321,11 +323,15 @@ static void sweep_corners(struct tile *tile, int tx, int ty, struct share *share
     struct rf_corners corners;
 
     rf_find_corners(&corners, tile->f, tx, ty);
+    share->past_slabs = false;
     for (int k = 0; k < corners.count && !rf_cancelled(tile->f->exec); k++) {
+        const bool repeats =
+            rf_corner_repeats(&corners, k, tile->f, &tile->plan, share->past_slabs);
+
         tile->background_blur = corners.blur[k];
-        if (tile->set->equal)
+        if (!repeats && tile->set->equal)
             sweep_means(tile, share, means);
-        else
+        else if (!repeats)
             sweep_sums(tile, share, means);
         if (corners.count > 1) {
             rf_add_corner(share->corners[0], means->luma, &corners, k, pixels);

@@ -32,10 +32,7 @@ int rf_row_gap(const struct rf_frame *f)
     return ((gap > LEAST_ROW_BLUR ? gap : LEAST_ROW_BLUR) << 15) / height;
 }
 
-/* The least blur of everything that rays of a tile can hit, the hidden background included; 1/256
- * pixel. */
-static int least_blur(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                      int background_blur)
+int rf_least_blur(const struct rf_frame *f, const struct rf_tile_plan *plan, int background_blur)
 {
     return rf_smaller(plan->least, rf_in_pixels(abs(background_blur), f->blur.unit));
 }
@@ -51,7 +48,7 @@ static int64_t ramp(int from, int blur)
 uint16_t rf_softness(const struct rf_frame *f, const struct rf_tile_plan *plan, int background_blur)
 {
     const int64_t far_apart = ramp(rf_in_pixels(f->prefilter_above[0], f->blur.unit), plan->reach);
-    const int64_t blurred = ramp(SOFT_BLUR, least_blur(f, plan, background_blur));
+    const int64_t blurred = ramp(SOFT_BLUR, rf_least_blur(f, plan, background_blur));
 
     return (uint16_t)(f->fine ? 0 : far_apart < blurred ? far_apart : blurred);
 }
@@ -60,7 +57,7 @@ struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_
                                  int background_blur)
 {
     static const struct rf_tile_rows sparse[] = {{5, 4}, {3, 6}, {2, 8}};
-    const int least = least_blur(f, plan, background_blur);
+    const int least = rf_least_blur(f, plan, background_blur);
 
     for (int i = 0; f->row_gap && (f->splats || !plan->highlight) && i < 3; i++)
         if (least / sparse[i].step >= f->row_gap)
@@ -71,7 +68,7 @@ struct rf_tile_rows rf_tile_rows(const struct rf_frame *f, const struct rf_tile_
 struct rf_tile_rows rf_chroma_rows(const struct rf_frame *f, const struct rf_tile_plan *plan,
                                    int background_blur)
 {
-    const int least = least_blur(f, plan, background_blur);
+    const int least = rf_least_blur(f, plan, background_blur);
 
     if (f->row_gap && (f->splats || !plan->highlight) && least / 4 >= f->row_gap)
         return (struct rf_tile_rows){2, 4};

@@ -27,6 +27,10 @@ static inline int rf_row_at(struct rf_tile_rows rows, int i)
  * that every row is needed, because of the settings or of an aperture with fine structure. */
 int rf_row_gap(const struct rf_frame *f);
 
+/* The least blur of everything that rays of a tile can hit, the hidden background included; 1/256
+ * pixel. The rows and the softness of a tile depend on its hidden background by that alone. */
+int rf_least_blur(const struct rf_frame *f, const struct rf_tile_plan *plan, int background_blur);
+
 /*
  * How much means of a tile are softened (kernels->soften), Q16: where rays of the preset lie 1.5
  * pixels and more apart, the rays of a pixel hit other pixels than those of its neighbours, which

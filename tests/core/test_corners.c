@@ -62,6 +62,23 @@ static void blurs(void **state)
     assert_int_equal(corners.blur[0], 39 * 256);
 }
 
+/* Means of a corner are those of the one before only if rays see the same, and in the same rows. */
+static void repeats(void **state)
+{
+    static const int any[SIDE * SIDE];
+    const struct rf_corners corners = {.count = 4, .blur = {8 * 256, -12 * 256, 3 * 256, -3 * 256}};
+    const struct rf_tile_plan plan = {.least = 5 * 256};
+    struct scene scene;
+
+    (void)state;
+    make_scene(&scene, any);
+    assert_false(rf_corner_repeats(&corners, 0, &scene.frame, &plan, false));
+    assert_true(rf_corner_repeats(&corners, 1, &scene.frame, &plan, false));
+    assert_false(rf_corner_repeats(&corners, 1, &scene.frame, &plan, true));
+    assert_false(rf_corner_repeats(&corners, 2, &scene.frame, &plan, false));
+    assert_true(rf_corner_repeats(&corners, 3, &scene.frame, &plan, false));
+}
+
 /* How much a corner counts at a sample of 16 / n, from its first side on or the other: 1/32. */
 static int weight(bool differs, bool farther, int sample, int n)
 {
@@ -105,6 +122,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(blurs),
+        cmocka_unit_test(repeats),
         cmocka_unit_test(between),
     };
 

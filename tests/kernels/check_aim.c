@@ -181,6 +181,7 @@ static int depth_in(int low, int high)
 static bool expect_ray(struct view *s, int n, int m, int wanted)
 {
     int tests = 0, before = -1, start = 0; /* the last slab that is tested */
+    bool past_slabs = true;
 
     expect_last(s, n, m, s->job.slabs, true);
     for (int k = 0; k < s->job.slabs; k++) {
@@ -195,11 +196,13 @@ static bool expect_ray(struct view *s, int n, int m, int wanted)
         if (seen.low >= from && seen.high <= to) {
             expect_last(s, n, m, k, false);
             tests -= beside;
+            past_slabs = false;
             break;
         }
         if (s->job.skip_deepest && seen.in_background && seen.high <= to &&
             to - from <= depth_in(from, to)) {
             expect_last(s, n, m, k, true);
+            past_slabs = false;
             break;
         }
         if (!beside || !s->joined[k]) {
@@ -214,6 +217,7 @@ static bool expect_ray(struct view *s, int n, int m, int wanted)
         before = k;
     }
     s->expected.tests[m] = (uint8_t)tests;
+    s->expected.past_slabs = s->expected.past_slabs || past_slabs;
     return tests == wanted || (wanted == RF_SORTED_TESTS - 1 && tests > wanted);
 }
 
@@ -266,6 +270,7 @@ static bool check_sort(const struct subject *subject, struct view *s, int n, uin
     int m = 0;
 
     make_view(s, n, seed);
+    s->expected.past_slabs = false;
     for (int wanted = 0; wanted < RF_SORTED_TESTS; wanted++) {
         s->expected.begin[wanted] = (uint8_t)m;
         s->expected.shared[wanted] = 0;
@@ -279,6 +284,9 @@ static bool check_sort(const struct subject *subject, struct view *s, int n, uin
     subject->kernels.sort_rays(&s->sorted, &s->job);
     if (s->sorted.rays != n)
         return fail(subject, "sort_rays", seed, n, -1, s->sorted.rays, n);
+    if (s->sorted.past_slabs != s->expected.past_slabs)
+        return fail(subject, "sort_rays", seed, n, -1, s->sorted.past_slabs,
+                    s->expected.past_slabs);
     for (int i = 0; i < n; i++) {
         if (s->sorted.tests[i] != s->expected.tests[i])
             return fail(subject, "sort_rays", seed, n, i, s->sorted.tests[i], s->expected.tests[i]);

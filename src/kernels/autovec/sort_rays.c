@@ -244,6 +244,7 @@ static inline void find_ranges(struct slab_ranges *restrict seen, const struct r
 void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_sort_job *job)
 {
     const int rays = job->rays;
+    uint16_t past_slabs = 0;
     struct state s;
 
     for (int n = 0; n < rays; n++) {
@@ -264,10 +265,14 @@ void RF_VEC(rf_sort_rays)(struct rf_sorted_rays *sorted, const struct rf_sort_jo
         if (!cull_slab(&s, job, k, &seen))
             break;
     }
-    for (int n = 0; n < rays; n++)
-        s.from_background[n] =
-            (uint16_t)((s.from_background[n] | mask(s.last[n] == job->slabs)) & 1);
+    for (int n = 0; n < rays; n++) {
+        const uint16_t past = mask(s.last[n] == job->slabs);
+
+        s.from_background[n] = (uint16_t)((s.from_background[n] | past) & 1);
+        past_slabs |= past;
+    }
     sorted->rays = rays;
+    sorted->past_slabs = past_slabs != 0;
     if (job->slabs > BITS)
         place_all(sorted, job, &s, (struct way){job->weight, job->shared, true});
     else if (job->weight && job->shared)
