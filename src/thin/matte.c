@@ -48,7 +48,7 @@ void rf_matte_over(const struct rf_thin_pass *t, int tx, int ty,
     const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
     const struct rf_thin_choice *choice = rf_thin_choice_of(t, tx, ty);
 
-    if (!choice->mattes)
+    if (!count || !choice->mattes) /* counts lie close together */
         return;
     for (uint32_t i = 0; i < count; i++, thin++) {
         const ptrdiff_t at = tile + thin->at / RF_TILE * t->view->stride + thin->at % RF_TILE;
