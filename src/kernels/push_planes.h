@@ -16,8 +16,9 @@ static inline uint16_t rf_push_apart(int16_t apart)
 static inline uint16_t rf_push_known(int16_t blur, int16_t farthest, int16_t apart)
 {
     const uint16_t in_front = (uint16_t)((uint16_t)farthest - (uint16_t)blur);
+    const uint16_t is_given = blur != RF_NO_BLUR ? 0xffff : 0;
 
-    return (uint16_t)(blur != RF_NO_BLUR && in_front <= rf_push_apart(apart) ? 0xffff : 0);
+    return is_given & (uint16_t)(in_front <= rf_push_apart(apart) ? 0xffff : 0);
 }
 
 static inline int16_t rf_push_farther(int16_t a, int16_t b)
