@@ -46,7 +46,7 @@ REFOCUS_API int refocus_focus_in_rectangle(const struct refocus_disparity *map, 
                                            int width, int height, float *focus);
 
 /** A plane of focus: the disparity in focus is an affine function of the place in the
- *  photo, because 1/z of a plane is. See struct refocus_render_params. */
+ *  photo, because 1/z of a plane is. See struct refocus_focus_params. */
 struct refocus_focus_plane {
     float x, y;            /**< place at which focus_disparity holds, 0 to 1 of width and
                                 height */

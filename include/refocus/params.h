@@ -130,7 +130,8 @@ struct refocus_look_params {
                                default; 1 = as much as there was */
     uint32_t grain_seed;  /**< seed of the grain; any number; default 0 */
     int32_t star_spikes;  /**< scatter, sweep: of a star filter, 0 = none, the default, else 2 to
-                               16; sweep gives them to small clipped highlights */
+                               16; sweep gives them to small clipped highlights. Other methods
+                               check what the star fields say, and draw no star */
     float star_length;    /**< pixels of a spike, 0 to REFOCUS_PLAIN_BLUR_RADIUS; default 24 */
     float star_angle;     /**< degrees of the first spike, counter-clockwise from the right, -3600
                                to 3600; default 0 */

@@ -5,14 +5,14 @@
  *                                is known of its depth)
  *     refocus_render             once a lens setting
  *
- * A renderer is reentrant: one thread at a time may call into one renderer,
- * except refocus_cancel() and refocus_renderer_get_info(), which any thread may call. A second call
- * while one runs, from another thread or from a callback, is refused with REFOCUS_ERR_BUSY and
- * changes nothing; refocus_renderer_destroy() has to be the last call of all. No call takes more
- * than 16 KiB of the stack of the thread that makes it, nor of a thread of `parallel`, but for
- * refocus/papers.h. The result does not depend
- * on the number of threads, on the processor or, but for REFOCUS_DEPTH_EDGES_STEADY of
- * scene.h and `steady` of struct refocus_highlight_params, on earlier calls.
+ * One thread at a time may call into a renderer, except refocus_cancel() and
+ * refocus_renderer_get_info(), which any thread may call. A second call while one runs, from
+ * another thread or from a callback, is refused with REFOCUS_ERR_BUSY and changes nothing;
+ * refocus_renderer_destroy() has to be the last call of all. No call takes more than 16 KiB of the
+ * stack of the thread that makes it, nor of a thread of `parallel`, but for refocus/papers.h. The
+ * result does not depend on the number of threads, on the processor or, but for
+ * REFOCUS_DEPTH_EDGES_STEADY of scene.h and `steady` of struct refocus_highlight_params, on earlier
+ * calls.
  */
 #ifndef REFOCUS_RENDER_H
 #define REFOCUS_RENDER_H

@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-/** A focus stack. Opaque; reentrant: one thread at a time. */
+/** A focus stack. Opaque; one thread at a time may call into it. */
 struct refocus_stack;
 
 /** Frames of a stack. */

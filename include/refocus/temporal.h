@@ -12,8 +12,8 @@
 extern "C" {
 #endif
 
-/** A filter over the depth maps of a video. Opaque; reentrant: one thread at a time, but for
- *  refocus_temporal_cancel(). */
+/** A filter over the depth maps of a video. Opaque; one thread at a time may call into it, but
+ *  for refocus_temporal_cancel(). */
 struct refocus_temporal;
 
 /** How to filter. Start from refocus_temporal_params_default(). */

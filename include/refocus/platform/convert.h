@@ -1,7 +1,7 @@
 /** @file platform/convert.h  Frames of cameras as pictures and depth maps for the core.
  *
- * Part of librefocus-capture. A converter holds the rows and tables that it works with;
- * it is reentrant.
+ * Part of librefocus-capture. A converter holds the rows and tables that it works with: one thread
+ * at a time may call into one.
  *
  * Frames are those of a source, or made by the program: see struct refocus_frame. One with fields
  * that this library does not know and that are not 0 is REFOCUS_ERR_UNSUPPORTED, and one whose

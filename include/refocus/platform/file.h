@@ -135,7 +135,7 @@ struct refocus_photo {
     const struct refocus_photo_info *info; /**< as far as the library knows it: its struct_size */
     /** TIFF block without "Exif\0\0", made true for the upright photo: orientation 1,
      *  width and height exchanged when it lay on its side, the old thumbnail
-     *  unlinked. */
+     *  overwritten. */
     struct refocus_blob exif;
     struct refocus_blob icc; /**< ICC profile, when it is one for RGB */
     /** All that is stored of the picture, when that is more than 8 bits a channel
@@ -191,7 +191,8 @@ REFOCUS_API int refocus_photo_read_memory(struct refocus_photo **photo, const vo
 /**
  * The second picture of a stereo file: of an MPO (a JPEG with the other view behind it,
  * CIPA DC-007), of a JPEG with another one right behind it, as Leia's tablets write (LIF), or of a
- * HEIC with two pictures. refocus_photo_read() reads the first, the left one.
+ * HEIC with two pictures. refocus_photo_read() reads the first one. That is the left one as a
+ * rule, but some files have the right one first (`order` of struct refocus_stereo_params).
  *
  * @return as refocus_photo_read(); REFOCUS_ERR_UNSUPPORTED when there is only one
  *         picture
@@ -203,7 +204,7 @@ REFOCUS_API int refocus_photo_read_second(struct refocus_photo **photo, const ch
 /** Free a photo and set the handle to NULL. A NULL handle is fine. */
 REFOCUS_API void refocus_photo_free(struct refocus_photo **photo);
 
-/** The light of a photo by its gain map. Reentrant: its image and refocus_light_to_base() may be
+/** The light of a photo by its gain map. Thread-safe: its image and refocus_light_to_base() may be
  *  used by several threads at once. */
 struct refocus_light;
 

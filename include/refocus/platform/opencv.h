@@ -202,8 +202,8 @@ REFOCUS_API int refocus_cv_estimate(const struct refocus_image *photo, const cha
  *  range, it does nothing. */
 REFOCUS_API void refocus_cv_estimate_free(struct refocus_estimate *estimate);
 
-/** A network that is read once and run as often as wanted, as for a camera. Opaque;
- *  reentrant. */
+/** A network that is read once and run as often as wanted, as for a camera. Opaque; one thread at
+ *  a time may call into it. */
 struct refocus_estimator;
 
 /**

@@ -22,8 +22,9 @@
  *     frames-%04d.png        a picture each: .png .jpg .ppm; counted from 0
  *
  * FILE may be "-" for standard output, or a pipe. Of raw: the last comma of the name
- * begins the format, unless a dot or a slash follows it. A sink is reentrant. The window has a
- * thread of its own, which must be the only one of the process that uses SDL's video.
+ * begins the format, unless a dot or a slash follows it. One thread at a time may call into a sink.
+ * The window has a thread of its own, which must be the only one of the process that uses SDL's
+ * video.
  */
 #ifndef REFOCUS_PLATFORM_SINK_H
 #define REFOCUS_PLATFORM_SINK_H

@@ -20,8 +20,8 @@
  * When wait reports that the device has failed or gone, refocus_source_restart() opens
  * it again.
  *
- * A source is reentrant: one thread at a time, except refocus_source_interrupt(), which
- * any thread may call while the source is open.
+ * One thread at a time may call into a source, except refocus_source_interrupt(), which any thread
+ * may call while the source is open.
  */
 #ifndef REFOCUS_PLATFORM_SOURCE_H
 #define REFOCUS_PLATFORM_SOURCE_H
@@ -264,7 +264,7 @@ REFOCUS_API int refocus_source_start(struct refocus_source *source,
 /**
  * Wait for the next frame.
  *
- * @param timeout_ms  0 = only look
+ * @param timeout_ms  0, or negative: only look
  * @param frame       receives the frame; it and its memory stay until it is released
  * @return REFOCUS_OK, REFOCUS_ERR_TIMEOUT, REFOCUS_ERR_CANCELLED (interrupted),
  *         REFOCUS_ERR_END (no more frames), REFOCUS_ERR_GONE (unplugged) or

@@ -14,7 +14,7 @@
  *
  * Coordinates are pixels of the photo, x right, y down, centres at whole numbers.
  *
- * A painting is reentrant: one thread at a time may call into one.
+ * One thread at a time may call into a painting.
  */
 #ifndef REFOCUS_PLATFORM_STROKES_H
 #define REFOCUS_PLATFORM_STROKES_H
