@@ -77,7 +77,7 @@ struct rf_frame {
     struct rf_reach reach;
     int first_tx, first_ty, count_tx, count_ty; /* tiles of the region */
     int prefilter_above[RF_PREFILTER_STEPS];    /* |s| that each step begins at, as it is stored */
-    bool prefilter_fades;                       /* steps set in gradually: rf_prefilter_rows() */
+    bool prefilter_fades;                       /* steps set in gradually: rf_prefilter_over() */
     struct rf_thin_pass thin;     /* thin structures, composited over the means of rays */
     bool weighted;                /* eq. 5 weights differ from 1 */
     bool premultiplied;           /* weighted, and light times weight fits 16 bits */

@@ -21,7 +21,8 @@
  *     raise       counts them as foreground
  *     boost       adds the light that clipping took to the light that rays hit
  *
- * This header is all that other folders include; the other headers here are private.
+ * Other folders include this header and, for single steps, estimate.h, known.h and steady.h; the
+ * other headers here are private.
  */
 #ifndef RF_HIGHLIGHTS_H
 #define RF_HIGHLIGHTS_H

@@ -63,7 +63,7 @@ static size_t offset(const struct scene *s, int x, int y, const struct refocus_r
                     y + (int)floor(ray->v / 32768.0 * blur + 0.5));
 }
 
-/* Randomized intersection search, Yang et al. 2016: see src/methods/search.c. */
+/* Randomized intersection search, Yang et al. 2016: see src/gather/search.c. */
 static size_t search(const struct scene *s, int x, int y, const struct refocus_ray *ray, int tests)
 {
     const double length = hypot(ray->u, ray->v) / 32768;

@@ -5,7 +5,8 @@ usage: test_comments.py [--list]
 
 Each .c and .h file of src and platform begins with a comment: `/* name.c: what it does. */`, the
 public headers with `/** @file name.h  What it is. */`. No comment begins with a word that points at
-something outside it (of, what, those, and, ...).
+something outside it (of, what, those, and, ...), nor names a file or a function of ours that is not
+there.
 """
 import pathlib
 import re
@@ -16,6 +17,8 @@ BARE = ('of', 'what', 'those', 'and', 'that', 'which', 'its', 'their', 'the same
         'from which', 'where those')
 COMMENT = re.compile(r'/\*\*?<?[ \t\n*]*(.*?)\*/', re.S)
 BEGINS_BARE = re.compile(r'(?:%s)\b' % '|'.join(BARE), re.I)
+FILE = re.compile(r'(?<![*\w])[\w/]+\.(?:c|h|cpp|hpp|def|py|sh|md)\b')
+FUNCTION = re.compile(r'\b(?:rf|refocus)_\w+(?=\(\))')
 FOLDERS = ('src', 'include', 'platform', 'examples', 'tests')
 
 
@@ -44,11 +47,29 @@ def faults_of_first_line(path):
         yield f'{path.relative_to(TOP)}: the first line does not say what the file does'
 
 
+def names_that_are_missing():
+    """Files and functions that comments name; those in capitals stand for any."""
+    texts = {path: path.read_text() for path in sources()}
+    words = {word for text in texts.values() for word in re.findall(r'\w+', COMMENT.sub('', text))}
+    files = [str(path) for path in TOP.glob('*.*')]
+    files += [str(path) for folder in FOLDERS for path in (TOP / folder).rglob('*.*')]
+    for path, text in texts.items():
+        for comment in COMMENT.findall(text):
+            names = [name for name in FILE.findall(comment)
+                     if not any(file.endswith('/' + name) for file in files)]
+            names += [name for name in FUNCTION.findall(comment) if name not in words]
+            for name in names:
+                if re.search('[A-Z]', name):
+                    continue
+                yield f'{path.relative_to(TOP)}: {name} is not there'
+
+
 def main():
     found = [line for path in sources() for line in bare(path)]
     found += [line for path in sources()
               if path.is_relative_to(TOP / 'src') or path.is_relative_to(TOP / 'platform')
               or path.is_relative_to(TOP / 'include') for line in faults_of_first_line(path)]
+    found += names_that_are_missing()
     for line in found:
         print(line)
     print(f'{len(found)} comments or first lines to mend')

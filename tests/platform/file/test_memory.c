@@ -113,7 +113,7 @@ static void lights(void **state)
 #endif
 
 #ifdef RF_HAVE_HEIC
-/* libheif's own memory is not ours to refuse; this is what heic.c asks for. */
+/* libheif's own memory is not ours to refuse; this is what the heic_*.c ask for. */
 static void heic(void **state)
 {
     struct sample sample = {.name = "heic"};
