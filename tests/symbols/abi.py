@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Holds the ABI of the last release: what programs were compiled against has to stay.
+"""Holds the ABI of the last release (until there is one: of 0.2 as it is kept): what programs were
+compiled against has to stay.
 
     abi.py SOURCE LIBRARY.so WORK_FOLDER COMPILER...    checks; 77 when there is no abidiff
     abi.py --renew SOURCE COMPILER...                   after a release: keeps its headers
