@@ -13,7 +13,7 @@ from pages import SOURCE, cells
 # run in quality.md; method and options in performance.md, or a quality of the portrait; what it is
 ROWS = [
     ("input", None, "the untouched photo"),
-    ("standard", ("quality", "standard"), "`sweep`, quality `standard`: the default"),
+    ("standard", ("quality", "standard"), "`sweep`, the default: quality `auto`, at this blur `standard`"),
     ("standard-off", None, "the same with `--highlights off`: no light added, as in the methods below"),
     ("standard", ("sweep", "--rays 64 --cpu c"), "the default in plain C"),
     ("best", ("quality", "best"), "`sweep`, quality `best`"),
