@@ -323,8 +323,10 @@ int stereo(const refocus_image *left, const refocus_image *right,
            const refocus_stereo_params *params, float *out, refocus_stereo_report *report,
            refocus_cv_reason *reason)
 {
-    const double scale = std::max(1.0, left->width / (double)params->max_side);
-    const cv::Size size(cvRound(left->width / scale), std::max(1, cvRound(left->height / scale)));
+    const double scale =
+        std::max(1.0, std::max(left->width, left->height) / (double)params->max_side);
+    const cv::Size size(std::max(1, cvRound(left->width / scale)),
+                        std::max(1, cvRound(left->height / scale)));
     const rf_ximgproc *const contrib =
         params->method == REFOCUS_STEREO_WLS ? rf_opencv_ximgproc() : nullptr;
     cv::Mat full;

@@ -48,8 +48,8 @@ enum refocus_stereo_order {
 /** Stereo matching. Start from refocus_stereo_params_default(). */
 struct refocus_stereo_params {
     uint32_t struct_size; /**< sizeof(struct refocus_stereo_params) */
-    int32_t max_side;     /**< pictures are matched at no more than this width; default
-                               1600 */
+    int32_t max_side;     /**< pictures are matched with a larger side of no more than this many
+                               pixels, 64 at the least; default 1600 */
     float least_match;    /**< share of pixels that has to agree from left and right,
                                else the pair is refused; default 0.3 */
     uint32_t method;      /**< enum refocus_stereo_method */

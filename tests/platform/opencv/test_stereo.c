@@ -257,6 +257,29 @@ static void stereo_exposures(void **state)
     }
 }
 
+/* A pair that is taller than wide, four of them one below the other, is matched at half its size
+ * where its height is twice the largest side: two rows have the same disparities. */
+static void stereo_tall(void **state)
+{
+    enum { TALL = 4 * H };
+    static uint8_t left[3 * W * TALL], right[3 * W * TALL], one[3 * W * H], other[3 * W * H];
+    static float d[W * TALL];
+    const struct refocus_image a = refocus_image_packed(REFOCUS_FORMAT_RGB8, left, W, TALL, 3 * W);
+    const struct refocus_image b = refocus_image_packed(REFOCUS_FORMAT_RGB8, right, W, TALL, 3 * W);
+    struct refocus_stereo_params params = refocus_stereo_params_default();
+
+    (void)state;
+    make_pair(one, other, 0);
+    for (int y = 0; y < TALL; y++) {
+        memcpy(left + 3 * y * W, one + 3 * (y % H) * W, 3 * W);
+        memcpy(right + 3 * y * W, other + 3 * (y % H) * W, 3 * W);
+    }
+    params.max_side = TALL / 2;
+    assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, NULL, NULL), REFOCUS_OK);
+    for (int y = 0; y < TALL; y += 2)
+        assert_memory_equal(d + y * W, d + (y + 1) * W, W * sizeof *d);
+}
+
 static void stereo_refuses(void **state)
 {
     static uint8_t left[3 * W * H], right[3 * W * H];
@@ -331,6 +354,7 @@ int main(void)
         cmocka_unit_test(stereo_far_chance),
         cmocka_unit_test(stereo_order),
         cmocka_unit_test(stereo_unrectified),
+        cmocka_unit_test(stereo_tall),
         cmocka_unit_test(stereo_refuses),
         cmocka_unit_test(reports_of_any_size),
     };
