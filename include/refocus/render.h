@@ -171,14 +171,14 @@ refocus_renderer_params_default(int32_t max_width, int32_t max_height, float max
  *
  * Strip mode, params->in_place, takes no more than
  *
- *     28 (S + 63) (S + 16) + 0.78 (W + 16) (H + 64) + 4 T (W + R) + 620000 T
- *     + 24 min(P, 129)^2 + 150000, of K above 127 400000
+ *     25 (B + 64) (B + 32) + 2.5 (B + 2P + 64)^2 + 0.78 (W + 16) (H + 64) + 4 T (W + R)
+ *     + 620000 T + 24 min(P, 129)^2 + 300000
  *
- * with S = 144 + 2N - M + max(M, 2P), M = P + 28, of K above 54 P + 52, above 127 P + 148, and N =
- * max(M, 2P + 9), M and N rounded up to multiples of 16: 1920x1080 with K = 40 takes less than
- * 6,000,000 bytes for one thread. With params->depth_edges, whose passes need the whole map, strip
- * mode takes up to 32 (W + 128) (H + 64) + 2^18 more, and STEADY 4 W H + 2^8 on top of it. With
- * params->highlights it takes up to 24 min(W, 512) min(H, 512) + 2^16 more.
+ * with B = 128 + 2N the side of a block, N = max(2P + 9, P + 28), of K above 54 max(2P + 9, P +
+ * 52), above 127 max(2P + 9, P + 148), rounded up to a multiple of 16: 1920x1080 with K = 40 takes
+ * less than 6,000,000 bytes for one thread. With params->depth_edges, whose passes need the whole
+ * map, strip mode takes up to 32 (W + 128) (H + 64) + 2^18 more, and STEADY 4 W H + 2^8 on top of
+ * it. With params->highlights it takes up to 24 min(W, 512) min(H, 512) + 2^16 more.
  *
  * @return 0 if a parameter is out of its range. Thread-safe.
  */

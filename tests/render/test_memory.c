@@ -164,47 +164,46 @@ static void formula(void **state)
 /* Returns the most memory that strip mode takes, by the text of render.h. */
 static double stated_in_place(int width, int height, float blur, int threads)
 {
-    const double p = ceil((double)blur) + 2, m = 16 * ceil((p + (blur > 127  ? 148
-                                                                 : blur > 54 ? 52
-                                                                             : 28)) /
-                                                           16);
-    const double n = fmax(16 * ceil((2 * p + 9) / 16), m);
-    const double s = 144 + 2 * n - m + fmax(m, 2 * p);
+    const double p = ceil((double)blur) + 2, filtered = blur > 127 ? 148 : blur > 54 ? 52 : 28;
+    const double n = 16 * ceil(fmax(2 * p + 9, p + filtered) / 16), b = 128 + 2 * n;
 
-    return 28 * (s + 63) * (s + 16) + 0.78 * (width + 16.0) * (height + 64.0) +
-           4.0 * threads * (width + scratch(blur)) + 62e4 * threads +
-           24 * fmin(p, 129) * fmin(p, 129) + (p > 129 ? 400000 : 150000);
+    return 25 * (b + 64) * (b + 32) + 2.5 * (b + 2 * p + 64) * (b + 2 * p + 64) +
+           0.78 * (width + 16.0) * (height + 64.0) + 4.0 * threads * (width + scratch(blur)) +
+           62e4 * threads + 24 * fmin(p, 129) * fmin(p, 129) + 300000;
 }
 
-/* The figures that strip mode is for. */
+/* The figures that strip mode is for: of every blur, and of pictures smaller and larger than the
+ * window of a block. */
 static void formula_of_modes(void **state)
 {
-    static const int sides[][2] = {{1, 1},     {1, 65535},   {65535, 1}, {16, 16},  {17, 33},
-                                   {720, 540}, {1920, 1080}, {2, 40000}, {31, 5000}};
-    static const float blurs[] = {0, 0.5f, 1, 12, 20, 40, 64, 100, 127, 128, 300, 944};
+    static const int sides[][2] = {{1, 1},     {1, 65535},   {65535, 1},  {16, 16},   {17, 33},
+                                   {720, 540}, {1920, 1080}, {2, 40000},  {31, 5000}, {263, 270},
+                                   {358, 259}, {240, 1045},  {1195, 1348}};
+    enum { SIDES = sizeof sides / sizeof *sides };
     struct refocus_renderer_params params = refocus_renderer_params_default(1920, 1080, 40);
 
     (void)state;
     params.threads = 1;
     params.in_place = 1;
     assert_true(refocus_renderer_memory(&params) < 6000000);
-    for (int s = 0; s < 9; s++) {
-        for (int k = 0; k < 12; k++) {
-            const int w = sides[s][0], h = sides[s][1], threads = k % 2 ? 1 : 64;
+    for (int s = 0; s < SIDES; s++) {
+        for (int k = 0; k <= 2 * REFOCUS_MAX_BLUR_RADIUS; k++) {
+            const int w = sides[s][0], h = sides[s][1], threads = k % 4 < 2 ? 64 : 1;
+            const float blur = (float)k / 2;
             double bytes;
 
-            params = refocus_renderer_params_default(w, h, blurs[k]);
+            params = refocus_renderer_params_default(w, h, blur);
             params.threads = threads;
             params.in_place = 1;
             bytes = (double)refocus_renderer_memory(&params);
-            if (bytes <= 0 || bytes > stated_in_place(w, h, blurs[k], threads))
+            if (bytes <= 0 || bytes > stated_in_place(w, h, blur, threads))
                 fail_msg("%d x %d, K = %g: strip mode takes %.0f bytes, header %.0f", w, h,
-                         (double)blurs[k], bytes, stated_in_place(w, h, blurs[k], threads));
+                         (double)blur, bytes, stated_in_place(w, h, blur, threads));
             params.highlights = 1;
             bytes = (double)refocus_renderer_memory(&params) - bytes;
             if (bytes < 0 || bytes > 24 * fmin(w, 512) * fmin(h, 512) + 65536)
                 fail_msg("%d x %d, K = %g: the estimate takes %.0f bytes in strip mode", w, h,
-                         (double)blurs[k], bytes);
+                         (double)blur, bytes);
         }
     }
 }
