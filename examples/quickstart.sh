@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # usage: examples/quickstart.sh [--core]
 #
-# Installs what is missing on Debian 12, builds the refocus command in ./build with everything
-# that README.md shows (JPEG, PNG, HEIC, V4L2, libcamera, OpenCV, windows), and refocuses a
-# scene at three distances: the subject, the middle, the background. The pictures are written
-# to ./out. A build folder that is there already and lacks any of it is configured anew.
+# Installs what is missing on Debian 12, builds all that README.md shows in ./build (the refocus
+# command with every picture format, camera, OpenCV, the window and the page; the plug-ins of
+# GStreamer and GEGL; the Python package), and refocuses a scene at three distances: the subject,
+# the middle, the background. The pictures are written to ./out. A build folder that is there
+# already and lacks any of it is configured anew.
 #   --core  installs a compiler and meson alone, builds the library and nothing else in
 #           ./build-core, and lets a program of one page refocus a scene that it draws
 # $REFOCUS_BUILD and $REFOCUS_OUT are other folders.
@@ -17,7 +18,7 @@ case ${1-}:$# in
     :0) ;;
     --core:1) core=1 ;;
     *)
-        sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
+        sed -n '2,11s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"
         [ "${1-}" = --help ] || exit 2
         exit 0
         ;;
@@ -64,9 +65,9 @@ fi
 
 build=${REFOCUS_BUILD:-$top/build}
 need_packages "${core_packages[@]}" "${feature_packages[@]}"
-configure -D{tools,jpeg,png,xmp,heic,tiff,openexr,webp,jxl,raw,npz,v4l2,libcamera,pipewire,sdl2,sdl2_ttf,web,opencv,gstreamer,gegl}=enabled
-# The command, and what it loads when it is asked for.
-ninja --quiet -C "$build" command >&2
+configure -D{tools,jpeg,png,xmp,heic,tiff,openexr,webp,jxl,raw,npz,v4l2,libcamera,pipewire,sdl2,sdl2_ttf,web,opencv,gstreamer,gegl,python}=enabled
+# Not the tests and the examples.
+ninja --quiet -C "$build" command plugins python-package >&2
 for focus in 0.689 0.257 0.000; do
     "$build/platform/cli/refocus" render "$scene/allfocus.png" \
         --depth "$scene/disparity.png" --focus $focus --blur 20 \

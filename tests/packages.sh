@@ -7,7 +7,7 @@ feature_packages=(pkg-config g++ libpng-dev libturbojpeg0-dev libexpat1-dev libh
     libopencv-core-dev libopencv-imgproc-dev
     libopencv-calib3d-dev libopencv-dnn-dev libtiff-dev libopenexr-dev libwebp-dev libjxl-dev
     libraw-dev libzip-dev libmicrohttpd-dev libgstreamer1.0-dev libgstreamer-plugins-base1.0-dev
-    libgegl-dev libpipewire-0.3-dev)
+    libgegl-dev libpipewire-0.3-dev python3-dev python3-numpy)
 
 # The page of `refocus serve` is tried in a browser: tests/run.sh --full.
 page_packages=(chromium chromium-driver python3-selenium)

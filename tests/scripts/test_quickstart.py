@@ -10,7 +10,7 @@ import stubs
 
 SCRIPT = 'examples/quickstart.sh'
 # Options that cost nothing on the first day when they are off.
-NOT_ASKED = {'python', 'simd', 'tests', 'ximgproc'}
+NOT_ASKED = {'simd', 'tests', 'ximgproc'}
 
 
 def feature_options():
@@ -64,6 +64,9 @@ class Quickstart(stubs.Case):
                         'libexpat1-dev', 'libjansson-dev', 'g++'):
             self.assertIn(package, self.installed(asked))
         self.assertEqual(sum('refocus render ' in line for line in asked), 3)
+        ninja = [line for line in asked if line.startswith('ninja ')]
+        self.assertEqual([line.split()[-3:] for line in ninja],
+                         [['command', 'plugins', 'python-package']])
 
     def test_folder_that_lacks_something(self):
         self.old_folder(['tools=enabled', 'png=enabled', 'heic=auto'])

@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from pathlib import Path
 
 REFOCUS = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else 'refocus'
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '../..')
@@ -207,6 +208,22 @@ class Readme(unittest.TestCase):
                 self.assertNotIn('this build', result.stderr)
                 self.assertEqual(result.returncode, 1, result.stderr)
                 self.assertRegex(result.stderr, line)
+
+    def test_plugins_and_python(self):
+        """The parts of the build that other programs load."""
+        platform = Path(REFOCUS).parents[1]
+        for plugin in ('gstreamer/libgstrefocus.so', 'gegl/refocus-lens-blur.so'):
+            self.assertTrue((platform / plugin).exists(), plugin)
+        code = 'import refocus; print(refocus.file_formats())'
+        for python in ('python3', '/usr/bin/python3'):  # the first one that has numpy
+            if subprocess.run([python, '-c', 'import numpy'], stderr=subprocess.DEVNULL).returncode:
+                continue
+            formats = subprocess.run([python, '-c', code], text=True, check=True,
+                                     stdout=subprocess.PIPE, env=dict(
+                                         os.environ, PYTHONPATH=str(platform / 'python'))).stdout
+            self.assertIn('TIFF', formats)
+            return
+        self.skipTest('no numpy')
 
 
 if __name__ == '__main__':
