@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """usage: test_lines.py PLUGIN_FOLDER GEGL_FOLDER [REFOCUS]  -- what users type: the command of GEGL
 with the operation, beside the command REFOCUS where there is one; and GIMP, where it is installed."""
+import math
 import os
 import pathlib
 import re
@@ -12,6 +13,8 @@ import unittest
 
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 SCENES = TOP / 'examples/data'
+sys.path.insert(0, str(TOP / 'tests/cli'))
+import pictures  # noqa: E402
 PLUGINS, GEGL_PLUGINS = sys.argv.pop(1), sys.argv.pop(1)
 COMMAND = sys.argv.pop(1) if len(sys.argv) > 1 else None
 GIMP = shutil.which('gimp-console-2.10')
@@ -144,6 +147,21 @@ class Lines(unittest.TestCase):
             line = line.replace(name, str(other))
         self.assertEqual(self.gegl(*line.split()), '')
         self.assertGreater(os.path.getsize(out), 1000)
+
+    def test_scores(self):
+        """The scores beside GEGL's own blurs that the page of platform has."""
+        page = (TOP / 'platform/README.md').read_text(encoding='utf-8')
+        rows = re.findall(r'^\| (\w+) \| ([\d.]+), (\d+) \| [\d.]+ dB \| \*\*([\d.]+) dB\*\*',
+                          page, re.M)
+        self.assertEqual(len(rows), 4)
+        for scene, focus, blur, stated in rows:
+            folder = SCENES / scene
+            ours = self.refocused(folder / 'allfocus.png', folder / 'disparity.png',
+                                  f'focus={focus}', f'blur={blur}')[2]
+            true = b''.join(pictures.read_png(folder / f'gt_df{focus}_K{blur}.png')[4])
+            squares = sum((a - b) ** 2 for a, b in zip(ours, true)) / len(true)
+            self.assertEqual(len(ours), len(true))
+            self.assertAlmostEqual(10 * math.log10(255 ** 2 / squares), float(stated), delta=0.05)
 
     def test_in_a_chain(self):
         """A part of the result, scaled input and a map of another size."""
