@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # usage: tests/run.sh [--full | --long]
 #
-# Builds with gcc on Debian 12, installing what is missing, and runs the tests of that build: five
-# minutes on two cores. The last line is 'N passed, N failed, N skipped', the sum over all
+# Builds with gcc on Debian 12, installing what is missing, and runs the tests of that build: at
+# most six minutes on two cores. The last line is 'N passed, N failed, N skipped', the sum over all
 # builds; the exit status is 1 when anything failed.
 #   --full  also the pages of scores, clang, clang-tidy, sanitizers, AArch64 and ARMv7 (emulated),
 #           builds with parts left out, cameras in a virtual machine, the quickstart
