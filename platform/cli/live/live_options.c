@@ -165,8 +165,8 @@ const struct option live_options[] = {
      .greatest = REFOCUS_MAX_BLUR_RADIUS,
      .brief = "largest blur radius, pixels; default 20",
      .help = "blur radius in pixels of what lies farthest from the focus, default 20; when the "
-             "range of distances moves, the lens stays, and goes back to K within some ten "
-             "seconds"},
+             "range of distances moves, the lens stays, and goes back to K with a time constant "
+             "of ten seconds"},
     {.kind = OPTION_NUMBER,
      .name = "--blur-most",
      .argument = "K",
