@@ -149,9 +149,9 @@ static inline struct refocus_stack_result refocus_stack_result_default(void)
  * sample of the map that the work is done at, which has at most 3 million samples; 3 more a sample
  * for each depth, 13 to 17 with nine frames and fewer, their number rounded up to 16 or 24, else
  * one for each frame, rounded up to 16, 24 or 32; some 10 a sample and 3 a pixel; for each thread
- * 12 a frame and sample of a row. Nine frames of 2 megapixels take 290 MB, of 12 megapixels 700 MB.
- * Of apertures there are at most 960 samples along the longer side, some 100 bytes each: two frames
- * of 12 megapixels take 154 MB.
+ * 12 a frame and sample of a row. Nine frames of 1920x1080 take 276 MB, of 4000x3000 665 MB. Of
+ * apertures there are at most 960 samples along the longer side, some 100 bytes each: two frames of
+ * 4000x3000 take 154 MB.
  *
  * @param stack  receives it, or NULL on an error
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY, REFOCUS_ERR_SIZE (it would need
