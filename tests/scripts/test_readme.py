@@ -191,6 +191,15 @@ class Readme(unittest.TestCase):
                         r'refocus view '):
             self.assertRegex(shown, pattern)
 
+    def test_every_option_of_render(self):
+        """The page of the command says that it explains them all."""
+        page = read('platform/cli/README.md')
+        help_all = self.run_it('render', '--help-all').stdout
+        options = re.findall(r'^ +(?:-\w, )?(--[\w-]+)', help_all, re.M)
+        self.assertGreater(len(options), 100)
+        self.assertEqual([option for option in options
+                          if not re.search(re.escape(option) + r'(?![\w-])', page)], [])
+
     def test_parts_of_the_build(self):
         """What the page speaks of and its commands reach only with the right file or device."""
         with open('photo.heic', 'wb') as file:
