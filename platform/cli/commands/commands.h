@@ -17,7 +17,7 @@ extern const struct command live_command;
 extern const struct command view_command;
 extern const struct command serve_command;
 /* The command depth, whose report and errors call a focus stack so where its files do not stay. */
-int depth_of_stack(int argc, char **argv, const char *called);
+int depth_run(int argc, char **argv, const char *called);
 /* The command serve, and its page in a browser. */
 int serve_in_browser(int argc, char **argv);
 

@@ -240,7 +240,7 @@ static int read_input(const struct depth_command_settings *settings, const char 
     return input_read_depth(input, files[0], &settings->depth);
 }
 
-int depth_of_stack(int argc, char **argv, const char *called)
+int depth_run(int argc, char **argv, const char *called)
 {
     struct depth_command_settings settings = {.network = NETWORK_SETTINGS_NONE,
                                               .depth = DEPTH_SETTINGS_NONE,
@@ -283,7 +283,7 @@ int depth_of_stack(int argc, char **argv, const char *called)
 
 static int run(int argc, char **argv)
 {
-    return depth_of_stack(argc, argv, NULL);
+    return depth_run(argc, argv, NULL);
 }
 
 const struct command depth_command = {

@@ -152,7 +152,7 @@ static int make_depth(const struct settings *settings, const struct shots *shots
         argv[argc++] = name[k + 1];
     }
     argv[argc] = NULL;
-    return depth_of_stack(argc, argv, settings->keep ? NULL : settings->shots.camera);
+    return depth_run(argc, argv, settings->keep ? NULL : settings->shots.camera);
 }
 
 struct place {
