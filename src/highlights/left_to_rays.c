@@ -1,5 +1,5 @@
-/* gather.c: prepares highlights that are not splatted for the rays: tells where few rays hit one,
- * and gives back the light that clipping took. */
+/* left_to_rays.c: prepares highlights that are not splatted but left to the rays: tells where few
+ * rays hit one, and gives back the light that clipping took. */
 #include "highlights/highlights.h"
 
 #include <assert.h>
