@@ -315,7 +315,7 @@ def main():
     text = ["## ARM: instructions counted, cycles estimated\n",
             f"examples/data/portrait brought to each size by repeating pixels, K = {BLUR}, `sweep`, "
             "focus 0.689, NEON, "
-            "one thread, RGB in and out, highlights splatted. Instructions are counted exactly, under "
+            "one thread, RGB in and out, highlights splatted with a gain of 4. Instructions are counted exactly, under "
             "emulation. Cycles are an ESTIMATE that no ARM machine has confirmed: LLVM's models of the cores (the "
             "A57's schedule stands for the A72, the Neoverse N1's for the A76), each block in "
             "a loop of its own, all data in the first-level cache, no branch mispredicted. They are "

@@ -45,7 +45,7 @@ int main(int argc, char **argv)
     params.threads = 1;
     params.cpu = cpu;
     lens.render.rays = number[3];
-    lens.highlights.gain = 4; /* The command line renders with this gain. */
+    lens.highlights.gain = 4; /* As `--highlights 4` of the command. */
     if (argc > 9 && atoi(argv[9]) > 0) {
         lens.render.method = REFOCUS_METHOD_SEARCH;
         lens.search.iterations = atoi(argv[9]);
