@@ -1,9 +1,20 @@
-/* backend.c: a source waits for a device in a way that another thread can end. */
+/* backend.c: what all kinds of sources share: their rate, and a wait for a device that another
+ * thread can end. */
 #define _GNU_SOURCE /* ppoll */
 #include "backend.h"
 #include <errno.h>
 #include <poll.h>
 #include <time.h>
+
+double rf_source_fps(const struct refocus_source *source, double own)
+{
+    const struct refocus_source_config *const config = &source->config;
+
+    return config->fps > 0           ? config->fps
+           : own > 0                 ? own
+           : config->default_fps > 0 ? config->default_fps
+                                     : 30;
+}
 
 int rf_source_poll(const struct refocus_source *source, int fd, short events, int64_t deadline_ns,
                    short *revents)

@@ -75,6 +75,9 @@ RF_SOURCE_LIST(RF_DECLARE_SOURCE)
  */
 extern const struct rf_source_ops rf_source_v4l2, rf_source_libcamera;
 
+/* Frames a second of a source whose own rate is this, or 0: as source->config says. */
+double rf_source_fps(const struct refocus_source *source, double own);
+
 /*
  * Wait until fd (or -1) has one of the events, or a moment of CLOCK_MONOTONIC. Returns REFOCUS_OK,
  * REFOCUS_ERR_TIMEOUT or REFOCUS_ERR_CANCELLED; *revents receives the events that poll() reports.

@@ -13,7 +13,7 @@ int64_t rf_now_ns(void)
 void rf_pace_start(struct rf_pace *pace, double fps, bool fast)
 {
     pace->start_ns = fast ? 0 : rf_now_ns(); /* fast: the times of the stream itself */
-    pace->period_ns = (int64_t)(1e9 / (fps > 0 ? fps : 30) + 0.5);
+    pace->period_ns = (int64_t)(1e9 / fps + 0.5);
     pace->fast = fast;
 }
 

@@ -124,7 +124,7 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
     mode->format = frame.format;
     mode->width = frame.width;
     mode->height = frame.height;
-    mode->fps = source->config.fps > 0 ? source->config.fps : 30;
+    mode->fps = rf_source_fps(source, 0);
     if (pictures->many)
         refocus_photo_free(&pictures->still);
     pictures->next = pictures->first;

@@ -99,7 +99,7 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
                  struct refocus_reason *reason)
 {
     struct rf_replay *replay = source->state;
-    const double fps = source->config.fps > 0 ? source->config.fps : replay->script.fps;
+    const double fps = rf_source_fps(source, replay->script.fps);
 
     if (replay->gone)
         return rf_capture_fail(reason, REFOCUS_ERR_GONE,

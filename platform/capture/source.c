@@ -150,6 +150,7 @@ static bool config_is_sound(const struct refocus_source_config *config)
     return config->format < REFOCUS_FRAME_FORMAT_COUNT && config->width >= 0 &&
            config->width <= REFOCUS_MAX_SIDE && config->height >= 0 &&
            config->height <= REFOCUS_MAX_SIDE && config->fps >= 0 && config->fps <= 10000 &&
+           config->default_fps >= 0 && config->default_fps <= 10000 &&
            (config->buffers == 0 || (config->buffers >= 2 && config->buffers <= RF_MOST_BUFFERS)) &&
            config->flags < 16;
 }

@@ -23,7 +23,7 @@ struct stream {
     off_t begin;     /* offset of the first frame */
     uint32_t format, flags;
     int width, height;
-    double fps;
+    double fps; /* 0: it does not say so */
     int32_t aspect[2];
     uint32_t chroma_place;
     int64_t frame;
@@ -94,7 +94,6 @@ static int parse_raw(struct stream *stream, struct refocus_reason *reason)
         if (rf_format_by_name(comma + 1) != REFOCUS_FRAME_ANY)
             break;
     }
-    stream->fps = 30;
     if (n < 2 || (n == 3 && !parse_rate(word[0], &stream->fps)) ||
         !parse_size(word[n - 2], &stream->width, &stream->height))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
@@ -230,8 +229,7 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
     stream->ring.taken = 0;
     stream->frame = 0;
     get_mode(source, 0, mode);
-    if (source->config.fps > 0)
-        mode->fps = source->config.fps;
+    mode->fps = rf_source_fps(source, stream->fps);
     rf_pace_start(&stream->pace, mode->fps, source->config.flags & REFOCUS_SOURCE_FAST);
     return REFOCUS_OK;
 }

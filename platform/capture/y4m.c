@@ -51,7 +51,7 @@ static double parse_rate(const char *text)
     long numerator = 0, denominator = 1;
 
     sscanf(text, "%9ld:%9ld", &numerator, &denominator);
-    return numerator > 0 && denominator > 0 ? (double)numerator / (double)denominator : 30;
+    return numerator > 0 && denominator > 0 ? (double)numerator / (double)denominator : 0;
 }
 
 static void parse_word(struct rf_y4m *y4m, const char *word, char *fields)
@@ -79,7 +79,7 @@ int rf_y4m_parse(struct rf_y4m *y4m, char *header, const char *path, struct refo
     const size_t begin = strlen(MAGIC);
     char *word, *rest = NULL, fields = 'p';
 
-    *y4m = (struct rf_y4m){.format = REFOCUS_FRAME_YUV420, .fps = 30};
+    *y4m = (struct rf_y4m){.format = REFOCUS_FRAME_YUV420};
     if (strncmp(header, MAGIC, begin) != 0 || (header[begin] && header[begin] != ' '))
         return rf_capture_fail(reason, REFOCUS_ERR_FORMAT, "%.160s: it is not a YUV4MPEG2 stream",
                                path);

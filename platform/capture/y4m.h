@@ -11,8 +11,8 @@ struct rf_y4m {
     uint32_t format; /* enum refocus_frame_format */
     bool tall;       /* 4:2:2, which becomes YUYV: U and V have all rows */
     bool full_range;
-    int width, height; /* 0: not there, or out of the range */
-    double fps;
+    int width, height;     /* 0: not there, or out of the range */
+    double fps;            /* 0: not there */
     int32_t aspect[2];     /* width to height of a pixel; 0 and 0: not known */
     uint32_t chroma_place; /* enum refocus_chroma_place, of 4:2:0 */
 };

@@ -142,6 +142,37 @@ class Files(Live):
         self.report(*args, '--fps', '12.5')
         self.assertIn(b' F25:2 Ip A128:117', content('out.y4m')[:80])
 
+    def test_pictures_have_the_rate_of_the_other_source(self):
+        """Picture n goes with frame n, whatever the rate of the film."""
+        video, rates = content('in.y4m'), (b'F25:1', b'F60:1', b'F10:1', b'F24000:1001')
+        for n in range(10):
+            write('d-%d.pgm' % n, b'P5\n1 1\n255\n%c' % (25 * n))
+            write('f-%d.pgm' % n, b'P5\n64 48\n255\n' + PHOTO[n:] + PHOTO[:n])
+        write('depth.raw', b''.join(b'%c' % (25 * n) for n in range(10)))
+
+        def run(camera, depth, *args):
+            self.report('--camera', camera, '--depth', depth, '--focus', '0', '--out', 'y4m:out.y4m', *args)
+            return content('out.y4m').split(b'FRAME\n', 1)
+
+        pictures = 'y4m:in.y4m', 'file:d-%d.pgm'
+        expected = run(*pictures)[1]
+        write('mono.y4m', b'YUV4MPEG2 W1 H1 F30:1 Cmono\n' + b''.join(b'FRAME\n%c' % (25 * n) for n in range(10)))
+        shown = run('file:f-%d.pgm', 'y4m:mono.y4m')[1]
+        mono = content('mono.y4m')
+        for rate in rates:
+            write('in.y4m', video.replace(b'F30:1', rate))
+            write('mono.y4m', mono.replace(b'F30:1', rate))
+            for depth in 'file:d-%d.pgm', 'raw:depth.raw,GREY,1x1':
+                self.assertEqual(run('y4m:in.y4m', depth)[1], expected, rate)
+            header, frames = run('file:f-%d.pgm', 'y4m:mono.y4m')
+            self.assertIn(b' %s ' % rate, header)
+            self.assertEqual(frames, shown, rate)
+        self.assertNotEqual(run('y4m:in.y4m', 'raw:depth.raw,GREY,1x1,30')[1], expected)  # it says so itself
+        self.assertIn(b' F50:1 ', run(*pictures, '--fps', '50')[0])
+        self.assertIn(b' F30:1 ', run('file:f-%d.pgm', 'file:d-%d.pgm')[0])
+        write('in.y4m', video.replace(b'F30:1', b'F99999:1'))
+        self.assertIn(b' F10000:1 ', run(*pictures)[0])
+
     def test_frames_before_a_fault_come_out(self):
         """Whichever of both is cut or damaged, and however far ahead it was read."""
         video, depth = content('in.y4m'), content('depth.y4m')

@@ -1,5 +1,6 @@
 /* live_sources.c: the cameras and depth that refocus live takes. */
 #include <stdlib.h>
+#include <string.h>
 #include "line/report.h"
 #include "live/live_calibration.h"
 #include "live/live_depth_camera.h"
@@ -8,10 +9,14 @@
 #include "live/live_sources.h"
 #include "live/live_stack.h"
 
+/* The most that refocus_source_start() takes. */
+#define MOST_FPS 10000
+
 /* A signal ends the wait for a camera, too: all that follows is then over before it begins. */
 static int open_camera(struct live *live, const char *name, bool depth,
                        struct refocus_source **source, struct refocus_source_mode *mode)
 {
+    const struct refocus_source_mode *const other = depth ? &live->mode : &live->depth_mode;
     struct refocus_source *opened;
     const struct live_settings *settings = live->settings;
     struct refocus_source_config config = refocus_source_config_default();
@@ -25,6 +30,7 @@ static int open_camera(struct live *live, const char *name, bool depth,
         config.height = isnan(settings->size[0]) ? 0 : (int32_t)settings->size[1];
     }
     config.fps = isnan(settings->fps) ? 0 : settings->fps;
+    config.default_fps = fmin(other->fps, MOST_FPS);
     config.flags =
         (settings->fast ? REFOCUS_SOURCE_FAST : 0) | (settings->loop ? REFOCUS_SOURCE_LOOP : 0) |
         (settings->dmabuf ? REFOCUS_SOURCE_DMABUF : 0) | (depth ? REFOCUS_SOURCE_DEPTH : 0);
@@ -46,6 +52,25 @@ static int open_camera(struct live *live, const char *name, bool depth,
     return EXIT_DONE;
 }
 
+/* Pictures have no rate of their own: of two sources of files they are opened last, and take that
+ * of the other. */
+static int open_cameras(struct live *live)
+{
+    const char *const camera = live->settings->camera, *const depth = live->settings->depth.file;
+    const uint32_t kind = refocus_source_kind(depth);
+    const bool depth_first =
+        kind == REFOCUS_SOURCE_KIND_FILE && strncmp(camera, "file:", strlen("file:")) == 0;
+    int status = EXIT_DONE;
+
+    if (depth_first)
+        status = open_camera(live, depth, true, &live->depth_camera, &live->depth_mode);
+    if (status == EXIT_DONE)
+        status = open_camera(live, camera, false, &live->camera, &live->mode);
+    if (status == EXIT_DONE && kind && !depth_first)
+        status = open_camera(live, depth, true, &live->depth_camera, &live->depth_mode);
+    return status;
+}
+
 int live_sources_open(struct live *live)
 {
     const struct live_settings *settings = live->settings;
@@ -57,13 +82,10 @@ int live_sources_open(struct live *live)
     if (status == EXIT_DONE && settings->estimate.model[0])
         status = live_estimate_open(live);
     if (status == EXIT_DONE)
-        status = open_camera(live, settings->camera, false, &live->camera, &live->mode);
-    if (status == EXIT_DONE && refocus_source_kind(settings->depth.file))
-        status =
-            open_camera(live, settings->depth.file, true, &live->depth_camera, &live->depth_mode);
-    else if (status == EXIT_DONE && settings->stack.steps > 0)
+        status = open_cameras(live);
+    if (status == EXIT_DONE && settings->stack.steps > 0)
         status = live_stack_open(live);
-    else if (status == EXIT_DONE && !live->estimator)
+    else if (status == EXIT_DONE && !live->estimator && !live->depth_camera)
         status = live_read_fixed_depth(live);
     return status;
 }

@@ -85,10 +85,10 @@ static void wishes_out_of_range(void **state)
 {
     struct refocus_source *source = NULL;
     const struct refocus_source_config good = refocus_source_config_default();
-    struct refocus_source_config bad[9];
+    struct refocus_source_config bad[12];
 
     (void)state;
-    for (int i = 0; i < 9; i++)
+    for (int i = 0; i < 12; i++)
         bad[i] = good;
     bad[0].format = REFOCUS_FRAME_FORMAT_COUNT;
     bad[1].width = -1;
@@ -99,8 +99,11 @@ static void wishes_out_of_range(void **state)
     bad[6].fps = (double)NAN;
     bad[7].buffers = 1;
     bad[8].flags = 16;
+    bad[9].default_fps = -1;
+    bad[10].default_fps = (double)NAN;
+    bad[11].default_fps = 10001;
     assert_status(refocus_source_open(&source, "replay::size 16x12", NULL), REFOCUS_OK);
-    for (int i = 0; i < 9; i++)
+    for (int i = 0; i < 12; i++)
         assert_status(refocus_source_start(source, &bad[i], NULL, NULL), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_source_start(source, &good, NULL, NULL), REFOCUS_OK);
     refocus_source_close(&source);
