@@ -61,7 +61,7 @@ REFOCUS_API void refocus_temporal_destroy(struct refocus_temporal **filter);
  */
 REFOCUS_API void refocus_temporal_cancel(struct refocus_temporal *filter);
 
-/** Forget the past: after a cut, or after a gap. With NULL it does nothing. */
+/** Forget the past: after a gap, or a cut that no photo shows. With NULL it does nothing. */
 REFOCUS_API void refocus_temporal_reset(struct refocus_temporal *filter);
 
 /**
@@ -93,6 +93,10 @@ REFOCUS_API int refocus_temporal_rescale(struct refocus_temporal *filter, double
  * surface leads it by half of all votes, or until no frame of seven knows it, and out is then
  * the mean of those that voted for the other. A block of which most lies elsewhere in this
  * frame and in the last is believed at once.
+ *
+ * A photo that shows another scene than the last one is a cut, and the past is forgotten: means
+ * of 16 x 16 cells share less than a quarter of their contrast. A change of the exposure is none,
+ * up to four times the contrast, nor is movement by up to half a cell a frame.
  *
  * The scale of disparities has to be the same for all frames: give
  * refocus_depth_to_disparity() the near_m and far_m (value_near and value_far) that it

@@ -314,6 +314,9 @@ int refocus_temporal_run(struct refocus_temporal *f, const struct refocus_image 
     f->guided = photo != NULL;
     atomic_store(&f->run.state, RF_RUN_RUNNING);
     rf_load_frame(&f->frame[0], f->width, f->height, photo, map, &f->run);
+    if (f->frames > 0 && f->guided &&
+        rf_is_cut(f->frame[0].guide, f->frame[1].guide, f->width, f->height))
+        refocus_temporal_reset(f);
     if (f->frames++ > 0) {
         f->frames = f->frames < RF_LOOKS ? f->frames : RF_LOOKS;
         filter_all(f);

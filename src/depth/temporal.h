@@ -2,6 +2,7 @@
 #ifndef RF_TEMPORAL_H
 #define RF_TEMPORAL_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -37,6 +38,14 @@ void rf_find_motion(struct rf_motion *motion, const struct rf_frame *now,
 void rf_load_frame(const struct rf_frame *frame, int width, int height,
                    const struct refocus_image *photo, const struct refocus_disparity *map,
                    struct rf_run *run);
+
+/*
+ * Whether two guides show different scenes. Of means over 16 x 16 cells the steps from each to its
+ * neighbours are compared: where the frames share less than a quarter of the larger contrast, in
+ * sums of products and of squares, it is a cut. A brighter exposure changes all steps alike: up to
+ * four times the contrast is none. Frames of no contrast tell nothing.
+ */
+bool rf_is_cut(const uint8_t *now, const uint8_t *last, int width, int height);
 
 /* refocus_temporal_run() asks this whether to go on; for tests. */
 struct rf_run *rf_run_of_temporal(struct refocus_temporal *f);

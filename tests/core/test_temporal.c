@@ -386,6 +386,65 @@ static void bad_arguments(void **state)
 /* Noise that moved as a whole, which no search finds: a block knows of it by its own vector of the
  * last frame or by those of blocks that come before it, and by nothing that lies around the list.
  */
+/* A landscape: a ramp with a hill at x, in codes times gain / 4. */
+static void draw_hill(uint8_t *guide, int x, int gain)
+{
+    for (int i = 0; i < W * H; i++) {
+        const int apart = abs(i % W - x) + abs(i / W - 30);
+
+        guide[i] = (uint8_t)((10 + i / W / 2 + (apart < 30 ? 2 * (30 - apart) : 0)) * gain / 4);
+    }
+}
+
+static void tells_cuts(void **state)
+{
+    static uint8_t a[W * H], b[W * H];
+
+    (void)state;
+    draw_hill(a, 20, 4);
+    draw_hill(b, 60, 4); /* another scene */
+    assert_true(rf_is_cut(b, a, W, H));
+    assert_false(rf_is_cut(a, a, W, H));
+    draw_hill(b, 22, 4); /* movement by two samples a frame */
+    assert_false(rf_is_cut(b, a, W, H));
+    for (int gain = 2; gain <= 10; gain++) { /* exposures */
+        draw_hill(b, 20, gain);
+        assert_false(rf_is_cut(b, a, W, H));
+        assert_false(rf_is_cut(a, b, W, H));
+    }
+    memset(b, 0, sizeof b); /* Black comes and goes. */
+    assert_true(rf_is_cut(b, a, W, H));
+    assert_true(rf_is_cut(a, b, W, H));
+    for (int i = 0; i < W * H; i++) { /* noise before two walls of no contrast */
+        a[i] = (uint8_t)(100 + noise(8));
+        b[i] = (uint8_t)(100 + noise(8));
+    }
+    assert_false(rf_is_cut(b, a, W, H));
+    assert_false(rf_is_cut((const uint8_t[]){0}, (const uint8_t[]){255}, 1, 1));
+    assert_true(rf_is_cut((const uint8_t[]){0, 255}, (const uint8_t[]){255, 0}, 2, 1));
+}
+
+/* The first map after a cut is as it came, though much of the photo is as bright as it was. */
+static void forgets_at_a_cut(void **state)
+{
+    struct refocus_temporal *filter = make();
+
+    (void)state;
+    for (int frame = 0; frame < 8; frame++) {
+        draw(5);
+        run(filter, true);
+    }
+    draw(55);
+    memmove(v.rgb, v.rgb + sizeof v.rgb / 4, sizeof v.rgb / 4 * 3);
+    run(filter, true);
+    assert_memory_equal(v.out, v.map, sizeof v.map);
+    draw(55);
+    memmove(v.rgb, v.rgb + sizeof v.rgb / 4, sizeof v.rgb / 4 * 3);
+    run(filter, true);
+    assert_memory_not_equal(v.out, v.map, sizeof v.map);
+    refocus_temporal_destroy(&filter);
+}
+
 static void vectors_spread(void **state)
 {
     enum { COLUMNS = W / RF_BLOCK, ROWS = (H + RF_BLOCK - 1) / RF_BLOCK, FIRST = 3 };
@@ -486,6 +545,8 @@ int main(void)
         cmocka_unit_test(any_photo),
         cmocka_unit_test(follows_the_range),
         cmocka_unit_test(bad_arguments),
+        cmocka_unit_test(tells_cuts),
+        cmocka_unit_test(forgets_at_a_cut),
         cmocka_unit_test(vectors_spread),
         cmocka_unit_test(is_cancelled),
     };
