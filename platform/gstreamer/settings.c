@@ -71,7 +71,7 @@ static const struct row rows[] = {
      "Disparity in focus: 0 the farthest, 1 the nearest"},
     {NUMBER, MOVES, "focus-x", AT(focus_x), -1, 1, -1, NULL, NULL, "Focus, column",
      "Focus on the surface at this place of each frame, 0 left to 1 right, in place of 'focus'; "
-     "below 0: not. With focus-y"},
+     "at once, then with a time constant of 80 ms; below 0: not. With focus-y"},
     {NUMBER, MOVES, "focus-y", AT(focus_y), -1, 1, -1, NULL, NULL, "Focus, row",
      "See focus-x: 0 top to 1 bottom"},
     {NUMBER, MOVES, "focus-distance", AT(focus_distance), 0, 1e6, 0, NULL, NULL, "Focus distance",

@@ -21,11 +21,45 @@ static bool is_known(const struct refocus_depth_range *range)
     return range->near_m > 0 && range->far_m > range->near_m;
 }
 
-static int find_focus(const struct rf_gst_settings *settings, const struct rf_gst_depths *depths,
-                      float *focus, struct refocus_reason *reason)
+/* The focus goes to the surface at a place with this time constant, as by the rectangle of
+ * `refocus live`: the noise of single maps would make it pump. */
+static const double settle_s = 0.08;
+
+/* Focus on the surface at the place of the settings: at once for the first time, and where the
+ * frame does not follow on the last. */
+static int find_surface(struct rf_gst_shot *shot, const struct rf_gst_settings *settings,
+                        const struct rf_gst_depths *depths, float *focus)
 {
     const struct refocus_disparity *const map = &depths->disparity;
+    const struct rf_gst_aim aim = {settings->focus_x, settings->focus_y, depths->range, shot->time};
+    const struct rf_gst_aim *const last = &shot->aim;
+    const bool goes_on = shot->aimed && !shot->cut && aim.x == last->x && aim.y == last->y &&
+                         aim.range.near_m == last->range.near_m &&
+                         aim.range.far_m == last->range.far_m &&
+                         GST_CLOCK_TIME_IS_VALID(aim.time) && GST_CLOCK_TIME_IS_VALID(last->time);
+    const int status =
+        refocus_focus_at_point(map, (int)fmin(aim.x * map->width, map->width - 1),
+                               (int)fmin(aim.y * map->height, map->height - 1), 0, focus);
 
+    if (status != REFOCUS_OK)
+        return status;
+    if (goes_on)
+        *focus += (shot->surface - *focus) *
+                  (float)exp(-(double)(aim.time - last->time) / GST_SECOND / settle_s);
+    shot->surface = *focus;
+    shot->aim = aim;
+    shot->aimed = true;
+    return REFOCUS_OK;
+}
+
+static int find_focus(struct rf_gst_shot *shot, const struct rf_gst_settings *settings,
+                      const struct rf_gst_depths *depths, float *focus,
+                      struct refocus_reason *reason)
+{
+    const bool at_place =
+        !(settings->focus_distance > 0) && settings->focus_x >= 0 && settings->focus_y >= 0;
+
+    shot->aimed &= at_place;
     *focus = (float)settings->focus;
     if (settings->focus_distance > 0) {
         if (!is_known(&depths->range))
@@ -34,12 +68,8 @@ static int find_focus(const struct rf_gst_settings *settings, const struct rf_gs
                         "and far");
         *focus = (float)fmin(
             fmax(refocus_disparity_of_depth(&depths->range, settings->focus_distance), 0), 1);
-    } else if (settings->focus_x >= 0 && settings->focus_y >= 0) {
-        return refocus_focus_at_point(
-            map, (int)fmin(settings->focus_x * map->width, map->width - 1),
-            (int)fmin(settings->focus_y * map->height, map->height - 1), 0, focus);
     }
-    return REFOCUS_OK;
+    return at_place ? find_surface(shot, settings, depths, focus) : REFOCUS_OK;
 }
 
 /* The greatest blur of a method. */
@@ -172,8 +202,10 @@ int rf_gst_shot_take(struct rf_gst_shot *shot, const struct rf_gst_settings *set
     struct refocus_scene scene = refocus_scene_default(photo, &depths->disparity);
     struct refocus_settings params;
     float focus = 0, blur = 0;
-    int status = find_focus(settings, depths, &focus, reason);
+    int status;
 
+    follow_time(shot, time);
+    status = find_focus(shot, settings, depths, &focus, reason);
     if (status == REFOCUS_OK)
         status = find_blur(settings, depths, photo->width, &blur, reason);
     shot->limited = blur > most_blur(settings);
@@ -186,7 +218,6 @@ int rf_gst_shot_take(struct rf_gst_shot *shot, const struct rf_gst_settings *set
         return status;
     if (settings->place_edges)
         scene.depth_edges = REFOCUS_DEPTH_EDGES_STEADY;
-    follow_time(shot, time);
     params = params_of(shot, settings, focus, blur);
     status = refocus_prepare_scene(shot->renderer, &scene);
     if (status == REFOCUS_OK)

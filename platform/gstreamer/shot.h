@@ -5,6 +5,13 @@
 #include "depths.h"
 #include "settings.h"
 
+/* A place of the frames that is focused on, the metres between which depth lies, and a moment. */
+struct rf_gst_aim {
+    double x, y;
+    struct refocus_depth_range range;
+    GstClockTime time;
+};
+
 struct rf_gst_shot {
     struct refocus_renderer *renderer;
     struct refocus_renderer_params made; /* parameters of the renderer */
@@ -12,10 +19,13 @@ struct rf_gst_shot {
     unsigned shape_number; /* shape of the aperture; 0: there is none */
     GstClockTime time;     /* running time of the last frame */
     bool begun, cut;       /* there was a frame; the next one does not follow on it */
-    bool limited;          /* the method cannot have the blur that was asked for */
+    bool aimed;            /* the last frame focused on the surface at a place: */
+    struct rf_gst_aim aim;
+    float surface; /* disparity in focus */
+    bool limited;  /* the method cannot have the blur that was asked for */
 };
 
-/* The next frame does not follow on the last: their highlights are not compared. */
+/* The next frame does not follow on the last: their highlights and their focus are not compared. */
 void rf_gst_shot_forget(struct rf_gst_shot *shot);
 
 /* Refocus a frame of this running time, or none. On an error `reason` says why in words. */

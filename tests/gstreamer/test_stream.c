@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
+#include <math.h>
 #include <string.h>
 #include <gst/controller/gstdirectcontrolbinding.h>
 #include <gst/controller/gstinterpolationcontrolsource.h>
@@ -332,6 +333,64 @@ static void controller(void **state)
     bench_close(&bench);
 }
 
+/* Whether the frame that comes out is in focus at a disparity in codes of its map, which is all of
+ * one value. */
+static bool is_focused(struct bench *bench, GstBuffer *frame, int value, double at)
+{
+    const uint8_t sample = (uint8_t)value;
+    const struct refocus_disparity disparity = refocus_disparity8(&sample, 1, 1, 1);
+    struct refocus_settings settings = frame_settings(at / 255, 40);
+    GstBuffer *const out = gst_harness_pull(bench->video);
+    GstBuffer *const expected = frame_expect(NV12, frame, &disparity, &settings);
+    const bool same = frame_same(NV12, out, expected);
+
+    gst_buffer_unref(out);
+    gst_buffer_unref(expected);
+    return same;
+}
+
+/* The focus on a place settles within some frames, and is there at once where nothing was before.
+ */
+static void focus_of_a_place(void **state)
+{
+    static const struct {
+        int ms, value;
+        double x, far;
+        bool at_once;
+    } step[] = {
+        {0, 100, 0.5, 0, true},     {40, 130, 0.5, 0, false},  {80, 100, 0.5, 0, false},
+        {120, 130, 0.5, 0, false},  {160, 30, 0.5, 0, false},  {200, 200, 0.2, 0, true},
+        {240, 100, 0.2, 0, false},  {1400, 200, 0.2, 0, true}, /* more than a second later */
+        {1440, 100, -1, 0, true},                              /* by the property `focus` */
+        {1480, 200, 0.2, 0, true},  {1520, 100, 0.2, 9, true}, /* another range */
+        {1560, 200, 0.2, 9, false},
+    };
+    enum { STEPS = sizeof step / sizeof *step };
+    const double part = exp(-0.5); /* 40 ms of 80 */
+    struct bench bench;
+    double at = 0;
+
+    (void)state;
+    bench_open(&bench, NV12, DEPTH);
+    g_object_set(bench.element, "focus", 0.2, "focus-y", 0.5, "blur", 40.0, "near", 1.0, NULL);
+    assert_int_equal(push_depth(&bench, step[0].value, step[0].ms), GST_FLOW_OK);
+    for (int i = 0; i < STEPS; i++) {
+        GstBuffer *const frame = frame_make(NV12, 3, (GstClockTime)step[i].ms * GST_MSECOND);
+
+        g_object_set(bench.element, "focus-x", step[i].x, "far", step[i].far, NULL);
+        assert_int_equal(push(bench.video, gst_buffer_ref(frame)), GST_FLOW_OK);
+        if (i + 1 < STEPS)
+            assert_int_equal(push_depth(&bench, step[i + 1].value, step[i + 1].ms), GST_FLOW_OK);
+        else
+            end(bench.depth);
+        at = step[i].value + (step[i].at_once ? 0 : (at - step[i].value) * part);
+        if (!is_focused(&bench, frame, step[i].value, step[i].x < 0 ? 51 : at))
+            fail_msg("step %d", i);
+        gst_buffer_unref(frame);
+    }
+    bench_close(&bench);
+}
+
 static void lateness(void **state)
 {
     struct bench bench;
@@ -433,10 +492,19 @@ static void gaps(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pairing), cmocka_unit_test(new_caps),   cmocka_unit_test(errors),
-        cmocka_unit_test(shapes),  cmocka_unit_test(ends),       cmocka_unit_test(seek),
-        cmocka_unit_test(states),  cmocka_unit_test(controller), cmocka_unit_test(lateness),
-        cmocka_unit_test(live),    cmocka_unit_test(metas),      cmocka_unit_test(gaps),
+        cmocka_unit_test(pairing),
+        cmocka_unit_test(new_caps),
+        cmocka_unit_test(errors),
+        cmocka_unit_test(shapes),
+        cmocka_unit_test(ends),
+        cmocka_unit_test(seek),
+        cmocka_unit_test(states),
+        cmocka_unit_test(controller),
+        cmocka_unit_test(focus_of_a_place),
+        cmocka_unit_test(lateness),
+        cmocka_unit_test(live),
+        cmocka_unit_test(metas),
+        cmocka_unit_test(gaps),
     };
 
     gst_init(NULL, NULL);
