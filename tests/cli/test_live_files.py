@@ -2,6 +2,7 @@
 """usage: test_live_files.py REFOCUS  -- refocus live from files to files: what is damaged, ends or is in the way."""
 import json
 import os
+import random
 import signal
 import subprocess
 import time
@@ -172,6 +173,23 @@ class Files(Live):
         self.assertIn(b' F30:1 ', run('file:f-%d.pgm', 'file:d-%d.pgm')[0])
         write('in.y4m', video.replace(b'F30:1', b'F99999:1'))
         self.assertIn(b' F10000:1 ', run(*pictures)[0])
+
+    def test_each_frame_has_grain_of_its_own(self):
+        noise = random.Random(1)
+        one = bytes(int(noise.gauss(110, 5)) for _ in range(96 * 80))
+        write('in.y4m', b'YUV4MPEG2 W96 H80 F30:1 C420jpeg\n' + (b'FRAME\n' + one + bytes([128]) * 48 * 40 * 2) * 3)
+        write('far.pgm', b'P5\n1 1\n255\n\0')
+
+        def frames(*args):
+            done = live('--camera', 'y4m:in.y4m', '--depth', 'far.pgm', '--focus', '1', '--grain', '1', '--out',
+                        'raw:out.rgb', *args, common=['--blur', '10'])
+            self.assertEqual(done.returncode, 0, done.stderr)
+            out = content('out.rgb')
+            return [out[i:i + 96 * 80 * 3] for i in range(0, len(out), 96 * 80 * 3)]
+        grainy = frames('--seed', '5')
+        self.assertEqual(len(set(grainy)), 3)
+        self.assertEqual(frames('--seed', '5', '--threads', '3'), grainy)
+        self.assertEqual([frames('--seed', str(5 + n), '--frames', '1')[0] for n in range(3)], grainy)
 
     def test_frames_before_a_fault_come_out(self):
         """Whichever of both is cut or damaged, and however far ahead it was read."""

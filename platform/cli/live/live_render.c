@@ -148,6 +148,8 @@ static int refocus(struct live *live, const struct live_picture *picture,
     params.render.max_blur_radius = (float)live->blur;
     engine_suit_rays(live->engine, &params);
     params.highlights.steady = STEADY_LIGHT;
+    params.look.grain_seed +=
+        (uint32_t)(live->frames_rendered - 1); /* Grain that stands is dirt. */
     if (live_look_aim(live, &picture->image, &params) != EXIT_DONE)
         return REFOCUS_ERR_ARGUMENT;
     status = refocus_render_settings(live->engine->renderer, &params, out);

@@ -82,7 +82,7 @@ const char *bokeh_figure_summary(uint32_t index);
          .word = "off",                                                                            \
          .help = "the photo's noise put back into what is blurred: 1 = as much as was measured, "  \
                  "off = 0; default 1 for stills of 8 bits, 0 for others and for live; --seed "     \
-                 "chooses it"},                                                                    \
+                 "chooses it, in live one more for each frame"},                                   \
     {                                                                                              \
         .kind = OPTION_NUMBER, .name = "--highlight-stops", .argument = "S",                       \
         .offset = offsetof(type, member.highlight_stops), .least = 0, .greatest = 4,               \
