@@ -1,6 +1,4 @@
 /* overwrite.c: whether a sink would write over a file that is read. */
-#include <glob.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -38,49 +36,15 @@ static void add(struct files *files, const char *path)
     files->place[files->count++] = (struct rf_place){found.st_dev, found.st_ino};
 }
 
-/* Whether the name is one that the pattern makes. */
-static bool is_of_pattern(const char *name, const char *pattern)
+static void add_numbered(void *files, const char *path, int n)
 {
-    const long n = strtol(name + (strchr(pattern, '%') - pattern), NULL, 10);
-    char made[PATH_MAX];
-
-    return n >= 0 && n <= INT_MAX && rf_pattern_name(made, sizeof made, pattern, (int)n) &&
-           strcmp(made, name) == 0;
-}
-
-/* The pattern as glob() wants it: a star in place of the number, and the rest as it is. */
-static void write_glob(char *to, const char *pattern)
-{
-    for (; *pattern; pattern++) {
-        if (*pattern == '%') {
-            pattern += strcspn(pattern, "d");
-            *to++ = '*';
-            continue;
-        }
-        if (strchr("*?[]\\", *pattern))
-            *to++ = '\\';
-        *to++ = *pattern;
-    }
-    *to = '\0';
+    (void)n;
+    add(files, path);
 }
 
 static void add_pattern(struct files *files, const char *pattern)
 {
-    char *const text = malloc(2 * strlen(pattern) + 1);
-    glob_t found;
-    int status = GLOB_NOSPACE;
-
-    if (text) {
-        write_glob(text, pattern);
-        status = glob(text, GLOB_NOSORT, NULL, &found);
-    }
-    files->lacks_memory |= status == GLOB_NOSPACE;
-    for (size_t i = 0; status == 0 && i < found.gl_pathc; i++)
-        if (is_of_pattern(found.gl_pathv[i], pattern))
-            add(files, found.gl_pathv[i]);
-    if (status == 0)
-        globfree(&found);
-    free(text);
+    files->lacks_memory |= !rf_pattern_each(pattern, add_numbered, files);
 }
 
 static void add_pictures(struct files *files, const char *name)

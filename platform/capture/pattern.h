@@ -9,5 +9,9 @@
 int rf_pattern_check(const char *pattern);
 /* The name of picture number n; false when it does not fit. */
 bool rf_pattern_name(char *name, size_t size, const char *pattern, int n);
+/* Calls with each file that is there of a pattern of one number, and that number, in any order;
+ * false when there is no memory. */
+bool rf_pattern_each(const char *pattern, void (*each)(void *user, const char *path, int n),
+                     void *user);
 
 #endif

@@ -10,8 +10,9 @@
 struct pictures {
     char *pattern;
     bool many;
-    int first, next; /* numbers of files */
-    int64_t frame;   /* since the start */
+    int first; /* numbers of files; the next one may be one that no file can have */
+    int64_t next;
+    int64_t frame; /* since the start */
     struct rf_pace pace;
     struct rf_ring ring; /* without memory: photos own it */
     struct refocus_photo *photo[RF_MOST_BUFFERS];
@@ -19,12 +20,20 @@ struct pictures {
     int width, height;           /* size of the frame before, 0 at the beginning */
 };
 
+static void note_first(void *first, const char *path, int n)
+{
+    int *const least = first;
+
+    (void)path;
+    *least = n < *least || *least < 0 ? n : *least;
+}
+
 static int open_pictures(struct refocus_source *source, const char *rest,
                          struct refocus_reason *reason)
 {
     struct pictures *pictures;
-    char name[PATH_MAX];
     const int many = rf_pattern_check(rest);
+    bool memory = true;
 
     if (many < 0 || !*rest)
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
@@ -38,14 +47,16 @@ static int open_pictures(struct refocus_source *source, const char *rest,
         return rf_capture_fail_memory(reason);
     }
     pictures->many = many == 1;
-    for (; pictures->first < 2; pictures->first++)
-        if (rf_pattern_name(name, sizeof name, rest, pictures->first) && access(name, R_OK) == 0)
-            break;
-    if (pictures->first == 2) {
+    pictures->first = -1;
+    if (many)
+        memory = rf_pattern_each(rest, note_first, &pictures->first);
+    else if (access(rest, F_OK) == 0)
+        pictures->first = 0;
+    if (pictures->first < 0) {
         free(pictures->pattern);
         free(pictures);
-        return rf_capture_fail(reason, REFOCUS_ERR_GONE,
-                               "%.180s: no such file (numbers begin at 0 or 1)", rest);
+        return memory ? rf_capture_fail(reason, REFOCUS_ERR_GONE, "%.180s: no such file", rest)
+                      : rf_capture_fail_memory(reason);
     }
     source->state = pictures;
     return REFOCUS_OK;
@@ -139,14 +150,21 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
 /* The end of a sequence is told from a gap by the numbers behind it, this many. */
 enum { LONGEST_GAP = 100 };
 
+/* Whether there is a picture of that number, and its name. */
+static bool has_number(const struct pictures *pictures, int64_t n, char name[PATH_MAX])
+{
+    name[0] = '\0';
+    return n <= INT_MAX && rf_pattern_name(name, PATH_MAX, pictures->pattern, (int)n) &&
+           access(name, F_OK) == 0;
+}
+
 static int check_gap(const struct pictures *pictures, const char *missing,
                      struct refocus_reason *reason)
 {
     char name[PATH_MAX];
 
-    for (int i = 1; i <= LONGEST_GAP && pictures->next <= INT_MAX - i; i++)
-        if (rf_pattern_name(name, sizeof name, pictures->pattern, pictures->next + i) &&
-            access(name, F_OK) == 0)
+    for (int i = 1; i <= LONGEST_GAP; i++)
+        if (has_number(pictures, pictures->next + i, name))
             return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
                                    "%.120s is missing, and there is %.120s; number them without a "
                                    "gap",
@@ -160,8 +178,7 @@ static int read_next(struct refocus_source *source, int buffer, struct refocus_r
     struct pictures *pictures = source->state;
     char name[PATH_MAX];
 
-    rf_pattern_name(name, sizeof name, pictures->pattern, pictures->next);
-    if (access(name, F_OK) != 0) {
+    if (!has_number(pictures, pictures->next, name)) {
         const int status = check_gap(pictures, name, reason);
 
         if (status != REFOCUS_OK)
@@ -171,7 +188,7 @@ static int read_next(struct refocus_source *source, int buffer, struct refocus_r
                                    "there are no more "
                                    "pictures");
         pictures->next = pictures->first;
-        rf_pattern_name(name, sizeof name, pictures->pattern, pictures->next);
+        has_number(pictures, pictures->next, name);
     }
     refocus_photo_free(&pictures->photo[buffer]);
     return read_photo(source, &pictures->photo[buffer], name, reason);

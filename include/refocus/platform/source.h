@@ -7,15 +7,13 @@
  *     libcamera:0                 a libcamera camera, by its number or its identifier
  *     pipewire:[NODE]             a node of PipeWire that gives video, by its name, number or
  *         description; of no name the best camera
- *     file:frames-%04d.png        pictures; one conversion that takes an int, from 0 or
- *         1 on; a number that is missing before others, up to 100 farther on, is an error. They
- *         have no rate: it is that of the config, else 30
- *     file:photo.jpg              one picture, as often as it is asked for
- *     y4m:FILE                    a YUV4MPEG2 stream of whole frames, not of fields; "-" is
- *         standard input. Of a pipe the header is read when it is started, or asked for its mode
- *     raw:FILE,NV12,640x480,30    frames without a header: format, size, rate; without
- *         it, as of file:
- *     replay:SCRIPT               frames and faults by a script; see platform/README.md
+ *     file:frames-%04d.png        pictures; one conversion that takes an int, from the
+ *         lowest number that is there on; a number that is missing before others, up to 100 farther
+ * on, is an error. They have no rate: it is that of the config, else 30 file:photo.jpg one picture,
+ * as often as it is asked for y4m:FILE                    a YUV4MPEG2 stream of whole frames, not
+ * of fields; "-" is standard input. Of a pipe the header is read when it is started, or asked for
+ * its mode raw:FILE,NV12,640x480,30    frames without a header: format, size, rate; without it, as
+ * of file: replay:SCRIPT               frames and faults by a script; see platform/README.md
  *     replay::LINE;LINE;...       the same with the script in the name
  *
  * The life of a source: open, start, then wait and release for each frame, stop, close.

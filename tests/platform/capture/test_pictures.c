@@ -183,6 +183,46 @@ static void a_gap_is_told(void **state)
     }
 }
 
+/* The lowest number that is there is the first one; a folder may hold other things, too. */
+static void numbers_begin_anywhere(void **state)
+{
+    static const char *const names[] = {"n-x%04d.ppm", "n-0001.ppm", "n-00002.ppm", "n-x%3d.ppm"};
+    static const int first[] = {7, 100, 2147483646};
+    const struct refocus_frame *frame;
+    struct refocus_source *source;
+    char name[2][32];
+
+    (void)state;
+    for (int i = 0; i < 4; i++)
+        write_file(names[i], "P6 9 9 255\n", samples, 1);
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 2; k++) {
+            snprintf(name[k], sizeof name[k], "n-x%04d.ppm", first[i] + k);
+            write_file(name[k], "P6 4 2 255\n", samples, 24);
+        }
+        source = started("file:n-x%04d.ppm", REFOCUS_SOURCE_FAST | REFOCUS_SOURCE_LOOP);
+        for (int k = 0; k < 4; k++) {
+            assert_status(refocus_source_wait(source, 0, &frame, &reason), REFOCUS_OK);
+            assert_int_equal(frame->width, 4);
+            refocus_source_release(source, frame);
+        }
+        refocus_source_close(&source);
+        source = started("file:n-x%04d.ppm", REFOCUS_SOURCE_FAST);
+        for (int k = 0; k < 3; k++) {
+            assert_status(refocus_source_wait(source, 0, &frame, &reason),
+                          k < 2 ? REFOCUS_OK : REFOCUS_ERR_END);
+            refocus_source_release(source, k < 2 ? frame : NULL);
+        }
+        refocus_source_close(&source);
+        remove(name[0]);
+        remove(name[1]);
+    }
+    assert_status(refocus_source_open(&source, "file:n-x%04d.ppm", &reason), REFOCUS_ERR_GONE);
+    assert_string_equal(reason.text, "n-x%04d.ppm: no such file");
+    for (int i = 0; i < 4; i++)
+        remove(names[i]);
+}
+
 /* Every allocation -------------------------------------------------------------------- */
 
 /* Opens, starts and takes two frames. */
@@ -263,9 +303,9 @@ static void every_allocation(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(depth_of_codes), cmocka_unit_test(pictures_in_time),
-        cmocka_unit_test(pictures_change), cmocka_unit_test(a_gap_is_told),
-        cmocka_unit_test(every_allocation)};
+        cmocka_unit_test(depth_of_codes),         cmocka_unit_test(pictures_in_time),
+        cmocka_unit_test(pictures_change),        cmocka_unit_test(a_gap_is_told),
+        cmocka_unit_test(numbers_begin_anywhere), cmocka_unit_test(every_allocation)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
