@@ -194,6 +194,26 @@ static int read_next(struct refocus_source *source, int buffer, struct refocus_r
     return read_photo(source, &pictures->photo[buffer], name, reason);
 }
 
+/* One map of many that is missing or damaged is no end: what depth was before still serves. */
+static bool is_left_out(const struct refocus_source *source, int status)
+{
+    const struct pictures *pictures = source->state;
+
+    return pictures->many && source->config.flags & REFOCUS_SOURCE_DEPTH &&
+           status != REFOCUS_ERR_END && status != REFOCUS_ERR_MEMORY;
+}
+
+/* Whether the size differs from that of the frame before. */
+static bool has_changed(struct pictures *pictures, const struct refocus_frame *frame)
+{
+    const bool changed =
+        pictures->width && (pictures->width != frame->width || pictures->height != frame->height);
+
+    pictures->width = frame->width;
+    pictures->height = frame->height;
+    return changed;
+}
+
 static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
                       struct refocus_frame **result, struct refocus_reason *reason)
 {
@@ -217,10 +237,14 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     status = pictures->many ? read_next(source, buffer, reason) : REFOCUS_OK;
     if (status == REFOCUS_OK)
         status = show(frame, pictures->many ? pictures->photo[buffer] : pictures->still, reason);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK && !is_left_out(source, status)) {
         rf_ring_give(&pictures->ring, (uint32_t)buffer);
         return status;
     }
+    if (status != REFOCUS_OK)
+        frame->flags |= REFOCUS_FRAME_CORRUPT;
+    else if (has_changed(pictures, frame))
+        frame->flags |= REFOCUS_FRAME_CHANGED;
     frame->buffer = (uint32_t)buffer;
     frame->sequence = (uint32_t)pictures->frame;
     frame->timestamp_ns = due;
@@ -228,10 +252,6 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
         frame->flags |= REFOCUS_FRAME_STILL;
     if (!pictures->pace.fast)
         frame->flags |= REFOCUS_FRAME_MONOTONIC;
-    if (pictures->width && (pictures->width != frame->width || pictures->height != frame->height))
-        frame->flags |= REFOCUS_FRAME_CHANGED;
-    pictures->width = frame->width;
-    pictures->height = frame->height;
     pictures->frame++;
     pictures->next++;
     *result = frame;

@@ -174,6 +174,32 @@ class Files(Live):
         write('in.y4m', video.replace(b'F30:1', b'F99999:1'))
         self.assertIn(b' F10000:1 ', run(*pictures)[0])
 
+    def test_a_depth_picture_may_be_damaged_or_missing(self):
+        for n in range(10):
+            write('d-%d.pgm' % n, b'P5\n1 1\n255\n%c' % (25 * n))
+        args = ['--camera', 'y4m:in.y4m', '--depth', 'file:d-%d.pgm', '--focus', '0', '--out', 'y4m:out.y4m', '--json']
+        held = {3: 2, 5: 4, 9: 8}
+        for n, last in held.items():
+            write('d-%d.pgm' % n, content('d-%d.pgm' % last))
+        self.report(*args)
+        expected = content('out.y4m')
+        write('d-5.pgm', b'P5\n1 1\n255\n')
+        write('d-9.pgm', b'')
+        os.remove('d-3.pgm')
+        for _ in range(3):
+            done = live(*args)
+            self.assertEqual(done.returncode, 0)
+            self.assertEqual(done.stderr.decode().splitlines(), [
+                'refocus: file:d-%d.pgm: d-3.pgm is missing, and there is d-4.pgm; number them without a gap; '
+                'the depth before it holds'])
+            self.assertEqual(content('out.y4m'), expected)
+            r = json.loads(done.stdout)
+            self.assertEqual((r['depth']['corrupt'], r['paired'], r['unpaired']), (3, 7, 3))
+        done = live(*args, '--frames-policy', 'newest')
+        self.assertEqual(done.returncode, 0)
+        write('d-0.pgm', b'')
+        self.fails(1, 'd-0.pgm: ', *args)
+
     def test_each_frame_has_grain_of_its_own(self):
         noise = random.Random(1)
         one = bytes(int(noise.gauss(110, 5)) for _ in range(96 * 80))

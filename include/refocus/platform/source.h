@@ -267,7 +267,9 @@ REFOCUS_API int refocus_source_start(struct refocus_source *source,
  * Wait for the next frame.
  *
  * @param timeout_ms  0, or negative: only look
- * @param frame       receives the frame; it and its memory stay until it is released
+ * @param frame       receives the frame; it and its memory stay until it is released. A map that
+ *                    is damaged or missing in a sequence of them (REFOCUS_SOURCE_DEPTH) is a
+ *                    frame without planes, REFOCUS_FRAME_CORRUPT, of which @p reason says why
  * @return REFOCUS_OK, REFOCUS_ERR_TIMEOUT, REFOCUS_ERR_CANCELLED (interrupted),
  *         REFOCUS_ERR_END (no more frames), REFOCUS_ERR_GONE (unplugged) or
  *         REFOCUS_ERR_IO (the stream failed): release all frames and restart,

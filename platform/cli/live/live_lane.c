@@ -102,8 +102,16 @@ static int64_t expected_time(const struct live_lane *lane, const struct refocus_
     return lane->sure.known ? lane->sure.ns + (near ? steps : 1) * lane->period_ns : now_ns;
 }
 
-/* Handle one frame that came; an exit code. */
-static int handle(struct live_lane *lane, const struct refocus_frame *given)
+/* Say once why pictures of a sequence are left out. */
+static void warn(struct live_lane *lane, const char *why)
+{
+    if (why[0] && !lane->warned)
+        report_warning(lane->name, "%s; the depth before it holds", why);
+    lane->warned |= why[0] != '\0';
+}
+
+/* Handle one frame that came, and why it is corrupt; an exit code. */
+static int handle(struct live_lane *lane, const struct refocus_frame *given, const char *why)
 {
     struct live_stage *stage = lane->stage;
     struct refocus_reason reason = {""};
@@ -114,6 +122,7 @@ static int handle(struct live_lane *lane, const struct refocus_frame *given)
     stage->frames++;
     if (frame.flags & REFOCUS_FRAME_CORRUPT) {
         stage->corrupt++;
+        warn(lane, why);
     } else {
         if (!has_sound_time(lane, given, begin)) {
             frame.timestamp_ns = expected_time(lane, given, begin);
@@ -172,7 +181,7 @@ void live_lane_run(struct live_lane *lane)
 
         if (status == REFOCUS_OK) {
             frame = skip_to_newest(lane, frame);
-            const int result = handle(lane, frame);
+            const int result = handle(lane, frame, reason.text);
             refocus_source_release(lane->source, frame);
             if (fault_ns)
                 note_recovery(lane, fault_ns);

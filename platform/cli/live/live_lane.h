@@ -31,6 +31,7 @@ struct live_lane {
     bool doubted;                  /* the last frame's time was not believed */
     bool newest_wins;
     int64_t late_ns; /* older frames alone are skipped for a newer one; 0: any */
+    bool warned;     /* The words for what is left out were printed. */
     bool done;       /* nothing else will come */
     bool failed;     /* the failure is noted, and the lane has ended by it */
 };

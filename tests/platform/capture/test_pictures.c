@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <refocus/platform/convert.h>
 #include <refocus/platform/sink.h>
 
 #include "failing.h"
@@ -223,6 +224,41 @@ static void numbers_begin_anywhere(void **state)
         remove(names[i]);
 }
 
+/* A map that is missing or damaged is a frame that says so, and the next ones come. */
+static void maps_are_left_out(void **state)
+{
+    static const char *const why[] = {NULL, "m-1.pgm: ", "m-2.pgm is missing", NULL};
+    struct refocus_source_counters counters = refocus_source_counters_default();
+    struct refocus_converter *converter;
+    const struct refocus_frame *frame;
+    struct refocus_source *source;
+    uint16_t converted[8];
+
+    (void)state;
+    write_file("m-0.pgm", "P5 4 2 255\n", samples, 8);
+    write_file("m-1.pgm", "P5 4 2 255\n", samples, 7);
+    write_file("m-3.pgm", "P5 4 2 255\n", samples, 8);
+    remove("m-2.pgm");
+    source = started("file:m-%d.pgm", REFOCUS_SOURCE_FAST | REFOCUS_SOURCE_DEPTH);
+    assert_status(refocus_converter_create(&converter), REFOCUS_OK);
+    for (int i = 0; i < 4; i++) {
+        assert_status(refocus_source_wait(source, 0, &frame, &reason), REFOCUS_OK);
+        assert_int_equal(frame->sequence, i);
+        assert_int_equal(frame->flags, why[i] ? REFOCUS_FRAME_CORRUPT : 0);
+        assert_int_equal(!frame->plane[0], why[i] != NULL);
+        assert_status(refocus_convert_samples(converter, frame, converted, NULL),
+                      why[i] ? REFOCUS_ERR_UNSUPPORTED : REFOCUS_OK);
+        if (why[i])
+            assert_ptr_equal(strstr(reason.text, why[i]), reason.text);
+        refocus_source_release(source, frame);
+    }
+    assert_status(refocus_source_wait(source, 0, &frame, &reason), REFOCUS_ERR_END);
+    refocus_source_get_counters(source, &counters);
+    assert_true(counters.corrupt == 2 && counters.frames == 4 && counters.released == 4);
+    refocus_converter_destroy(&converter);
+    refocus_source_close(&source);
+}
+
 /* Every allocation -------------------------------------------------------------------- */
 
 /* Opens, starts and takes two frames. */
@@ -305,7 +341,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(depth_of_codes),         cmocka_unit_test(pictures_in_time),
         cmocka_unit_test(pictures_change),        cmocka_unit_test(a_gap_is_told),
-        cmocka_unit_test(numbers_begin_anywhere), cmocka_unit_test(every_allocation)};
+        cmocka_unit_test(numbers_begin_anywhere), cmocka_unit_test(maps_are_left_out),
+        cmocka_unit_test(every_allocation)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
