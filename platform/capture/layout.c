@@ -89,3 +89,8 @@ void rf_frame_lay_out(struct refocus_frame *frame, const uint8_t *memory, int64_
         memory += frame->stride[i] * rf_plane_rows(frame->format, i, frame->height);
     }
 }
+
+uint32_t rf_matrix_by_size(int width, int height)
+{
+    return width >= 1280 || height > 576 ? REFOCUS_MATRIX_BT709 : REFOCUS_MATRIX_BT601;
+}

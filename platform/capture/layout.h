@@ -23,6 +23,9 @@ int64_t rf_plane_stride(uint32_t format, int plane, int64_t stride);
 uint64_t rf_frame_bytes(uint32_t format, int64_t stride, int width, int height);
 /* Point a frame's planes into such memory. */
 void rf_frame_lay_out(struct refocus_frame *frame, const uint8_t *memory, int64_t stride);
+/* The matrix of streams that have no word for it, as players take it: BT.709 from a width of 1280
+ * or more than 576 rows on, else BT.601. */
+uint32_t rf_matrix_by_size(int width, int height);
 /* The format of that name in any case; REFOCUS_FRAME_ANY for none. */
 uint32_t rf_format_by_name(const char *name);
 

@@ -3,20 +3,30 @@
 #include <string.h>
 #include "layout.h"
 
-/* BT.601 limited range in 1/65536: 219 Kr, 219 Kg, 219 Kb and so on, of 255. */
-static uint8_t luma(const uint8_t *p)
+/* Limited range in 1/65536: 219 Kr, 219 Kg, 219 Kb and so on, of 255. */
+struct weights {
+    int y[3], u[3], v[3];
+};
+static const struct weights weights_of[] = {
+    [REFOCUS_MATRIX_BT601] = {{16829, 33039, 6416}, {-9714, -19070, 28784}, {28784, -24103, -4681}},
+    [REFOCUS_MATRIX_BT709] = {{11966, 40254, 4064}, {-6596, -22188, 28784}, {28784, -26145, -2639}},
+};
+
+static const struct weights *choose_weights(const struct refocus_frame *frame)
 {
-    return (uint8_t)((16829 * p[0] + 33039 * p[1] + 6416 * p[2] + (16 << 16) + 32768) >> 16);
+    return &weights_of[frame->matrix == REFOCUS_MATRIX_BT709 ? REFOCUS_MATRIX_BT709
+                                                             : REFOCUS_MATRIX_BT601];
 }
 
-static uint8_t chroma_u(int r, int g, int b, int shift)
+static uint8_t luma(const struct weights *w, const uint8_t *p)
 {
-    return (uint8_t)((-9714 * r - 19070 * g + 28784 * b + (257 << (15 + shift))) >> (16 + shift));
+    return (uint8_t)((w->y[0] * p[0] + w->y[1] * p[1] + w->y[2] * p[2] + (16 << 16) + 32768) >> 16);
 }
 
-static uint8_t chroma_v(int r, int g, int b, int shift)
+/* U or V of sums of 2^shift pixels. */
+static uint8_t chroma(const int w[3], int r, int g, int b, int shift)
 {
-    return (uint8_t)((28784 * r - 24103 * g - 4681 * b + (257 << (15 + shift))) >> (16 + shift));
+    return (uint8_t)((w[0] * r + w[1] * g + w[2] * b + (257 << (15 + shift))) >> (16 + shift));
 }
 
 static uint8_t *plane_row(const struct refocus_frame *frame, int plane, int y)
@@ -27,6 +37,7 @@ static uint8_t *plane_row(const struct refocus_frame *frame, int plane, int y)
 static void encode_packed_422(const struct refocus_image *image, const struct refocus_frame *frame,
                               int y)
 {
+    const struct weights *const w = choose_weights(frame);
     const int first = frame->format == REFOCUS_FRAME_UYVY; /* offset of the first Y */
     const uint8_t *rgb = image->plane[0] + y * image->stride[0];
     uint8_t *out = plane_row(frame, 0, y);
@@ -35,16 +46,17 @@ static void encode_packed_422(const struct refocus_image *image, const struct re
         const uint8_t *a = rgb + 3 * x, *b = x + 1 < image->width ? a + 3 : a;
         const int red = a[0] + b[0], green = a[1] + b[1], blue = a[2] + b[2];
 
-        out[2 * x + first] = luma(a);
-        out[2 * x + 2 + first] = luma(b);
-        out[2 * x + 1 - first] = chroma_u(red, green, blue, 1);
-        out[2 * x + 3 - first] = chroma_v(red, green, blue, 1);
+        out[2 * x + first] = luma(w, a);
+        out[2 * x + 2 + first] = luma(w, b);
+        out[2 * x + 1 - first] = chroma(w->u, red, green, blue, 1);
+        out[2 * x + 3 - first] = chroma(w->v, red, green, blue, 1);
     }
 }
 
 /* Two rows of Y and one of U and V. */
 static void encode_420(const struct refocus_image *image, const struct refocus_frame *frame, int y)
 {
+    const struct weights *const w = choose_weights(frame);
     const uint8_t *top = image->plane[0] + y * image->stride[0];
     const uint8_t *low = y + 1 < image->height ? top + image->stride[0] : top;
     const bool planar = frame->format == REFOCUS_FRAME_YUV420;
@@ -55,8 +67,8 @@ static void encode_420(const struct refocus_image *image, const struct refocus_f
     uint8_t *v = planar ? plane_row(frame, 2, y / 2) : plane_row(frame, 1, y / 2) + !swapped;
 
     for (int x = 0; x < image->width; x++) {
-        out[0][x] = luma(top + 3 * x);
-        out[1][x] = luma(low + 3 * x);
+        out[0][x] = luma(w, top + 3 * x);
+        out[1][x] = luma(w, low + 3 * x);
     }
     for (int x = 0; x < image->width; x += 2) {
         const int a = 3 * x, b = x + 1 < image->width ? a + 3 : a;
@@ -64,8 +76,8 @@ static void encode_420(const struct refocus_image *image, const struct refocus_f
         const int green = top[a + 1] + top[b + 1] + low[a + 1] + low[b + 1];
         const int blue = top[a + 2] + top[b + 2] + low[a + 2] + low[b + 2];
 
-        u[x / 2 * step] = chroma_u(red, green, blue, 2);
-        v[x / 2 * step] = chroma_v(red, green, blue, 2);
+        u[x / 2 * step] = chroma(w->u, red, green, blue, 2);
+        v[x / 2 * step] = chroma(w->v, red, green, blue, 2);
     }
 }
 

@@ -5,8 +5,8 @@
 #include <stdbool.h>
 #include <refocus/platform/source.h>
 
-/* An RGB8 picture as a frame of BT.601, limited range, each chroma sample the mean of its pixels;
- * or as packed RGB. The frame's planes are written to. */
+/* An RGB8 picture as a frame of its own matrix, limited range, each chroma sample the mean of its
+ * pixels; or as packed RGB. The frame's planes are written to. */
 void rf_encode(const struct refocus_image *image, const struct refocus_frame *frame);
 bool rf_can_encode(uint32_t format);
 

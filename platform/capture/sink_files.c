@@ -216,6 +216,7 @@ static bool lay_out(struct stream *stream, uint32_t layout, int width, int heigh
     frame->format = layout;
     frame->width = width;
     frame->height = height;
+    frame->matrix = rf_matrix_by_size(width, height);
     stream->bytes =
         (size_t)rf_frame_bytes(frame->format, rf_plane_row(frame->format, 0, width), width, height);
     if (stream->tall)

@@ -336,6 +336,7 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     frame->format = stream->format;
     frame->width = stream->width;
     frame->height = stream->height;
+    frame->matrix = rf_matrix_by_size(stream->width, stream->height);
     rf_frame_lay_out(frame, stream->ring.memory[buffer], row);
     frame->buffer = (uint32_t)buffer;
     frame->sequence = (uint32_t)stream->frame++;

@@ -200,6 +200,33 @@ class Files(Live):
         write('d-0.pgm', b'')
         self.fails(1, 'd-0.pgm: ', *args)
 
+    def test_the_matrix_of_streams_that_do_not_say_theirs(self):
+        """Of HD it is that of BT.709, of less BT.601, as players take it; also in what is written."""
+        y, u, v = 150, 90, 180
+        for width, height, hd in (1278, 10, False), (1280, 10, True), (10, 576, False), (10, 578, True):
+            kr, kb = (0.2126, 0.0722) if hd else (0.299, 0.114)
+            luma, cb, cr = (y - 16) * 255 / 219, (u - 128) * 255 / 112, (v - 128) * 255 / 112
+            red, blue = luma + cr * (1 - kr), luma + cb * (1 - kb)
+            rgb = red, (luma - kr * red - kb * blue) / (1 - kr - kb), blue
+            planes = [bytes([c]) * n for c, n in ((y, width * height), (u, width * height // 4), (v, width * height // 4))]
+            write('in.y4m', b'YUV4MPEG2 W%d H%d F30:1 C420jpeg\nFRAME\n' % (width, height) + b''.join(planes))
+            write('in.raw', b''.join(planes))
+            for camera in 'y4m:in.y4m', 'raw:in.raw,YUV420,%dx%d' % (width, height):
+                args = ['--camera', camera, '--depth', 'depth.pgm', '--out']
+                shown = []
+                for more in [], ['--matrix', 'bt709' if hd else 'bt601'], ['--matrix', 'bt601' if hd else 'bt709']:
+                    self.report(*args, 'raw:out.rgb', *more)
+                    shown.append(content('out.rgb'))
+                self.assertTrue(all(abs(a - b) <= 1 for a, b in zip(shown[0][:3], rgb)), (shown[0][:3], rgb))
+                self.assertEqual(shown[0], shown[1])
+                self.assertTrue(any(abs(a - b) > 8 for a, b in zip(shown[0], shown[2])))
+                # By way of R, G and B, too, colours go out as they came in.
+                for out, more in ('y4m:out', []), ('y4m:out', ['--grain', '1']), ('raw:out,YUV420', ['--grain', '1']):
+                    self.report(*args, out, *more)
+                    codes = content('out').split(b'FRAME\n')[-1]
+                    self.assertEqual(len(codes), width * height * 3 // 2)
+                    self.assertTrue(all(abs(a - b) <= 1 for a, b in zip(codes, b''.join(planes))))
+
     def test_each_frame_has_grain_of_its_own(self):
         noise = random.Random(1)
         one = bytes(int(noise.gauss(110, 5)) for _ in range(96 * 80))

@@ -7,16 +7,16 @@
  *     v4l2:/dev/video9       a V4L2 output node (virtual camera)
  *     pipewire:[NAME]        a camera of PipeWire, which browsers and calls list by its
  *                            name, else as "Refocused camera"
- *     y4m:FILE               a YUV4MPEG2 stream: RGB8 becomes 4:2:0, BT.601 limited
- *                            range; pictures of Y, U and V keep their codes, 4:2:0 or
- *                                4:2:2. The rate is the simplest fraction that is it to
- *                                13 digits, such as 30000:1001
+ *     y4m:FILE               a YUV4MPEG2 stream: RGB8 becomes 4:2:0 of limited range,
+ *                            BT.709 from a width of 1280 or more than 576 rows on, else
+ *                            BT.601, as players take it; pictures of Y, U and V keep their codes,
+ * 4:2:0 or 4:2:2. The rate is the simplest fraction that is it to 13 digits, such as 30000:1001
  *     raw:FILE[,FORMAT]      frames without a header, one behind the other, rows without
  *                            gaps, as the source raw: reads them. FORMAT is RGB24
  *                            (default), BGR24, RGBX, BGRX, NV12, NV21, YUV420, YUYV or
  *                            UYVY; or `own`: that of the pictures, RGB24 of RGB8.
- *                            RGB8 becomes BT.601 limited range where it is one of Y, U
- *                            and V; pictures of Y, U and V keep their codes, but
+ *                            RGB8 becomes limited range, of the matrix as in y4m, where it
+ *                            is one of Y, U and V; pictures of Y, U and V keep their codes, but
  *                            those of U and V where 4:2:0 becomes 4:2:2 (rows twice)
  *                            or 4:2:2 becomes 4:2:0 (the mean of two rows)
  *     frames-%04d.png        a picture each: .png .jpg .ppm; counted from 0

@@ -79,7 +79,8 @@ struct refocus_frame {
     const uint8_t *plane[3]; /**< may be uncached camera memory: read it once, in order */
     ptrdiff_t stride[3];     /**< bytes from a row to the next one below */
     uint64_t bytes;          /**< bytes of an MJPEG picture */
-    uint32_t matrix;         /**< enum refocus_matrix */
+    uint32_t matrix;         /**< enum refocus_matrix; of y4m and raw, which have no word for it,
+                                  BT.709 from a width of 1280 or more than 576 rows on */
     uint32_t flags;          /**< enum refocus_frame_flags, or-ed */
     int64_t timestamp_ns;    /**< when it was taken */
     uint32_t sequence;       /**< number by the camera; gaps are frames it dropped; wraps */

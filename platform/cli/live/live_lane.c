@@ -120,6 +120,8 @@ static int handle(struct live_lane *lane, const struct refocus_frame *given, con
     int status = EXIT_DONE;
 
     stage->frames++;
+    if (lane->live->settings->matrix >= 0)
+        frame.matrix = (uint32_t)lane->live->settings->matrix;
     if (frame.flags & REFOCUS_FRAME_CORRUPT) {
         stage->corrupt++;
         warn(lane, why);

@@ -32,6 +32,14 @@ static const char *quality_summary(uint32_t index)
     return index < sizeof rays / sizeof *rays ? rays[index] : engine_quality_summary(index);
 }
 
+static const char *matrix_name(uint32_t index)
+{
+    static const char *const names[] = {
+        [REFOCUS_MATRIX_BT601] = "bt601", [REFOCUS_MATRIX_BT709] = "bt709"};
+
+    return index < 2 ? names[index] : NULL;
+}
+
 const struct option live_options[] = {
     {.kind = OPTION_HEADING, .help = "In and out"},
     {.kind = OPTION_TEXT,
@@ -113,6 +121,13 @@ const struct option live_options[] = {
      .greatest = 10000,
      .help = "frames a second; default as the source has them, and where it does not say, as "
              "file: and raw: without a rate, as the other of camera and depth has them, else 30"},
+    {.kind = OPTION_CHOICE,
+     .name = "--matrix",
+     .argument = "NAME",
+     .offset = offsetof(struct live_settings, matrix),
+     .choice = matrix_name,
+     .help = "how Y, U and V of its frames become R, G and B; default as the source says, and of "
+             "y4m: and raw:, which cannot, bt709 from 1280 columns or 577 rows on, else bt601"},
     {.kind = OPTION_TEXT,
      .name = "--autofocus",
      .argument = "HOW",
@@ -293,6 +308,7 @@ const struct live_settings live_settings_none = {
     .blur_most = NAN,
     .patience = 10,
     .policy = POLICY_DEFAULT,
+    .matrix = -1,
     .out = "null"};
 
 static bool is_of_kind(const char *name, const char *kind)

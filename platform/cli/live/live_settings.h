@@ -25,7 +25,7 @@ struct live_settings {
     struct lens_settings lens;
     struct engine_settings engine;
     double size[2], fps, frames, duration, patience, blur_most, steady;
-    int format, policy;
+    int format, policy, matrix; /* the matrix -1: as the source says */
     bool fast, loop, no_commands, list, dmabuf;
     bool offline; /* from files to files: nothing goes by the clock on the wall */
 };

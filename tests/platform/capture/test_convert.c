@@ -277,8 +277,11 @@ static void encoding_comes_back(void **state)
 
     (void)state;
     assert_status(refocus_converter_create(&converter), REFOCUS_OK);
-    for (uint32_t format = REFOCUS_FRAME_YUYV; format <= REFOCUS_FRAME_BGRX; format++) {
+    for (uint32_t i = 0; i < 2 * (uint32_t)REFOCUS_FRAME_BGRX; i++) {
+        const uint32_t format = REFOCUS_FRAME_YUYV + i / 2;
+
         make_frame(&frame, format, 16, 16, memory);
+        frame.matrix = i % 2 ? REFOCUS_MATRIX_BT709 : REFOCUS_MATRIX_BT601;
         for (int y = 0; y < 16; y++)
             for (int x = 0; x < 16; x++)
                 for (int c = 0; c < 3; c++)
@@ -287,10 +290,10 @@ static void encoding_comes_back(void **state)
         assert_true(rf_can_encode(format));
         rf_encode(&image, &frame);
         assert_status(refocus_convert_rgb8(converter, &frame, &image2, NULL), REFOCUS_OK);
-        for (size_t i = 0; i < sizeof rgb; i++)
-            if (abs(rgb[i] - back[i]) > 3)
-                fail_msg("%s: byte %zu is %d, was %d", refocus_frame_format_name(format), i,
-                         back[i], rgb[i]);
+        for (size_t k = 0; k < sizeof rgb; k++)
+            if (abs(rgb[k] - back[k]) > 3)
+                fail_msg("%s, matrix %d: byte %zu is %d, was %d", refocus_frame_format_name(format),
+                         (int)frame.matrix, k, back[k], rgb[k]);
     }
     refocus_converter_destroy(&converter);
 }
