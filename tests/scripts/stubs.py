@@ -74,7 +74,8 @@ class Case(unittest.TestCase):
     def run_script(self, script, *arguments, installed='', **more):
         """(exit status, standard output, the lines of what was asked of the programs)"""
         open(self.log, 'w', encoding='utf-8').close()
-        environment = {'PATH': self.bin, 'HOME': self.folder, 'STUB_LOG': self.log,
+        environment = {'PATH': self.bin, 'HOME': self.folder, 'TMPDIR': self.folder,
+                       'STUB_LOG': self.log,
                        'STUB_INSTALLED': installed, 'STUB_SETUP_FAILS': 'never', **more}
         result = subprocess.run([os.path.join(ROOT, script), *arguments], env=environment,
                                 cwd=self.folder, stdin=subprocess.DEVNULL, text=True, timeout=240,

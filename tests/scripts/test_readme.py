@@ -86,6 +86,7 @@ class Readme(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.mkdtemp(prefix='refocus-readme-')
+        cls.addClassCleanup(cls.leave)
         os.chdir(cls.folder)
         os.symlink(os.path.join(ROOT, 'examples'), 'examples')
         pictures.pgm('depth.pgm', 48, 32, lambda x, y: 255 if x >= 24 else 51)
@@ -111,7 +112,7 @@ class Readme(unittest.TestCase):
             file.write(b'no network')
 
     @classmethod
-    def tearDownClass(cls):
+    def leave(cls):
         os.chdir('/')
         shutil.rmtree(cls.folder)
 

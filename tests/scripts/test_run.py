@@ -63,6 +63,7 @@ class Run(stubs.Case):
         self.assertLessEqual({'gcc', 'clang', 'minimal', 'bare', 'asan', 'tsan',
                               'quickstart', 'quickstart--core'}, set(self.builds(asked)))
         self.assertFalse(self.LONG & set(self.builds(asked)))
+        self.assertEqual([name for name in os.listdir(self.folder) if 'readme' in name], [])
 
     def test_long(self):
         """What continuous integration has no time for: a sanitizer looks only with its list."""
