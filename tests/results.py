@@ -4,8 +4,12 @@
 usage: results.py LOG            prints 'PASSED FAILED SKIPPED'; names what did not pass
                                  on standard error
        results.py LOG --digest   prints the hashes of the test 'digest'
+
+What Python's unittest skips inside a test counts as skipped, and a test that skips all that it has
+has not passed.
 """
 import json
+import re
 import sys
 
 PASSED = {"OK", "EXPECTEDFAIL"}
@@ -26,6 +30,13 @@ def skipped_parts(test):
                    if "SKIP:" in line or "[  SKIPPED ]" in line})
 
 
+def skipped_cases(test):
+    """How many cases unittest ran, skipped ones among them, and how many it skipped."""
+    text = "\n" + (test.get("stderr") or "") + "\n" + (test.get("stdout") or "")
+    skips = sum(map(int, re.findall(r"\n(?:OK|NO TESTS RAN) \(.*?\bskipped=(\d+)", text)))
+    return max(skips, sum(map(int, re.findall(r"\nRan (\d+) tests? in ", text)))), skips
+
+
 def main():
     with open(sys.argv[1], encoding="utf-8") as log:
         tests = [json.loads(line) for line in log if line.strip()]
@@ -38,7 +49,12 @@ def main():
     passed = failed = skipped = 0
     for test in tests:
         if test["result"] in PASSED:
-            passed += 1
+            cases, skips = skipped_cases(test)
+            skipped += skips
+            if not cases or skips < cases:
+                passed += 1
+            if skips:
+                print(f"    SKIPPED in {test['name']}: {skips} of {cases} cases", file=sys.stderr)
             for line in skipped_parts(test):
                 print(f"    SKIPPED in {test['name']}: {line}", file=sys.stderr)
         elif test["result"] == "SKIP":

@@ -20,7 +20,10 @@ EVERYTHING = ('meson ninja-build pkg-config gcc g++ libc6-dev python3 libcmocka-
 
 
 def result(word):
-    return json.dumps({'name': 'suite / name', 'result': word, 'stdout': 'it says why'})
+    """What meson notes of a test that ends so; `word:lines`: with these of unittest."""
+    word, _, lines = word.partition(':')
+    return json.dumps({'name': 'suite / name', 'result': word, 'stdout': 'it says why',
+                       'stderr': '\n' + lines.replace('_', ' ').replace(';', '\n')})
 
 
 class Run(stubs.Case):
@@ -54,6 +57,20 @@ class Run(stubs.Case):
         self.assertEqual((status, words[-1]), (1, '1 passed, 2 failed, 1 skipped'))
         status, words, asked = self.start('tests/run.sh', STUB_SETUP_FAILS='setup')
         self.assertEqual((status, words[-1]), (1, '0 passed, 1 failed, 0 skipped'))
+
+    def test_skips_of_unittest(self):
+        """They count, and a test that skips all it has did not pass."""
+        for lines, counts, line in (
+                ('Ran_9_tests_in_1s;;OK', '1 passed, 0 failed, 0 skipped', None),
+                ('Ran_9_tests_in_1s;;OK_(skipped=3)', '1 passed, 0 failed, 3 skipped', '3 of 9'),
+                ('Ran_9_tests_in_1s;;OK_(skipped=9)', '0 passed, 0 failed, 9 skipped', '9 of 9'),
+                ('Ran_0_tests_in_1s;;OK_(skipped=1)', '0 passed, 0 failed, 1 skipped', '1 of 1'),
+                ('Ran_9_tests_in_1s;;OK_(expected_failures=2,_skipped=1)',
+                 '1 passed, 0 failed, 1 skipped', '1 of 9')):
+            words = self.start('tests/run.sh', results='OK:' + lines)[1]
+            self.assertEqual(words[-1], counts, lines)
+            shown = [word for word in words if 'SKIPPED in' in word]
+            self.assertEqual(shown, [f'    SKIPPED in suite / name: {line} cases'] if line else [])
 
     def test_every_build(self):
         """All of them, by continuous integration, whose last line and status count."""
