@@ -31,7 +31,11 @@ for argument; do
 done
 . "$top/tests/packages.sh"
 passed=0 failed=0 skipped=0 suites=()
-mkdir -p "$builds"
+if ! mkdir -p "$builds" 2>/dev/null || [ ! -w "$builds" ]; then
+    echo "$builds cannot be written: set REFOCUS_BUILDS to a folder that can" >&2
+    exit 2
+fi
+trap 'exit 130' INT # meson ends by itself, and the next stage would begin
 
 finish() {
     echo "$passed passed, $failed failed, $skipped skipped"

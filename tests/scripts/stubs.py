@@ -31,6 +31,8 @@ case $1 in
     test)
         mkdir -p "$3/meson-logs"
         echo "$STUB_RESULTS" >"$3/meson-logs/testlog.json"
+        # As Ctrl-C does, which meson takes for the end of its tests.
+        [ -z "$STUB_INTERRUPT" ] || { trap : INT; kill -INT 0; }
         ;;
 esac''',
     # makes the programs that a script goes on with
@@ -79,6 +81,7 @@ class Case(unittest.TestCase):
                        'STUB_INSTALLED': installed, 'STUB_SETUP_FAILS': 'never', **more}
         result = subprocess.run([os.path.join(ROOT, script), *arguments], env=environment,
                                 cwd=self.folder, stdin=subprocess.DEVNULL, text=True, timeout=240,
-                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+                                start_new_session=True, stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT)
         with open(self.log, encoding='utf-8') as file:
             return result.returncode, result.stdout, file.read().splitlines()

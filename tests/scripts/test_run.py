@@ -4,6 +4,7 @@ write down what they are asked stand in for the compilers and meson."""
 import json
 import os
 import re
+import signal
 import unittest
 
 import stubs
@@ -71,6 +72,20 @@ class Run(stubs.Case):
             self.assertEqual(words[-1], counts, lines)
             shown = [word for word in words if 'SKIPPED in' in word]
             self.assertEqual(shown, [f'    SKIPPED in suite / name: {line} cases'] if line else [])
+
+    def test_ctrl_c_ends_it(self):
+        """Also where this test was begun in the background of a script."""
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)
+        self.addCleanup(signal.signal, signal.SIGINT, before)
+        status, words, asked = self.start('.ci/run', STUB_INTERRUPT='1')
+        self.assertEqual(status, 130, words)
+        self.assertEqual(self.builds(asked), ['gcc'])
+        self.assertEqual(sum(line.startswith('meson test ') for line in asked), 1)
+
+    def test_where_nothing_can_be_written(self):
+        status, words, asked = self.run_script('tests/run.sh', REFOCUS_BUILDS='/dev/null/builds')
+        self.assertEqual((status, words, asked), (2, '/dev/null/builds cannot be written: set '
+                                                  'REFOCUS_BUILDS to a folder that can\n', []))
 
     def test_every_build(self):
         """All of them, by continuous integration, whose last line and status count."""
