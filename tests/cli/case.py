@@ -3,6 +3,7 @@ succeeds, reports or fails. Usage of a test: TEST.py REFOCUS [unittest arguments
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -16,6 +17,11 @@ ROOT = os.environ.get('REFOCUS_SOURCE_ROOT', os.path.join(os.path.dirname(__file
 PHOTOS = os.environ.get('REFOCUS_PHOTOS', os.path.join(ROOT, '../shared/photos'))
 W, H = 48, 32
 os.environ['XDG_CONFIG_HOME'] = os.devnull  # nobody's own configuration
+# What nohup and the background of a script ignore, commands would ignore, too: a signal that has a
+# handler is theirs as usual.
+for ignored in signal.SIGHUP, signal.SIGINT:
+    if signal.getsignal(ignored) == signal.SIG_IGN:
+        signal.signal(ignored, lambda *_: None)
 
 
 class Case(unittest.TestCase):

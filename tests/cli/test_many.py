@@ -172,10 +172,20 @@ class Many(Case):
             [REFOCUS, *self.many('-o', 'out', '--jobs', '2', '--method', 'raytrace', '--rays',
                                  'full', '--blur', '127', photos=[self.large(i) for i in '123'])],
             stderr=subprocess.PIPE, text=True, start_new_session=True, **more)
+        self.addCleanup(self.end, process)
         while len(self.children(process)) < 2:
             time.sleep(0.01)
         time.sleep(0.1)
         return process
+
+    @staticmethod
+    def end(process):
+        """The batch of a test that failed meanwhile does not go on."""
+        try:
+            os.killpg(process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+        process.communicate()
 
     @staticmethod
     def large(name):

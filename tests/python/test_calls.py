@@ -168,7 +168,10 @@ class Files(Case):
 
 class Signals(Case):
     def test_ctrl_c_ends_a_render(self):
-        """Every ray of a large blur would take minutes."""
+        """Every ray of a large blur would take minutes. Scripts have tests in their background
+        ignore Ctrl-C."""
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)
+        self.addCleanup(signal.signal, signal.SIGINT, before)
         photo = numpy.tile(self.photo, (12, 12, 1))
         disparity = numpy.tile(self.disparity, (12, 12))
         began = time.monotonic()
