@@ -6,48 +6,20 @@ import os
 import shutil
 import struct
 import subprocess
-import time
 import unittest
 
 import case
 import pictures
-from case import Case, H, W
+from case import H, W
+from focus_stack import FRAMES, FocusStack, mean, noise
+from jpeg_files import HAS_JPEG, HAS_PNG, HAS_XMP
 
-FRAMES = 3
 # All that struct refocus_stack_result says of a stack.
 STACK_WORDS = sorted(('alike', 'blur', 'by_rows', 'direction', 'disorder', 'exposure', 'matched',
                       'measured', 'moved', 'moving', 'order', 'order_margin', 'reference'))
 
 
-def noise(x, y):
-    return (x * 7919 + y * 104729 + x * y * 31) * 2654435761 >> 16 & 255
-
-
-def mean(x, y, radius, grain=1):
-    """The texture through a lens: the mean of a square."""
-    span = range(-radius, radius + 1)
-    return sum(noise((x + u) // grain, (y + v) // grain) for u in span
-               for v in span) // len(span) ** 2
-
-
-class DepthOfAStack(Case):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        # The left half is far, in focus in the first frame, the right one near.
-        for k in range(FRAMES):
-            pictures.ppm(f'{k}.ppm', W, H, lambda x, y: (
-                mean(x, y, k if x < W // 2 else FRAMES - 1 - k),) * 3)
-        cls.frames = [f'{k}.ppm' for k in range(FRAMES)]
-        cls.command = ['depth', '--focal-stack', *cls.frames, '--align', 'none']
-
-    def halves(self, name):
-        width, height, samples = pictures.read_pnm(name)
-        self.assertEqual((width, height), (W, H))
-        # Depths between frames are told apart, so that the ends are so but for the last bits.
-        return [(0 if v < 999 else v) for v in (sorted(samples[y * W + x] for y in range(H) for x in range(left, left + W // 2))
-                [W * H // 4] for left in (0, W // 2))]
-
+class DepthOfAStack(FocusStack):
     def test_depth_and_photo(self):
         report = self.reports(*self.command, '-o', 'd.pgm', '--photo', 'all.ppm')
         self.assertEqual((report['width'], report['height']), (W, H))
@@ -129,294 +101,15 @@ class DepthOfAStack(Case):
             self.assertEqual((report['depth']['near_m'], report['depth']['far_m']), (0.5, 2))
         self.assertEqual(self.halves('e.pgm'), [0, 65535])
 
+    @unittest.skipUnless(HAS_JPEG and HAS_PNG and HAS_XMP, 'needs TurboJPEG, libpng and expat')
     def test_a_jpeg_carries_its_depth(self):
-        result = self.run_it(*self.command, '-o', 'o.jpg', '--positions', '0,1,2')
-        if result.returncode:  # a build without expat or libpng
-            self.assertFalse(os.path.exists('o.jpg'))
-            return
+        before = os.listdir('.')
+        self.succeeds(*self.command, '-o', 'o.jpg', '--positions', '0,1,2')
+        self.assertEqual(sorted(os.listdir('.')), sorted(before + ['o.jpg']))
         report = self.reports('info', 'o.jpg')
         self.assertEqual((report['depth']['width'], report['depth']['height']), (W, H))
         self.assertEqual(report['depth']['near_m'], 0.5)
-        self.assertEqual([n for n in os.listdir('.') if n.startswith('o.') and n != 'o.jpg'], [])
         self.succeeds('render', 'o.jpg', '--focus', '1', '--blur', '4', '-o', 'r.ppm')
-
-    CAMERA = 'replay::stack %d.ppm 3;lens 0.5 2.5'
-
-    def stack(self, more='', *arguments):
-        return ('stack', '--camera', self.CAMERA + more, '--steps', '3', *arguments)
-
-    def test_a_camera_moves_its_lens(self):
-        plan = self.reports(*self.stack('', '--dry-run'))
-        self.assertEqual(plan, {'dioptres': True, 'least': 0.5, 'greatest': 2.5, 'average': 1,
-                                'positions': [0.5, 1.5, 2.5]})
-        self.assertIn(' 2       1.5, 0.667 m\n', self.succeeds(*self.stack('', '--dry-run')))
-        self.succeeds('depth', '--focal-stack', *self.frames, '-o', 'd.pgm', '--photo', 'all.ppm')
-        report = self.reports(*self.stack(';lens-speed 0.125', '--average', '2', '-o', 'e.pgm',
-                                          '--photo', 'f.ppm', '--keep', 'kept'))
-        self.assertEqual((report['depth']['near_m'], report['depth']['far_m']), (0.4, 2))
-        for one, other in ('d.pgm', 'e.pgm'), ('all.ppm', 'f.ppm'):
-            with open(one, 'rb') as a, open(other, 'rb') as b:
-                self.same(a.read(), b.read(), other)
-        with open('kept/stack.json') as file:
-            kept = json.load(file)
-        self.assertEqual(kept['positions'], [0.5, 1.5, 2.5])
-        again = self.reports('depth', '--focal-stack', *('kept/' + f for f in kept['frames']),
-                             '--positions', 'kept/stack.json', '-o', 'g.pgm')
-        self.assertEqual(again['depth'], report['depth'])
-        self.assertEqual(report['file'], 'kept/01.' + kept['frames'][1].split('.')[1])
-        self.fails(1, 'kept: it is there already; give a new folder',
-                   *self.stack('', '--keep', 'kept'))
-        # Files that do not stay are not named.
-        report = self.reports(*self.stack('', '-o', 'e.pgm'))
-        self.assertEqual(report['file'], self.CAMERA)
-        os.mkdir('flat')
-        for name in self.frames:
-            with open(os.path.join('flat', name), 'wb') as file:
-                file.write(b'P6\n64 48\n255\n' + bytes([90]) * (64 * 48 * 3))
-        flat = self.CAMERA.replace('%d', 'flat/%d')
-        self.fails(1, flat + ': no part of the picture is sharper in one frame than in the others; '
-                   'give frames of different focus', 'stack', '--camera', flat,
-                   '--steps', '3', '-o', 'x.pgm')
-        self.assertEqual([f for f in os.listdir('.') if f.startswith('.refocus')], [])
-
-    def test_the_example_for_a_pi(self):
-        """Each half of its pictures is sharp in one and blurred in the other."""
-        script = os.path.join(os.path.dirname(os.path.abspath(__file__)),
-                              '../../examples/pi_focus_stack.sh')
-        place = os.path.dirname(os.path.abspath(case.REFOCUS))
-        path = {**os.environ, 'PATH': place + ':' + os.environ['PATH'], 'STEPS': '3', 'BLUR': '4'}
-        if self.run_it('render', '0.ppm', '--depth', 'depth.pgm', '--blur', '0', '-o',
-                       'x.png').returncode:
-            self.skipTest('a build without PNG')
-        os.remove('x.png')
-        self.assertEqual(subprocess.run([script], stderr=subprocess.DEVNULL).returncode, 2)
-        run = subprocess.run([script, 'pi', self.CAMERA], env=path, stdout=subprocess.DEVNULL,
-                             stderr=subprocess.PIPE)
-        self.assertEqual((run.returncode, run.stderr), (0, b''))
-        rough = {}
-        for name in 'near', 'far', 'sharp':
-            self.succeeds('render', f'pi/{name}.png', '--depth', 'depth.pgm', '--blur', '0', '-o',
-                          'x.ppm')
-            v = pictures.read_pnm('x.ppm')[2]
-            for half in 0, 1:
-                rough[name, half] = sum(abs(v[3 * (y * W + x)] - v[3 * (y * W + x + 1)])
-                                        for y in range(4, H - 4)
-                                        for x in range(half * W // 2 + 5, (half + 1) * W // 2 - 5))
-        os.remove('x.ppm')
-        for name, half in ('far', 0), ('near', 1):  # the left half is far
-            self.assertGreater(rough[name, half], 0.8 * rough['sharp', half])
-            self.assertLess(rough[name, 1 - half], 0.5 * rough['sharp', 1 - half])
-
-    def test_a_range_and_frames_alone(self):
-        self.assertEqual(self.reports(*self.stack('', '--range', '1,2', '--keep', 'two'))
-                         ['positions'], [1, 1.5, 2])
-        self.assertEqual(len(os.listdir('two')), 4)
-        self.assertEqual(self.reports(*self.stack('', '--range', '0.75,1.25', '--dry-run'))
-                         ['positions'], [0.75, 1, 1.25])
-
-    def test_lenses_that_do_not_do_as_they_are_told(self):
-        out = ('-o', 'x.pgm')
-        sticky = self.CAMERA + ';lens-stop 1.5'
-        self.fails(1, f'{sticky}: its lens stays at 1.5 where 2.5 was asked for; give a --range '
-                   'that it can reach', *self.stack(';lens-stop 1.5', *out))
-        wrong = self.CAMERA + ';lens-error 0.5'
-        report = self.warns(f'{wrong}: its lens reports 1 where 0.5 was asked for; depth goes by '
-                            'what it reports', *self.stack(';lens-error 0.5', '-o', 'w.pgm'))
-        self.assertAlmostEqual(report['depth']['far_m'], 1)
-        slow = self.CAMERA + ';lens-speed 0.001'
-        self.fails(1, f'{slow}: its lens has not come to rest within 20 s',
-                   *self.stack(';lens-speed 0.001', *out))
-        ends = self.CAMERA + ';frames 40'
-        self.fails(1, f'{ends}: the script is at its end', *self.stack(';frames 40', *out))
-        self.fails(1, 'replay::size 64x48: its lens cannot be moved; focus by hand, and give the '
-                   'pictures to refocus depth --focal-stack', 'stack', '--camera',
-                   'replay::size 64x48', *out)
-        self.fails(2, '--range: its lens goes from 0.5 to 2.5; give the farther one first',
-                   *self.stack('', '--range', '2,1', *out))
-        self.fails(2, '--camera: none is given; refocus live --list shows those that there are',
-                   'stack', *out)
-        self.fails(2, '--photo: it goes with -o; give that too',
-                   *self.stack('', '--keep', 'no', '--photo', 'p.ppm'))
-
-    def live(self, *arguments, more=''):
-        return ('live', '--camera', self.CAMERA + more, '--depth', 'stack:steps=3', *arguments)
-
-    def test_live_takes_a_stack_first(self):
-        """Frames go on as the middle one was taken, refocused by the depth of the stack."""
-        look = ('--blur', '3', '--rays', '4', '--focus', '0')
-        self.succeeds(*self.command[:-2], '-o', 'd.pgm', '--positions', '0.5,1.5,2.5')
-        self.succeeds('render', '1.ppm', '--depth', 'd.pgm', '--depth-edges', 'as-given', *look,
-                      '-o', 'r.ppm')
-        report = self.reports(*self.live(*look, '--fast', '--frames', '2', '--frames-policy',
-                                         'every', '--out', 'l-%d.ppm', more=';lens-speed 0.25'))
-        self.assertEqual((report['stacks'], report['lens_dioptres']), (1, 1.5))
-        self.assertEqual((report['near_m'], report['far_m']), (0.4, 2))
-        for n in range(2):
-            self.same(pictures.read_bytes(f'l-{n}.ppm'), pictures.read_bytes('r.ppm'), 'live')
-
-    def test_live_takes_a_stack_when_asked(self):
-        run = subprocess.Popen([case.REFOCUS, *self.live('--json', '--out', 'a-%d.ppm',
-                                                         more=';fps 200')],
-                               stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE)
-        try:
-            for stacks in range(2):
-                seen = len(os.listdir('.'))
-                while len(os.listdir('.')) == seen and run.poll() is None:
-                    time.sleep(0.02)
-                run.stdin.write(b'stack\n' if stacks == 0 else b'quit\n')
-                run.stdin.flush()
-                if stacks == 0:
-                    time.sleep(4)  # 3 x 0.3 s, and one for the exposure
-            out, error = run.communicate(timeout=60)
-        finally:
-            run.kill()
-        self.assertEqual((run.returncode, error), (0, b''))
-        self.assertEqual(json.loads(out)['stacks'], 2)
-
-    def test_live_says_why_there_is_no_stack(self):
-        for more, why in ((';lens-stop 1.5', 'its lens stays at 1.5 where 2.5 was asked for; give '
-                           'a --range that it can reach'),
-                          (';lens-speed 0.001', 'its lens has not come to rest within 20 s'),
-                          (';frames 40', 'the script is at its end')):
-            self.fails(1, f'{self.CAMERA}{more}: {why}', *self.live('--fast', more=more))
-        for k in range(2):
-            pictures.ppm(f'same-{k}.ppm', W, H, lambda x, y: (noise(x, y),) * 3)
-        alike = 'replay::stack same-%d.ppm 2;lens 0.5 2.5'
-        self.fails(1, f'{alike}: no part of the picture is sharper in one frame than in the '
-                   'others; give frames of different focus', 'live', '--camera', alike, '--depth',
-                   'stack:steps=2,settle=0,average=2', '--fast', '--frames', '1')
-        for camera in 'replay::size 64x48', 'file:0.ppm':
-            self.fails(1, f'{camera}: its lens cannot be moved; focus by hand, and give the '
-                       'pictures to refocus depth --focal-stack', 'live', '--camera', camera,
-                       '--depth', 'stack:')
-        parts = (' is no part of it; give stack: with steps=2 to 32, far=P and near=P of the lens, '
-                 'average=1 to 64, settle=MS, and commas')
-        for bad in 'steps=1', 'steps=', 'steps=nan', 'steps=9x', 'every=2', 'average=65', ',':
-            self.fails(2, f"--depth: '{bad}'{parts}", 'live', '--camera', self.CAMERA, '--depth',
-                       'stack:' + bad)
-        self.fails(2, '--depth: far and near go together; give both', 'live', '--camera',
-                   self.CAMERA, '--depth', 'stack:far=1')
-        self.fails(2, '--autofocus: the lens takes a focus stack for --depth; leave it out', 'live',
-                   '--camera', self.CAMERA, '--depth', 'stack:', '--autofocus', 'off')
-        self.fails(2, '--depth: its lens goes from 0.5 to 2.5; give the farther one first', 'live',
-                   '--camera', self.CAMERA, '--depth', 'stack:far=1,near=9')
-        self.fails(2, '--depth-unit: it is not for depth of a focus stack; leave it out',
-                   *self.live('--depth-unit', 'mm'))
-        run = subprocess.run([case.REFOCUS, 'live', '--camera', 'replay::size 64x48;frames 9',
-                              '--depth', 'depth.pgm'], input=b'stack\n', stderr=subprocess.PIPE,
-                             timeout=60)
-        self.assertEqual(run.stderr.decode().splitlines()[0], 'refocus: stack: depth is not of a '
-                         'focus stack; begin with --depth stack:')
-
-    def with_distance(self, photo, name, metres):
-        """A JPEG of it whose EXIF tells that subject distance, a fraction."""
-        if self.run_it('render', photo, '--depth', 'depth.pgm', '--blur', '0', '--jpeg-quality',
-                       '100', '-o', 'j.jpg').returncode:
-            self.skipTest('a build without JPEG')
-        tiff = struct.pack('<2sHIHHHIIIHHHIIIII', b'II', 42, 8, 1, 0x8769, 4, 1, 26, 0,
-                           1, 0x9206, 5, 1, 44, 0, *metres)
-        jpeg = pictures.read_bytes('j.jpg')
-        with open(name, 'wb') as file:
-            file.write(jpeg[:2] + b'\xff\xe1' + struct.pack('>H', len(tiff) + 8) +
-                       b'Exif\0\0' + tiff + jpeg[2:])
-
-    def test_exif_says_where_the_lens_was(self):
-        """The farthest of them is infinity, the greatest numerator."""
-        names = []
-        for k, metres in enumerate(((0xffffffff, 1), (4, 1), (2, 1))):
-            names.append(f'exif-{k}.jpg')
-            self.with_distance(f'{k}.ppm', names[-1], metres)
-        self.assertEqual([self.reports('info', name)['subject_distance'] for name in names],
-                         ['infinity', 4, 2])
-        report = self.reports('depth', '--focal-stack', *names[::-1], '--align', 'none', '-o', 'x.pgm')
-        self.assertEqual((report['depth']['near_m'], report['depth']['far_m']), (2, 'infinity'))
-        self.assertEqual(report['evidence'][1], 'EXIF: the subject distances of the frames')
-        report = self.reports('depth', '--focal-stack', names[0], *names, '--align', 'none', '-o',
-                              'x.pgm')
-        self.assertEqual(report['evidence'][1:], [
-            'focus stack: nothing shows which end is far; the first is taken for it'])
-        os.remove('x.pgm')
-
-    def apertures(self, f_numbers, distance=4):
-        """Photos of one focus, the left half in it, the right one blurred the more the wider."""
-        names = []
-        for f_number in f_numbers:
-            radius = 8 // f_number - 1
-            pictures.ppm('a.ppm', W, H, lambda x, y: (
-                mean(x, y, 0 if x < W // 2 else radius),) * 3)
-            if self.run_it('render', 'a.ppm', '--depth', 'depth.pgm', '--blur', '0',
-                           '--jpeg-quality', '100', '-o', 'j.jpg').returncode:
-                self.skipTest('a build without JPEG')
-            tiff = struct.pack('<2sHIHHHIIIHHHIIHHIIIIIII', b'II', 42, 8, 1, 0x8769, 4, 1, 26, 0,
-                               2, 0x829d, 5, 1, 56, 0x9206, 5, 1, 64, 0, f_number, 1, distance, 1)
-            jpeg = pictures.read_bytes('j.jpg')
-            names.append(f'aperture-{f_number}.jpg')
-            with open(names[-1], 'wb') as file:
-                file.write(jpeg[:2] + b'\xff\xe1' + struct.pack('>H', len(tiff) + 8) +
-                           b'Exif\0\0' + tiff + jpeg[2:])
-        return names
-
-    def test_one_focus_and_several_apertures(self):
-        names = self.apertures((2, 4, 8))
-        info = self.reports('info', names[2])
-        self.assertEqual((info['subject_distance'], info['f_number']), (4, 8))
-        report = self.reports('depth', '--focal-stack', *names, '--align', 'none', '-o', 'd.pgm',
-                              '--photo', 'sharp.ppm')
-        self.assertEqual(report['evidence'][:2], [
-            'focus stack: 3 frames, moved by up to 0.0 pixels, in the geometry of frame 3',
-            'EXIF: the f-numbers of the frames, 2 to 8'])
-        self.assertRegex(report['evidence'][2], '^apertures: the nearest surface is taken to be in '
-                         r'focus; the widest aperture blurs by up to [234]\.\d pixels$')
-        near, far = self.halves('d.pgm')
-        self.assertGreater(near, 60000)
-        self.assertLess(far, 20000)
-        self.succeeds('render', names[2], '--depth', 'depth.pgm', '--blur', '0', '-o', 'same.ppm')
-        self.assertEqual(pictures.read_pnm('sharp.ppm'), pictures.read_pnm('same.ppm'))
-        self.reports('depth', '--focal-stack', *names, '--align', 'none', '-o', 'd.pgm',
-                     '--in-focus', 'farthest')
-        far, near = self.halves('d.pgm')
-        self.assertLess(far, 5000)
-        self.assertGreater(near, 45000)
-
-    def test_apertures_that_exif_does_not_tell(self):
-        names = self.apertures((2, 8), distance=0)
-        for given in names, names[::-1]:
-            report = self.reports('depth', '--focal-stack', *given, '--align', 'none', '-o',
-                                  'd.pgm')
-            self.assertIn('EXIF: the f-numbers of the frames, 2 to 8', report['evidence'])
-        # Without EXIF the sharper one is the photo, and frames are of several focus if not asked.
-        for k in range(2):
-            pictures.ppm(f'a-{k}.ppm', W, H, lambda x, y: (
-                mean(x, y, 0 if x < W // 2 else 3 * k, grain=3),) * 3)
-        for given, frame in ((0, 1), 1), ((1, 0), 2):
-            report = self.reports('depth', '--focal-stack', *(f'a-{k}.ppm' for k in given),
-                                  '--in-focus', 'nearest', '--align', 'none', '-o', 'd.pgm')
-            self.assertEqual(report['evidence'][0], 'focus stack: 2 frames, moved by up to 0.0 '
-                             f'pixels, in the geometry of frame {frame}')
-            near, far = self.halves('d.pgm')
-            self.assertGreater(near - far, 40000)
-        report = self.reports('depth', '--focal-stack', 'a-0.ppm', 'a-1.ppm', '--align', 'none',
-                              '-o', 'd.pgm')
-        self.assertFalse([e for e in report['evidence'] if e.startswith('apertures')])
-        os.remove('d.pgm')
-
-    def test_refuses_what_are_no_apertures(self):
-        two, eight = self.apertures((2, 8))
-        command = ['depth', '--focal-stack', '--in-focus', 'nearest', '-o', 'x.pgm']
-        self.fails(1, f'{two}: two frames have an aperture of f/2; give each its own', *command,
-                   two, two)
-        self.fails(1, f'{two}: not all frames tell their f-numbers; give two frames, or photos '
-                   'with EXIF', *command, two, eight, '0.ppm')
-        for option, value in ('--positions', '1,2'), ('--reference', '1'), ('--order', 'found'):
-            self.fails(2, f'{option}: frames of --in-focus differ in their apertures; leave it out',
-                       *command, two, eight, option, value)
-        self.fails(2, '--reference: frames differ in their apertures, and the photo is that of the '
-                   'smallest one; leave it out', 'depth', '--focal-stack', two, eight, '-o',
-                   'x.pgm', '--reference', '1')
-        pictures.ppm('flat.ppm', W, H, lambda x, y: (90, 90, 90))
-        self.fails(1, 'flat.ppm: no blur of the sharper frame is like the other one; give frames '
-                   'of one focus and different apertures', *command, 'flat.ppm', 'flat.ppm')
 
     def test_says_when_the_order_is_wrong(self):
         for k in range(5):
@@ -445,18 +138,6 @@ class DepthOfAStack(Case):
         os.remove('y.pgm')
         self.reports('depth', '--focal-stack', *five, '--align', 'none', '-o', 'x.pgm',
                      '--positions', '3,0,4,2,1')
-        os.remove('x.pgm')
-
-    def test_the_photo_is_of_the_frame_in_the_middle(self):
-        """Its file says what the result says, also where the order is found."""
-        names = ['0.ppm', '2.ppm', 'middle.jpg']
-        self.with_distance('1.ppm', names[2], (3, 1))
-        result = self.run_it('depth', '--focal-stack', *names, '--order', 'found', '--align',
-                             'none', '-o', 'x.pgm', '--photo', 'x.jpg', '--json')
-        report = json.loads(result.stdout)
-        self.assertEqual((report['stack']['reference'], report['file']), (3, names[2]))
-        self.assertEqual(self.reports('info', 'x.jpg')['subject_distance'], 3)
-        os.remove('x.jpg')
         os.remove('x.pgm')
 
     def test_says_when_frames_show_other_places(self):
