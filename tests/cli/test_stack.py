@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 """The refocus command: `stack` and `live` move a camera's lens for a focus stack.
 Usage: test_stack.py REFOCUS [unittest arguments]"""
+import contextlib
+import glob
 import json
 import os
+import signal
 import subprocess
 import time
 import unittest
@@ -104,6 +107,49 @@ class Stack(FocusStack):
                    'stack', *out)
         self.fails(2, '--photo: it goes with -o; give that too',
                    *self.stack('', '--keep', 'no', '--photo', 'p.ppm'))
+
+    def test_frames_that_are_damaged_or_of_another_size(self):
+        drawn = 'replay::size 64x48;lens 0 2'
+        def damaged(*frames):
+            return ''.join(f';at {n} corrupt' for n in frames)
+        report = self.reports('stack', '--camera', drawn + damaged(*range(3, 60)), '--steps', '2',
+                              '--keep', 'some')
+        self.assertEqual(report['positions'], [0, 2])
+        for camera, why in (
+                (drawn + ';at 90 format YUYV,320x240', 'its frames have changed their size'),
+                (drawn + ';at 90 format YUYV,48x64', 'its frames have changed their size')):
+            self.fails(1, f'{camera}: {why}', 'stack', '--camera', camera, '--steps', '2',
+                       '--average', '64', '--keep', 'none')
+        with open('damaged', 'w', encoding='utf-8') as file:
+            file.write((drawn + damaged(*range(100)))[8:].replace(';', '\n'))
+        self.fails(1, 'replay:damaged: all of its frames are damaged', 'stack', '--camera',
+                   'replay:damaged', '--steps', '2', '--keep', 'none')
+
+    def test_signals_leave_no_frames(self):
+        """Of one the work ends by itself; where nobody reads its line, of the second one at once."""
+        before = sorted(os.listdir('.'))
+        reader, writer = os.pipe()
+        # a second one that comes while a file is written is as none: then the first one, in 2 s
+        for numbers, statuses in ((signal.SIGTERM,), [1]), ((signal.SIGINT, signal.SIGTERM),
+                                                            [-signal.SIGTERM, -signal.SIGINT]):
+            process = subprocess.Popen([case.REFOCUS, *self.stack(';at 60 stall 60000', '-o',
+                                                                  'x.pgm')], stderr=writer)
+            while not glob.glob('.refocus-stack-*/00.ppm') and process.poll() is None:
+                time.sleep(0.01)
+            time.sleep(0.1)
+            process.send_signal(signal.SIGSTOP)
+            for number in numbers:
+                process.send_signal(number)
+            process.send_signal(signal.SIGCONT)
+            self.assertIn(process.wait(60), statuses)
+            self.assertEqual(sorted(os.listdir('.')), before)
+            os.set_blocking(writer, False)
+            with contextlib.suppress(BlockingIOError):
+                while os.write(writer, bytes(4096)):
+                    pass
+            os.set_blocking(writer, True)
+        os.close(reader)
+        os.close(writer)
 
     def live(self, *arguments, more=''):
         return ('live', '--camera', self.CAMERA + more, '--depth', 'stack:steps=3', *arguments)
