@@ -27,6 +27,8 @@ class DepthAndInfo(Case):
         width, height, bits, channels, rows = pictures.read_png('d.png')
         self.assertEqual((width, height, bits, channels), (W, H, 16, 1))
         self.assertEqual((rows[0][:2], rows[0][-2:]), (b'\xcc\xcc', b'\0\0'))
+        self.succeeds('depth', 'depth.pgm', '-o', 'v.png', '--view', 'disparity')
+        self.same(pictures.read_png('v.png'), (W, H, 8, 3, [b'333' * 24 + b'\xff\xff\xff' * 24] * H))
         text = self.succeeds('depth', 'mm.pgm', '-o', 'd.png', '--depth-unit', 'mm')
         self.assertEqual(text, 'size     48x32\nnear     0.5 m\nfar      2 m\n'
                                'filled   1 samples without a value, 0.1 %\n'
@@ -213,6 +215,29 @@ class DepthAndInfo(Case):
         edges = self.reports('info', 'soft.jpg')['depth']['edges']
         self.assertTrue(edges['parted'] and 2 < edges['softness_px'] < 6 and edges['changed'] > 0.05)
         self.assertRegex(self.succeeds('info', 'soft.jpg'), r'(?m)^placed +1?\d\.\d % of the pixels')
+
+    def test_focus_into_jpeg(self):
+        """Point and blur are read back as they were given, also of a photo that stands upright."""
+        for width, height in (W, H), (H, W):
+            pictures.ppm('f.ppm', width, height, lambda x, y: (5 * x, 5 * y, 90))
+            pictures.pgm('f.pgm', width, height, lambda x, y: 255 if 2 * x >= width else 51)
+            self.succeeds('render', 'f.ppm', '--depth', 'f.pgm', '-o', 'f.jpg', '--blur', '0')
+            command = ('depth', 'f.jpg', '--depth', 'f.pgm', '-o', 'g.jpg', '--focus-at')
+            for (x, y), disparity in ((3, 4), 0.2), ((width - 2, 4), 1), ((3, height - 2), 0.2):
+                self.succeeds(*command, f'{x},{y}', '--blur', '5')
+                info = self.reports('info', 'g.jpg')
+                self.assertAlmostEqual(info['focus_point'][0], (x + 0.5) / width, 4)
+                self.assertAlmostEqual(info['focus_point'][1], (y + 0.5) / height, 4)
+                self.assertAlmostEqual(info['own_blur'], 5 / W, 4)
+                self.assertAlmostEqual(info['depth']['blur'], 5, 2)
+                self.assertAlmostEqual(info['depth_of_field']['focus'], disparity, 3)
+                text = self.succeeds('info', 'g.jpg')
+                self.assertIn(f'\nown blur      5.0 pixels\nfocus point   {x},{y}\n', text)
+            for x, y in (width, 0), (0, height):
+                self.fails(2, f'--focus-at: {x},{y} lies outside of f.jpg; give 0,0 to '
+                           f'{width - 1},{height - 1}', *command, f'{x},{y}')
+        for name in 'f.ppm', 'f.pgm', 'f.jpg', 'g.jpg':
+            os.remove(name)
 
     def test_info_of_a_photo_with_a_map(self):
         """By --depth, edges, blur and focus are those that `render` finds."""
