@@ -36,7 +36,9 @@ class Formats(case.Case):
                  for y in range(H)]
         pictures.png('deep.png', W, H, [struct.pack('>%dH' % (3 * W), *row) for row in codes],
                      depth=16)
-        self.succeeds('render', 'deep.png', *self.sharp, '-o', 'out.tif')
+        for name in 'out.tiff', 'out.tif':
+            self.succeeds('render', 'deep.png', *self.sharp, '-o', name)
+        self.same(pictures.read_bytes('out.tiff'), pictures.read_bytes('out.tif'))
         self.assertIn('16 bits a channel', self.succeeds('info', 'out.tif'))
         self.succeeds('render', 'out.tif', *self.sharp, '-o', 'out.png')
         self.assertEqual([list(struct.unpack('>%dH' % (3 * W), row))

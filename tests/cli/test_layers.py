@@ -266,9 +266,10 @@ class Layers(Case):
                  for y in range(H)]
         pictures.png('deep.png', W, H, [struct.pack('>%dH' % (3 * W), *row) for row in codes],
                      depth=16)
-        for curve in 'auto', 'linear', 'pq', 'hlg', 'bt709', 'gamma', 'srgb':
+        for curve, *more in ('auto',), ('linear',), ('pq',), ('hlg',), ('bt709',), ('gamma',), (
+                'srgb',), ('linear', '--white', '2'), ('pq', '--white', '900'):
             self.succeeds('render', 'deep.png', '--depth', 'flat.pgm', '--focus', '0', '--blur',
-                          '3', '--transfer', curve, '-o', 'out.png')
+                          '3', '--transfer', curve, *more, '-o', 'out.png')
             self.assertEqual([list(struct.unpack('>%dH' % (3 * W), row))
                               for row in pictures.read_png('out.png')[4]], codes)
         self.warns('deep.png: it has 16 bits a channel; 8 are taken, dithered', 'render',
