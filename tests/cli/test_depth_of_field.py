@@ -30,13 +30,14 @@ class DepthOfField(case.Case):
                            whole[2:])
         return name
 
+    # the Exif IFD at 26 holds FocalLengthIn35mmFilm alone
+    EXIF = (b'Exif\0\0MM\0*\0\0\0\x08\0\1\x87\x69\0\4\0\0\0\1\0\0\0\x1a\0\0\0\0'
+            b'\0\1\xa4\x05\0\3\0\0\0\1\0' + bytes([FOCAL_35MM]) + b'\0\0\0\0\0\0')
+
     def setUp(self):
         metric = 'GDepth:Near="0.5" GDepth:Far="4" GDepth:Units="m"'
-        # the Exif IFD at 26 holds FocalLengthIn35mmFilm alone
-        exif = (b'Exif\0\0MM\0*\0\0\0\x08\0\1\x87\x69\0\4\0\0\0\1\0\0\0\x1a\0\0\0\0'
-                b'\0\1\xa4\x05\0\3\0\0\0\1\0' + bytes([FOCAL_35MM]) + b'\0\0\0\0\0\0')
         self.metric = self.photo('metric.jpg', metric)
-        self.phone = self.photo('phone.jpg', metric, exif)
+        self.phone = self.photo('phone.jpg', metric, self.EXIF)
         self.plain = self.photo('plain.jpg', 'GDepth:Near="20" GDepth:Far="100"')
 
     def field(self, *arguments):
@@ -79,6 +80,19 @@ class DepthOfField(case.Case):
                 rendered = self.reports('render', name, '-o', 'out.ppm', *more)
                 self.assertAlmostEqual(field['blur'], rendered['blur'], 5)
                 self.assertAlmostEqual(field['focus'], rendered['focus'], 3)
+
+    def test_a_simulated_f_number_is_limited(self):
+        """f/0.5 has 28 / 36 * 48 * 0.028 * (1 / 0.005 - 1 / 4) = 208.8 pixels of blur; those of 127,
+        the most without an option, have an f-number that is as much greater."""
+        name = self.photo('limited.jpg', 'GDepth:Near="0.005" GDepth:Far="4" GDepth:Units="m" xmlns:'
+                          'Refocus="urn:librefocus:edit:1.0/" Refocus:SimulatedFNumber="0.5"', self.EXIF)
+        self.assertEqual(self.reports('info', name)['simulated_f_number'], 0.5)
+        report = self.reports('render', name, '-o', 'out.ppm')
+        self.assertEqual((report['blur'], report['blur_from']), (127, 'file'))
+        self.assertAlmostEqual(report['f_number'], 0.5 * 208.8 / 127, 2)
+        self.assertIn('127.0 pixels of blur: the f/0.822 that its phone simulates\n',
+                      self.succeeds('info', name))
+        os.remove(name)
 
     def test_focal_length_of_the_file(self):
         field = self.field(self.phone, '--f-number', '2', '--focus', '0.5')

@@ -45,6 +45,10 @@ class Lens(Case):
             return self.reports(*self.render(*more))['blur']
 
         self.assertAlmostEqual(blur(), W / 50, 5)
+        pictures.ppm('tall.ppm', H, W, lambda x, y: (5 * x, 5 * y, 90))
+        pictures.pgm('tall.pgm', H, W, lambda x, y: 5 * y)
+        tall = self.reports('render', 'tall.ppm', '--depth', 'tall.pgm', '-o', 'out.ppm')
+        self.assertAlmostEqual(tall['blur'], W / 50, 5)  # by the larger side of that one, too
         lens = ('--near', '0.5', '--far', '4', '--f-number', '8', '--focal-length', '50')
         expected = 50 / 36 * W * (0.05 / 16) * (1 / 0.5 - 1 / 4)
         self.assertAlmostEqual(blur(*lens), expected, 5)
