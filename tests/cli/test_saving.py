@@ -179,6 +179,22 @@ class Saving(Case):
             if name not in ('photo.ppm', 'depth.pgm', 'mm.pgm', 'metres.pfm', 'plain.ppm'):
                 os.remove(name)
 
+    def test_the_last_byte_does_not_fit(self):
+        """What is in a buffer until the file is closed is missed, too."""
+        before = self.listing()
+        for name, command in self.COMMANDS:
+            self.succeeds(*command)
+            most = os.stat(name).st_size - 1
+            self.remove_all()
+
+            def limit():
+                signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+                resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+
+            error = self.ended(self.start(*command, preexec_fn=limit), -1)
+            self.assertRegex(error, '^refocus: .*File too large', name)
+            self.assertEqual(self.listing(), before, name)
+
     def test_mode_and_owner_are_kept(self):
         root = os.geteuid() == 0
         for name, command in self.COMMANDS:
