@@ -268,6 +268,30 @@ class DepthAndInfo(Case):
         self.fails(1, 'metres.pfm: it is a depth map, not a photo; give it as the depth', 'info',
                    'metres.pfm', '--depth', 'ramp.pgm')
 
+    def test_info_of_a_map_that_is_too_large(self):
+        """Near things shrink to their edges in the photo, or grow."""
+        def disc(x, y, more=0):
+            return math.hypot(x - 96, y - 64) < 48 + more
+        pictures.ppm('disc.ppm', 192, 128, lambda x, y: (200, 150, 90) if disc(x, y) else (40,) * 3)
+        for more, word in (3, 'shrunk'), (-3, 'grown'):
+            pictures.pgm('disc.pgm', 192, 128, lambda x, y: 220 if disc(x, y, more) else 60)
+            self.assertIn(f'near things {word} by 3 pixels\n',
+                          self.succeeds('info', 'disc.ppm', '--depth', 'disc.pgm'))
+        for name in 'disc.ppm', 'disc.pgm':
+            os.remove(name)
+
+    def test_info_of_holes_and_specks(self):
+        """As `depth` counts them; a map of nothing but holes, which it refuses, is told."""
+        pictures.pgm('odd.pgm', W, H, lambda x, y: 250 if x in (20, 21) and y in (9, 10) else 60)
+        for most, specks in ('4', 0), ('5', 4):
+            for command in ('info', 'odd.pgm'), ('depth', 'odd.pgm', '-o', 'a.png'):
+                self.assertEqual(self.reports(*command, '--speckle', most)['depth']['specks'], specks)
+        pictures.pgm('odd.pgm', W, H, lambda x, y: 0)
+        holes = ('info', 'odd.pgm', '--invalid', 'zero')
+        self.assertEqual(self.reports(*holes)['depth']['unknown'], W * H)
+        self.assertIn(f'\nwithout value {W * H} samples, 100.0 %\n', self.succeeds(*holes))
+        os.remove('odd.pgm')
+
     def test_info(self):
         info = self.reports('info', 'photo.ppm')
         self.assertEqual((info['container'], info['picture'], info['depth'], info['orientation'],
