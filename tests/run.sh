@@ -3,7 +3,7 @@
 #
 # Builds with gcc on Debian 12, installing what is missing, and runs the tests of that build: at
 # most six minutes on two cores. The last line is 'N passed, N failed, N skipped', the sum over all
-# builds; the exit status is 1 when anything failed.
+# builds; skipped cases of Python's tests count, too. The exit status is 1 when anything failed.
 #   --full  also the pages of scores, clang, clang-tidy, sanitizers, AArch64 and ARMv7 (emulated),
 #           builds with parts left out, cameras in a virtual machine, the quickstart
 #   --long  also runs all tests under the sanitizers and emulated, those of the core and of our own
