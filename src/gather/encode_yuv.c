@@ -148,13 +148,13 @@ void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rec
     const int w = f->view->width - x0 < RF_TILE ? f->view->width - x0 : RF_TILE;
     const int h = f->view->height - y0 < RF_TILE ? f->view->height - y0 : RF_TILE;
     const int rows = (h + yuv->down) >> yuv->down;
-    /* The smooth light has the luma, too, unless it is weighted or a search leaves it alone. */
-    const bool own = f->premultiplied || rf_is_search(f);
 
     job->curve = &yuv->curve;
     job->down = yuv->down;
-    job->own_luma = (own ? f->light.channel[0] : f->smooth.channel[0]) + y0 * f->view->stride + x0;
-    job->own_chroma = (own ? f->chroma.light.at : f->chroma.smooth.at) + c0 * f->view->stride + x0;
+    /* The codes are those of the light before the pre-filter: a mean of many pixels may well be
+     * what that made of one of them. */
+    job->own_luma = f->light.channel[0] + y0 * f->view->stride + x0;
+    job->own_chroma = f->chroma.light.at + c0 * f->view->stride + x0;
     for (int p = 0; p < 2; p++)
         job->within[p] = f->premultiplied ? rf_yuv_within(f->light_weight, p) : 0;
     job->stride = f->view->stride;
