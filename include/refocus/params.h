@@ -51,7 +51,7 @@ enum { REFOCUS_INPAINT_COUNT = 2 };
 enum { REFOCUS_RAYS_FULL = -1 };
 
 /** Highlights: the light that clipping took. Of `sweep` and `search`. Start from
- *  refocus_highlight_params_default(). */
+ *  refocus_highlight_params_default(). Photos of Y, U and V: see refocus_render(). */
 struct refocus_highlight_params {
     uint32_t struct_size; /**< sizeof(struct refocus_highlight_params) */
     float gain;           /**< light that clipped highlights get where they are blurred, 1 (none,

@@ -255,8 +255,9 @@ REFOCUS_API int refocus_prepare(struct refocus_renderer *renderer,
  *     D_b = g(B') - g(Y') - E                        D_r = g(R') - g(Y') - E
  *
  * and back in the same way from their means. A sample of chroma has the blur of that pixel of
- * its own which is the sharpest; sigma weighs by L; highlights are told and given back by L, with
- * sigma up to 4 times white.
+ * its own which is the sharpest; sigma weighs by L. Highlights are told by R', G', B' as those of
+ * R, G, B are, and get light of the same hue; with sigma below 1e6 they get its luminance alone, up
+ * to 4 times white.
  * Samples that nothing changed keep their codes, so that one colour stays that colour, even
  * where its codes are none.
  *

@@ -276,6 +276,7 @@ void rf_search_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect
 {
     struct share *const share = rf_share(&f->exec->shares, worker);
     struct rf_decode_job means;
+    struct rf_tile_plan plan;
     uint16_t mean[3][LANES];
 
     search_sums(f, tx, ty, share);
@@ -284,7 +285,10 @@ void rf_search_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect
     compute_means(&share->sums, mean);
     means.down = f->yuv->down;
     join_samples(&means, mean);
-    splat(f, tx, ty, share, mean);
     memcpy(means.luma, mean[0], sizeof means.luma);
+    if (f->splats) {
+        rf_plan_tile(f->view, f->bins, &f->reach, tx, ty, &plan);
+        rf_splat_yuv_highlights(&f->splat, &plan, tx, ty, share, means.luma, means.chroma);
+    }
     rf_encode_yuv_means(f, tx, ty, rect, &means);
 }

@@ -362,6 +362,6 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
     if (rf_cancelled(f->exec))
         return;
     if (f->splats)
-        rf_splat_highlights(&f->splat, &tile.plan, tx, ty, share, (uint16_t *const[3]){means.luma});
+        rf_splat_yuv_highlights(&f->splat, &tile.plan, tx, ty, share, means.luma, means.chroma);
     rf_encode_yuv_means(f, tx, ty, rect, &means);
 }

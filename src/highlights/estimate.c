@@ -130,7 +130,7 @@ static void set_looks(const struct rf_light_grid *grid, const struct rf_grid_pla
     const double clipped = mean_at(grid, RF_GRID_CLIPPED, place) + 0.02;
 
     feature[0] = mean_at(grid, RF_GRID_GREY, place) / clipped;
-    feature[1] = grid->channels == 1 ? 0 : saturation(grid, place);
+    feature[1] = saturation(grid, place);
     feature[2] = mean_at(grid, RF_GRID_PLATEAU, place) / clipped;
     feature[3] = mean_at(grid, RF_GRID_WHITE, place) / clipped;
 }

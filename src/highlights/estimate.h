@@ -19,8 +19,8 @@ void rf_estimate_lay_out(struct rf_estimate *estimate, struct rf_arena *arena);
 
 /* Lists the highlights of a photo anew, by an estimate of the light that they lost, times `scale`.
  * With a scale of 0 it lists them for a fixed gain: all have lost the light that RF_MOST_GAIN adds,
- * and what may be no highlight a part of that. Exec, photo and channels of the grid are set; works
- * in `arena`. What a cancelled run leaves is of no use. */
+ * and what may be no highlight a part of that. Exec and photo of the grid are set; works in
+ * `arena`. What a cancelled run leaves is of no use. */
 void rf_estimate_highlights(struct rf_light_grid *grid, struct rf_arena *arena,
                             const struct rf_transfer *linear, float scale,
                             struct rf_highlights *highlights);

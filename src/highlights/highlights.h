@@ -33,6 +33,7 @@
 #include <refocus/render.h>
 
 #include "focus/focus.h"
+#include "image/chroma.h"
 #include "image/deep.h"
 #include "image/photo_source.h"
 #include "image/planes.h"
@@ -127,9 +128,15 @@ struct rf_highlight_window {
     struct rf_blur_q8 blur;
     struct rf_highlights *highlights; /* highlights of the photo */
     struct rf_bins *bins;             /* bins of each tile of the window */
-    int channels;                     /* channels of light: 3, or 1 for a photo of Y, U and V */
+    const struct rf_yuv *yuv;         /* a photo of Y, U and V: light is luminance alone; or NULL */
     const struct rf_deep *known;      /* the photo, if it holds what is above white, else NULL */
 };
+
+/* Channels of its light. */
+static inline int rf_channels_of_light(const struct rf_highlight_window *window)
+{
+    return window->yuv ? 1 : 3;
+}
 
 /* The places where the blur of a pixel is kept: its plane, the bins of its tile and the extremes of
  * its cell. */
@@ -234,6 +241,10 @@ void rf_subtract_highlights(const struct rf_executor *exec,
  * working in rf_splat_share() bytes at `share`. */
 void rf_splat_highlights(const struct rf_splat *splat, const struct rf_tile_plan *plan, int tx,
                          int ty, void *share, uint16_t *const mean[3]);
+
+/* Does so for a photo of Y, U and V, whose means are of luminance and of chroma. */
+void rf_splat_yuv_highlights(const struct rf_splat *splat, const struct rf_tile_plan *plan, int tx,
+                             int ty, void *share, uint16_t *luma, uint16_t *chroma);
 uint64_t rf_splat_share(void);
 
 /* Notes in bins where rays `gap` times their blur apart are too few for a marked highlight. Reads

@@ -104,8 +104,8 @@ void rf_raise_highlights(const struct rf_executor *exec, const struct rf_highlig
 }
 
 /* The light that a pixel of a run, so blurred, gets: a share of what clipping cost, Q8 of `boost`.
- */
-static void gain_of(const struct rf_highlight *run, int blur, int share, int gained[3])
+ * Of a photo of Y, U and V it is luminance, and the only one. */
+static void gain_of(const struct gather *g, const struct rf_highlight *run, int blur, int gained[3])
 {
     /* from half a pixel of blur on, all of it from one pixel and a half on */
     const int blurred = rf_ramp(abs(blur), 128, 384);
@@ -114,7 +114,16 @@ static void gain_of(const struct rf_highlight *run, int blur, int share, int gai
                       (int64_t)UINT16_MAX * ((RF_KNOWN_GAIN - 1) * 85 + 1) <= INT32_MAX,
                   "the light of the largest gain in Q8, and that times a ramp in Q8 over 2^8");
     for (int c = 0; c < 3; c++)
-        gained[c] = (((run->boost[c] * share) >> 8) * blurred) >> 8;
+        gained[c] = (((run->boost[c] * g->share) >> 8) * blurred) >> 8;
+    if (g->window->yuv) {
+        const struct rf_yuv_curve *curve = &g->window->yuv->curve;
+
+        static_assert((3 * RF_LIGHT_MAX * ((RF_MOST_GAIN - 1) * 85 + 1) >> 8) * (int64_t)RF_SHARE <=
+                          INT32_MAX,
+                      "the light of the largest gain times shares that add up to 1");
+        gained[0] =
+            (curve->kr * gained[0] + curve->kg * gained[1] + curve->kb * gained[2]) / RF_SHARE;
+    }
 }
 
 /* Lists places within `reach` of (cx, cy) that have its blur; it itself at least. */
@@ -173,9 +182,9 @@ static void boost_pixel(const struct gather *g, const struct rf_highlight *run, 
         return;
     reach = spread_of(run, rf_window_blur(g->window, x, y), g->gap);
     places = places_of(g, x, y, reach, place);
-    gain_of(run, rf_window_blur(g->window, x, y), g->share, gained);
+    gain_of(g, run, rf_window_blur(g->window, x, y), gained);
     for (int k = 0; k < places; k++) {
-        for (int c = 0; c < g->window->channels; c++) {
+        for (int c = 0; c < rf_channels_of_light(g->window); c++) {
             uint16_t *const at = g->light.channel[c] + place[k];
             const int sum = *at + (gained[c] + places / 2) / places;
             const int light = sum < g->most ? sum : g->most;

@@ -4,11 +4,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "colour/guide.h"
 #include "kernels/kernels.h"
 #include "support/compare.h"
 #include "support/log2.h"
-
-enum { RUN = 64 }; /* pixels of a row that are looked at together for clipped ones */
 
 static const struct {
     int first, last;
@@ -62,26 +61,70 @@ void rf_light_grid_lay_out(struct rf_light_grid *grid, struct rf_arena *arena)
     lay_out(grid, arena);
 }
 
+/* The codes of pixel (x, y), x even, of a photo of Y, U and V. */
+static const uint8_t *luma_at(const struct rf_photo_source *photo, int x, int y)
+{
+    return photo->codes.y + y * photo->codes.y_stride + x;
+}
+
+static const uint8_t *chroma_at(const struct rf_photo_source *photo, int x, int y)
+{
+    return photo->codes.uv + (y >> photo->yuv->down) * photo->codes.uv_stride + x;
+}
+
 /* The first pixel of a cell, of `pixels` in `cells`. */
 static int first_of(int cell, int pixels, int cells)
 {
     return (int)(((int64_t)cell * pixels + cells - 1) / cells);
 }
 
-struct rf_grid_row rf_grid_row(const struct rf_light_grid *grid, int y)
+struct rf_grid_pixels rf_grid_pixels(const struct rf_light_grid *grid, int x, int y, int n,
+                                     uint8_t rgb[3 * RF_GRID_RUN])
 {
     const struct rf_photo_source *p = grid->photo;
-    struct rf_grid_row row = {.code = NULL};
+    struct rf_grid_pixels pixels = {.code = NULL};
 
-    if (rf_has_planes(p)) {
+    if (p->yuv) {
+        grid->exec->kernels->guide(rgb, luma_at(p, x, y), chroma_at(p, x, y), &p->yuv->curve, n);
+        pixels.code = rgb;
+        pixels.order = rf_order_of(REFOCUS_FORMAT_RGB8);
+        pixels.to_light = p->transfer->to_light;
+    } else if (rf_has_planes(p)) {
         for (int c = 0; c < 3; c++)
-            row.light[c] = p->light.channel[c < grid->channels ? c : 0] + y * p->light.stride;
+            pixels.light[c] = p->light.channel[c] + y * p->light.stride + x;
     } else {
-        row.code = p->image->plane[0] + y * p->image->stride[0];
-        row.order = rf_order_of(p->image->format);
-        row.to_light = p->transfer->to_light;
+        pixels.order = rf_order_of(p->image->format);
+        pixels.code =
+            p->image->plane[0] + y * p->image->stride[0] + (ptrdiff_t)x * pixels.order.bytes;
+        pixels.to_light = p->transfer->to_light;
     }
-    return row;
+    return pixels;
+}
+
+/* Whether any of n pixels may be clipped: R', G' or B' of the largest codes of Y, U and V that are
+ * among them, or of the least ones of U and V. */
+static bool codes_may_be_clipped(const struct rf_light_grid *grid, int x, int y, int n)
+{
+    const struct rf_photo_source *p = grid->photo;
+    const struct rf_yuv_curve *curve = &p->yuv->curve;
+    const uint8_t *luma = luma_at(p, x, y), *uv = chroma_at(p, x, y);
+    uint8_t brightest = 0, least_u = 255, least_v = 255, most_u = 0, most_v = 0;
+    int more;
+
+    for (int i = 0; i < n; i++)
+        brightest = luma[i] > brightest ? luma[i] : brightest;
+    for (int i = 0; i < n; i += 2) {
+        const uint8_t u = uv[i], v = uv[i + 1];
+
+        least_u = u < least_u ? u : least_u;
+        least_v = v < least_v ? v : least_v;
+        most_u = u > most_u ? u : most_u;
+        most_v = v > most_v ? v : most_v;
+    }
+    more = rf_larger(rf_larger(rf_more(curve, 0, most_u), rf_more(curve, 1, most_v)),
+                     -rf_less_green(curve, least_u, least_v));
+    return p->transfer->to_light[rf_code_of_tone(curve->luma[brightest] + more)] >
+           grid->tables->clipped;
 }
 
 bool rf_grid_may_be_clipped(const struct rf_light_grid *grid, int x, int y, int n)
@@ -89,11 +132,12 @@ bool rf_grid_may_be_clipped(const struct rf_light_grid *grid, int x, int y, int 
     const struct rf_light_q12 *light = &grid->photo->light;
     const ptrdiff_t at = y * light->stride + x;
 
+    if (grid->photo->yuv)
+        return codes_may_be_clipped(grid, x, y, n);
     if (!rf_has_planes(grid->photo))
         return true;
-    return grid->exec->kernels->brightest(
-               light->channel[0] + at, light->channel[grid->channels > 1 ? 1 : 0] + at,
-               light->channel[grid->channels > 1 ? 2 : 0] + at, n) > grid->tables->clipped;
+    return grid->exec->kernels->brightest(light->channel[0] + at, light->channel[1] + at,
+                                          light->channel[2] + at, n) > grid->tables->clipped;
 }
 
 static int greatest(const int v[3])
@@ -133,13 +177,6 @@ static void set_tables(struct rf_light_grid *grid, const struct rf_transfer *lin
     }
 }
 
-/* The red, green and blue of a plane of luminance would be UNCLIPPED three times: they are left
- * out. */
-static int measures_of(const struct rf_light_grid *grid)
-{
-    return grid->channels == 1 ? RF_GRID_RED : RF_GRID_MEASURES;
-}
-
 static float *cell_of(const struct rf_light_grid *grid, enum rf_grid_measure measure, int x, int y)
 {
     const struct rf_grid_plane *plane = &grid->plane[measure];
@@ -155,40 +192,17 @@ static void add(const struct rf_light_grid *grid, enum rf_grid_measure measure, 
     *cell_of(grid, measure, x, y) += (float)sum;
 }
 
-/* Adds up luminance that is not clipped, of a plane of it, in one row of cells of scale 1. */
-static void add_luminance(const struct rf_light_grid *grid, int y, int row)
-{
-    const struct rf_grid_tables *t = grid->tables;
-    const int across = rf_grid_size(grid->width, 1), step = grid->step, clipped = t->clipped;
-    const uint16_t *const plane = grid->photo->light.channel[0] + y * grid->photo->light.stride;
-    float *const unclipped = grid->plane[RF_GRID_UNCLIPPED].scale[1] + (ptrdiff_t)row * across;
-    float *const logs = grid->plane[RF_GRID_LOG].scale[1] + (ptrdiff_t)row * across;
-    int x = 0;
-
-    for (int cx = 0; cx < across; cx++) {
-        const int end = t->first[rf_smaller(2 * cx + 2, grid->width)];
-        int luminance = 0, log = 0;
-
-        for (; x < end; x += step) {
-            const int light = plane[x], own = t->linear[light];
-
-            luminance += light > clipped ? ((256 - t->soft[light]) * own) >> 8 : own;
-            log += t->log[own];
-        }
-        unclipped[cx] += (float)luminance;
-        logs[cx] += (float)log;
-    }
-}
-
 /* Adds up light that is not clipped, in one row of cells y of scale 1. */
 static void add_unclipped(const struct rf_light_grid *grid, int y, int row)
 {
     const struct rf_grid_tables *t = grid->tables;
     const int across = rf_grid_size(grid->width, 1);
-    const struct rf_grid_row pixels = rf_grid_row(grid, y);
-    const int step = grid->step, clipped = t->clipped;
+    const int width = grid->photo->width, step = grid->step, clipped = t->clipped;
+    const int run = grid->photo->yuv ? RF_GRID_RUN : width;
+    uint8_t rgb[3 * RF_GRID_RUN];
+    struct rf_grid_pixels pixels = {.code = NULL};
     float *sum[RF_GRID_MEASURES];
-    int x = 0;
+    int x = 0, from = 0, to = 0; /* pixels `from` to `to` - 1 are found */
 
     for (int i = 0; i < RF_GRID_MEASURES; i++)
         sum[i] = grid->plane[i].scale[1] + (ptrdiff_t)row * across;
@@ -199,7 +213,12 @@ static void add_unclipped(const struct rf_light_grid *grid, int y, int row)
         for (; x < end; x += step) {
             int colour[3], left = 256, own;
 
-            rf_grid_colour(&pixels, x, colour);
+            if (x >= to) {
+                from = x & ~1;
+                to = rf_smaller(from + run, width);
+                pixels = rf_grid_pixels(grid, from, y, to - from, rgb);
+            }
+            rf_grid_colour(&pixels, x - from, colour);
             if (greatest(colour) > clipped)
                 left -= t->soft[greatest(colour)];
             for (int c = 0; c < 3; c++) {
@@ -221,17 +240,18 @@ static void add_unclipped(const struct rf_light_grid *grid, int y, int row)
 static void add_clipped(const struct rf_light_grid *grid, int x, int y, int n, int cy)
 {
     const struct rf_grid_tables *t = grid->tables;
-    const struct rf_grid_row pixels = rf_grid_row(grid, y);
+    uint8_t rgb[3 * RF_GRID_RUN];
+    const struct rf_grid_pixels pixels = rf_grid_pixels(grid, x, y, n, rgb);
 
-    for (const int end = x + n; x < end; x++) {
+    for (int i = 0; i < n; i++) {
         int colour[3], most, cx, soft;
 
-        rf_grid_colour(&pixels, x, colour);
+        rf_grid_colour(&pixels, i, colour);
         most = greatest(colour);
         soft = t->soft[most];
         if (soft == 0)
             continue;
-        cx = rf_grid_cell(x, grid->photo->width, grid->width);
+        cx = rf_grid_cell(x + i, grid->photo->width, grid->width);
         add(grid, RF_GRID_CLIPPED, cx, cy, soft);
         add(grid, RF_GRID_GREY, cx, cy, 16 * soft * t->linear[least(colour)] / t->linear[most]);
         add(grid, RF_GRID_PLATEAU, cx, cy, t->plateau[most]);
@@ -273,7 +293,7 @@ static void measure_rows(void *context, int item, int worker)
     const int width = grid->photo->width, height = grid->photo->height;
 
     (void)worker;
-    for (int i = 0; i < measures_of(grid); i++) {
+    for (int i = 0; i < RF_GRID_MEASURES; i++) {
         const int k = grid->plane[i].first, rows = k ? 1 : 2;
         const int across = rf_grid_size(grid->width, k);
 
@@ -289,12 +309,14 @@ static void measure_rows(void *context, int item, int worker)
             if (rf_cancelled(grid->exec))
                 return;
             if (y % grid->step == 0)
-                (grid->channels == 1 ? add_luminance : add_unclipped)(grid, y, item);
+                add_unclipped(grid, y, item);
             if (!rf_grid_may_be_clipped(grid, 0, y, width))
                 continue;
-            for (int x = 0; x < width; x += RUN)
-                if (rf_grid_may_be_clipped(grid, x, y, rf_smaller(width - x, RUN)))
-                    add_clipped(grid, x, y, rf_smaller(width - x, RUN), cy);
+            for (int x = 0, n; x < width; x += n) {
+                n = rf_smaller(width - x, RF_GRID_RUN);
+                if (rf_grid_may_be_clipped(grid, x, y, n))
+                    add_clipped(grid, x, y, n, cy);
+            }
         }
         divide(grid, RF_GRID_CLIPPED, cy, 256, false);
     }
@@ -303,7 +325,7 @@ static void measure_rows(void *context, int item, int worker)
     divide(grid, RF_GRID_GREY, item, 4096, false);
     divide(grid, RF_GRID_PLATEAU, item, 256, false);
     divide(grid, RF_GRID_WHITE, item, 256, false);
-    for (int i = RF_GRID_RED; i < measures_of(grid); i++)
+    for (int i = RF_GRID_RED; i < RF_GRID_MEASURES; i++)
         divide(grid, (unsigned)i, item, 4095, true);
 }
 
@@ -350,7 +372,7 @@ bool rf_light_grid_measure(struct rf_light_grid *grid, const struct rf_transfer 
         return false;
     grid->mean_log =
         mean_of(grid->plane[RF_GRID_LOG].scale[1], rf_grid_size(grid->width, 1) * down) - 9;
-    rf_pool_run(grid->exec->pool, blur_plane, grid, measures_of(grid));
+    rf_pool_run(grid->exec->pool, blur_plane, grid, RF_GRID_MEASURES);
     return !rf_cancelled(grid->exec);
 }
 

@@ -6,9 +6,10 @@
  *
  *     s = smoothstep((m - 242) / 12),  m its greatest code,
  *
- * and as not clipped to the part 1 - s. Scale k is a blur of standard deviation 0.8 2^k cells, or
- * nearly so: a pyramid of means of 2 x 2, each level smoothed by a binomial 1 2 1 and read between
- * its cells in proportion, so that nothing steps where a highlight moves by a pixel.
+ * and as not clipped to the part 1 - s. Codes of a photo of Y, U and V are those of kernels->guide.
+ * Scale k is a blur of standard deviation 0.8 2^k cells, or nearly so: a pyramid of means of 2 x 2,
+ * each level smoothed by a binomial 1 2 1 and read between its cells in proportion, so that nothing
+ * steps where a highlight moves by a pixel.
  */
 #ifndef RF_LIGHT_GRID_H
 #define RF_LIGHT_GRID_H
@@ -30,7 +31,7 @@ enum rf_grid_measure {
     RF_GRID_GREY,      /* s min(R, G, B) / max(R, G, B) */
     RF_GRID_PLATEAU,   /* place of the greatest code between 250 and 255: 0 to 1 */
     RF_GRID_WHITE,     /* place of the least code between 246 and 255: 0 to 1 */
-    RF_GRID_RED,       /* (1 - s) R, G, B; not of a plane of luminance */
+    RF_GRID_RED,       /* (1 - s) R, G, B */
     RF_GRID_GREEN,
     RF_GRID_BLUE,
     RF_GRID_MEASURES
@@ -55,7 +56,6 @@ struct rf_grid_tables {
 struct rf_light_grid {
     const struct rf_executor *exec;
     const struct rf_photo_source *photo;
-    int channels;      /* 3, or 1: the photo's planes hold luminance alone */
     int width, height; /* cells */
     int step;          /* light that is not clipped is looked at in every step-th row and column */
     struct rf_grid_tables *tables;
@@ -66,7 +66,7 @@ struct rf_light_grid {
 /* Bytes that a grid of photos of at most this size takes. */
 uint64_t rf_light_grid_bytes(int max_width, int max_height);
 
-/* Lays the grid of a photo out; exec, photo and channels are set. */
+/* Lays the grid of a photo out; exec and photo are set. */
 void rf_light_grid_lay_out(struct rf_light_grid *grid, struct rf_arena *arena);
 
 /* Measures the photo, whose light is in the blend that `photo->transfer` is of; `linear` is the
@@ -105,27 +105,32 @@ static inline int rf_grid_cell(int i, int pixels, int cells)
     return (int)((int64_t)i * cells / pixels);
 }
 
-/* A row of the photo: its planes of light, or its codes. */
-struct rf_grid_row {
+/* Pixels of a row of the photo: their light, or their codes. */
+struct rf_grid_pixels {
     const uint16_t *light[3];
     const uint8_t *code; /* or NULL */
     struct rf_order order;
     const uint16_t *to_light;
 };
-struct rf_grid_row rf_grid_row(const struct rf_light_grid *grid, int y);
 
-/* The channels of a pixel, Q12 in the photo's blend. */
-static inline void rf_grid_colour(const struct rf_grid_row *row, int x, int colour[3])
+/* Finds n of them from (x, y) on; of a photo of Y, U and V, at most RF_GRID_RUN from an even x on
+ * are converted into `rgb`. */
+enum { RF_GRID_RUN = 128 };
+struct rf_grid_pixels rf_grid_pixels(const struct rf_light_grid *grid, int x, int y, int n,
+                                     uint8_t rgb[3 * RF_GRID_RUN]);
+
+/* The channels of the i-th, Q12 in the photo's blend. */
+static inline void rf_grid_colour(const struct rf_grid_pixels *pixels, int i, int colour[3])
 {
-    if (!row->code) {
+    if (!pixels->code) {
         for (int c = 0; c < 3; c++)
-            colour[c] = row->light[c][x];
+            colour[c] = pixels->light[c][i];
     } else {
-        const uint8_t *code = row->code + (ptrdiff_t)x * row->order.bytes;
+        const uint8_t *code = pixels->code + (ptrdiff_t)i * pixels->order.bytes;
 
-        colour[0] = row->to_light[code[row->order.r]];
-        colour[1] = row->to_light[code[row->order.g]];
-        colour[2] = row->to_light[code[row->order.b]];
+        colour[0] = pixels->to_light[code[pixels->order.r]];
+        colour[1] = pixels->to_light[code[pixels->order.g]];
+        colour[2] = pixels->to_light[code[pixels->order.b]];
     }
 }
 

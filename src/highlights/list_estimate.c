@@ -6,7 +6,7 @@
 #include "highlights/highlights.h"
 #include "support/compare.h"
 
-enum { RUN = 64 /* pixels that are looked at together */, LEAST = RF_LIGHT_MAX / 16 };
+enum { LEAST = RF_LIGHT_MAX / 16 };
 
 struct listing {
     const struct rf_estimate *estimate;
@@ -45,12 +45,14 @@ static float gain_at(const struct listing *listing, const int colour[3], int x, 
     const struct rf_estimate *estimate = listing->estimate;
     const struct rf_grid_tables *tables = estimate->grid->tables;
     const int most = rf_larger(colour[0], rf_larger(colour[1], colour[2]));
-    float gain;
+    float gain, white;
 
     if (most <= tables->clipped)
         return 0;
-    gain = rf_estimate_at(estimate, x, y) * whiteness(colour) *
-           ((float)tables->soft[most] * (1 / 256.0f));
+    white = whiteness(colour);
+    if (white <= 0)
+        return 0;
+    gain = rf_estimate_at(estimate, x, y) * white * ((float)tables->soft[most] * (1 / 256.0f));
     return gain * (float)most < listing->least ? 0 : gain;
 }
 
@@ -66,7 +68,7 @@ static void add_light(const struct rf_estimate *estimate, const int colour[3], f
     const float luminance =
         (218 * (float)colour[0] + 732 * (float)colour[1] + 74 * (float)colour[2]) * (1 / 1024.0f);
     float hue[3];
-    const bool mixes = grid->channels > 1 && rf_skirt_hue(grid, cx, cy, hue);
+    const bool mixes = rf_skirt_hue(grid, cx, cy, hue);
 
     for (int c = 0; c < 3; c++) {
         const float own = (float)colour[c];
@@ -95,18 +97,16 @@ static void close_run(const struct listing *listing, struct open *open)
     memset(open, 0, sizeof *open);
 }
 
-static void list_pixel(const struct listing *listing, const struct rf_grid_row *row,
-                       struct open *open, int x, int y)
+static void list_pixel(const struct listing *listing, const int colour[3], struct open *open, int x,
+                       int y)
 {
     const struct rf_light_grid *grid = listing->estimate->grid;
     const int width = grid->photo->width;
-    int colour[3];
     float gain;
 
     if (open->run.count &&
         (open->run.x + open->run.count != x || open->run.count == RF_HIGHLIGHT_RUN))
         close_run(listing, open);
-    rf_grid_colour(row, x, colour);
     gain = gain_at(listing, colour, x, y);
     if (gain == 0)
         return;
@@ -122,6 +122,19 @@ static void list_pixel(const struct listing *listing, const struct rf_grid_row *
         add_light(listing->estimate, colour, gain, x, y, open->light);
 }
 
+static void list_pixels(const struct listing *listing, struct open *open, int x, int y, int n)
+{
+    uint8_t rgb[3 * RF_GRID_RUN];
+    const struct rf_grid_pixels pixels = rf_grid_pixels(listing->estimate->grid, x, y, n, rgb);
+
+    for (int i = 0; i < n; i++) {
+        int colour[3];
+
+        rf_grid_colour(&pixels, i, colour);
+        list_pixel(listing, colour, open, x + i, y);
+    }
+}
+
 /* A part of the list. */
 static void list_part(void *context, int item, int worker)
 {
@@ -134,16 +147,13 @@ static void list_part(void *context, int item, int worker)
     if (!listing->counts && !listing->highlights->part[item].capacity)
         return;
     for (int y = item * RF_HIGHLIGHT_ROWS; y < end && !rf_cancelled(grid->exec); y++) {
-        const struct rf_grid_row row = rf_grid_row(grid, y);
         struct open open = {.run = {.count = 0}};
 
-        for (int x = 0; x < width; x += RUN) {
-            const int n = rf_smaller(width - x, RUN);
+        for (int x = 0; x < width; x += RF_GRID_RUN) {
+            const int n = rf_smaller(width - x, RF_GRID_RUN);
 
-            if (!rf_grid_may_be_clipped(grid, x, y, n))
-                continue;
-            for (int i = 0; i < n; i++)
-                list_pixel(listing, &row, &open, x + i, y);
+            if (rf_grid_may_be_clipped(grid, x, y, n))
+                list_pixels(listing, &open, x, y, n);
         }
         close_run(listing, &open);
     }

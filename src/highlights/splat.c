@@ -59,7 +59,7 @@ static bool is_even(const struct rf_disc_job *job)
  * does not count. */
 static void flush_faint(struct canvas *canvas)
 {
-    for (int c = 0; c < canvas->splat->window.channels; c++)
+    for (int c = 0; c < 3; c++)
         for (int i = 0; i < LANES; i++) {
             const int light = canvas->faint[c][i];
 
@@ -124,7 +124,7 @@ static void add_rest(const struct canvas *canvas)
     for (int i = 0; i < LANES; i++) {
         const int threshold = rf_bayer(i % RF_TILE, i / RF_TILE, 4); /* 0 to 255 */
 
-        for (int c = 0; c < canvas->splat->window.channels; c++) {
+        for (int c = 0; c < 3; c++) {
             const int light = even[c] + (canvas->filled ? canvas->faint[c][i] : 0);
 
             canvas->mean[c][i] =

@@ -193,7 +193,7 @@ static void set_channels(struct rf_sprite *sprite, const struct rf_splat *splat,
 {
     const bool fringed = splat->fringe != 0, green = fringed && is_green(splat, run);
 
-    sprite->job.planes = !fringed ? splat->window.channels : green ? 1 : 2;
+    sprite->job.planes = !fringed ? 3 : green ? 1 : 2;
     for (int p = 0; p < sprite->job.planes; p++)
         sprite->channel[p] = !fringed ? p : green ? 1 : 2 * p;
 }

@@ -106,7 +106,7 @@ static void copy_tile(const struct subtract *s, int tx, int ty)
     if (bins->subtracted)
         return;
     bins->subtracted = true;
-    for (int c = 0; c < w->channels; c++)
+    for (int c = 0; c < rf_channels_of_light(w); c++)
         for (int y = ty * RF_TILE - 1; y <= (ty + 1) * RF_TILE; y++) {
             const ptrdiff_t at = y * w->light.stride + tx * RF_TILE - 1;
 
@@ -141,7 +141,7 @@ static void subtract_run(const struct subtract *s, struct rf_highlight *run,
         return;
     for (int i = first; i < end; i++)
         share[i] = share_of(chain, abs(rf_window_blur(w, x + i, chain->y)), s->gap);
-    for (int c = 0; c < w->channels; c++) {
+    for (int c = 0; c < rf_channels_of_light(w); c++) {
         const uint16_t *const light = w->light.channel[c] + row;
         const int around =
             (light_at(s, chain, chain->left, c) + light_at(s, chain, chain->right, c) + 1) / 2;
@@ -156,6 +156,8 @@ static void subtract_run(const struct subtract *s, struct rf_highlight *run,
         }
         run->subtracted[c] = (uint16_t)(sum / run->pixels);
     }
+    if (w->yuv) /* chroma stays, so that it was grey */
+        run->subtracted[1] = run->subtracted[2] = run->subtracted[0];
 }
 
 static void subtract_part(void *context, int item, int worker)

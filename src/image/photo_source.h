@@ -5,6 +5,7 @@
 #include <refocus/image.h>
 
 #include "colour/transfer.h"
+#include "image/chroma.h"
 #include "image/format.h"
 #include "image/planes.h"
 
@@ -17,6 +18,8 @@ struct rf_photo_source {
     const struct rf_transfer *transfer; /* between codes and the light of the blend in use */
     struct rf_light_q12 light;          /* channel[0] == NULL: strip mode */
     struct rf_disparity_q16 disparity;
+    const struct rf_yuv *yuv;  /* NULL: a photo of R, G and B; else light is luminance alone */
+    struct rf_yuv_codes codes; /* if yuv: the codes of the whole photo */
     const struct refocus_image *image; /* these three are for strip mode */
     const struct refocus_disparity *map;
     int code_step; /* rf_code_step() of the map */

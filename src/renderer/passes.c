@@ -58,8 +58,7 @@ static void find_highlights(struct refocus_renderer *r, const struct rf_settings
                                             params->highlight_estimate};
     const struct rf_photo_source source = rf_photo_source(r);
     struct rf_arena arena = {r->highlights_memory, 0};
-    struct rf_light_grid grid = {
-        .exec = &r->exec, .photo = &source, .channels = r->yuv->on ? 1 : 3};
+    struct rf_light_grid grid = {.exec = &r->exec, .photo = &source};
 
     rf_planes_end(&r->lifetimes);
     r->cache = (struct rf_pass_cache){0};

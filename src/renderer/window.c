@@ -164,7 +164,7 @@ void rf_set_planes(struct rf_frame *f)
                    .blur = r->blur,
                    .highlights = &r->photo.highlights,
                    .bins = r->bins,
-                   .channels = r->yuv->on ? 1 : 3,
+                   .yuv = r->yuv->on ? r->yuv : NULL,
                    .known = r->deep.on && r->deep.exceeds ? &r->deep : NULL},
         .range = r->range,
         .aperture = f->aperture,
@@ -205,6 +205,11 @@ struct rf_photo_source rf_photo_source(const struct refocus_renderer *r)
         source.light.channel[c] = photo->light[c];
     source.disparity.at = photo->disparity;
     source.light.stride = source.disparity.stride = photo->stride;
+    if (r->yuv->on) { /* as place_chroma() places them */
+        source.yuv = r->yuv;
+        source.codes = (struct rf_yuv_codes){photo->alpha, (uint8_t *)photo->light[2], photo->width,
+                                             photo->stride * (ptrdiff_t)sizeof(uint16_t)};
+    }
     return source;
 }
 

@@ -60,11 +60,8 @@ static void rows_of_wide_photos_are_stacked(void **state)
                                      .height = RF_TILE,
                                      .tiles_x = WIDTH / RF_TILE,
                                      .tiles_y = 1};
-    struct rf_highlight_window window = {.view = &view,
-                                         .blur = {blur, WIDTH, 0},
-                                         .highlights = &highlights,
-                                         .bins = bins,
-                                         .channels = 3};
+    struct rf_highlight_window window = {
+        .view = &view, .blur = {blur, WIDTH, 0}, .highlights = &highlights, .bins = bins};
     struct rf_pool pool;
     const struct rf_executor exec = {.pool = &pool};
 

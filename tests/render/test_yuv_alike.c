@@ -90,9 +90,89 @@ static void grey_texture(void **state)
     pair_free(&pair);
 }
 
+/* Lamps of many hues by night, all of them clipped in one channel or two, few in luma. Each has a
+ * skirt of scattered light around it. */
+static struct picture lamps(int width, int height)
+{
+    static const uint8_t hue[][3] = {{255, 220, 120}, {255, 205, 60},  {230, 255, 200},
+                                     {200, 225, 255}, {255, 200, 200}, {255, 255, 255}};
+    struct picture p = picture_flat(width, height, (const uint8_t[3]){10, 10, 16}, 0);
+
+    for (int n = 0; n < 24; n++) {
+        const int cx = 2 * (width * (2 * (n % 6) + 1) / 24),
+                  cy = 2 * (height * (2 * (n / 6) + 1) / 16);
+
+        for (int y = cy - 12; y < cy + 12; y++)
+            for (int x = cx - 12; x < cx + 12; x++) {
+                const int u = x / 2 * 2 + 1 - cx, v = y / 2 * 2 + 1 - cy, r2 = u * u + v * v;
+                uint8_t *const at = p.rgb + 3 * (y * width + x);
+
+                for (int c = 0; c < 3; c++)
+                    at[c] =
+                        r2 < 9
+                            ? hue[n % 6][c]
+                            : (uint8_t)(at[c] + hue[n % 6][c] * 2 / (r2 < 120 ? 3 + r2 / 8 : 99));
+            }
+    }
+    return p;
+}
+
+/* Lamps, whose lost light is estimated and given back, come out as R, G, B give them, to so many
+ * codes of Y, U and V in the root of the mean square. */
+static void lamps_by(uint32_t method, float sigma, const double within[3])
+{
+    enum { W = 240, H = 160, K = 10 };
+    const struct picture night = lamps(W, H);
+    struct pair pair = pair_of(&night, K);
+    struct refocus_settings settings = refocus_settings_default(1, K);
+
+    settings.render.method = method;
+    settings.render.sigma = sigma;
+    settings.highlights.estimate = 1;
+    render_rgb(&pair, &settings);
+    for (int i = 0; i < 4; i++) {
+        struct yuv_picture in = yuv_make(yuv_formats[i], W, H, 0);
+        struct yuv_picture out = yuv_make(yuv_formats[i], W, H, 0);
+        struct yuv_picture should = yuv_make(yuv_formats[i], W, H, 0);
+        double sum[3] = {0};
+
+        yuv_from_picture(&in, &pair.photo);
+        yuv_from_picture(&should, &(struct picture){W, H, pair.rgb, NULL});
+        render_yuv(&pair, &settings, &in, &out);
+        for (int at = 0; at < 3 * W * H; at++) {
+            const int c = at % 3, x = at / 3 % W, y = at / 3 / W;
+            const int d = *yuv_sample(&out.image, c, x, y) - *yuv_sample(&should.image, c, x, y);
+
+            sum[c] += d * d;
+        }
+        for (int c = 0; c < 3; c++) {
+            print_message("%s, sigma %g, format %d: %c to %.2f codes\n",
+                          refocus_method_name(method), (double)sigma, (int)yuv_formats[i], "YUV"[c],
+                          sqrt(sum[c] / (W * H)));
+            assert_true(sum[c] <= within[c] * within[c] * W * H);
+        }
+        yuv_free(&in);
+        yuv_free(&out);
+        yuv_free(&should);
+    }
+    pair_free(&pair);
+}
+
+/* Estimated of luma alone, and given back to that alone, the light was up to 2.9, 2.1 and 1.4 codes
+ * off by the sweep, 2.8, 1.2 and 1.1 by the search and 9.5, 2.8 and 1.7 where eq. 5 weighs. Without
+ * any, chroma of the sweep is 1.9 and 0.9 off. */
+static void coloured_lamps(void **state)
+{
+    (void)state;
+    lamps_by(REFOCUS_METHOD_SWEEP, 1e30f, (const double[3]){1.2, 1.8, 1.0});
+    lamps_by(REFOCUS_METHOD_SEARCH, 1e30f, (const double[3]){1.2, 0.8, 0.6});
+    lamps_by(REFOCUS_METHOD_SWEEP, 200, (const double[3]){8.8, 2.2, 1.6});
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(grey_texture)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(grey_texture),
+                                       cmocka_unit_test(coloured_lamps)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
