@@ -135,17 +135,21 @@ static void add_support(void *context, int row, int worker)
     }
 }
 
+/* Whether the run was cancelled: looked at in each row of blocks. */
+static bool is_cancelled(const struct rf_blocks *b, ptrdiff_t block)
+{
+    return block % b->across == 0 && rf_run_cancelled(b->e->pool->run);
+}
+
 static void sum_support(struct rf_blocks *b)
 {
     const int size = window_size(b);
+    const ptrdiff_t n = (ptrdiff_t)b->across * b->down;
 
-    for (int i = 0; i < b->shifts; i++) {
-        const int32_t *support = b->support + place_of(b, i);
-
-        b->total[i] = 0;
-        for (ptrdiff_t k = 0; k < (ptrdiff_t)b->across * b->down; k++)
-            b->total[i] += support[k * size];
-    }
+    memset(b->total, 0, (size_t)b->shifts * sizeof b->total[0]);
+    for (ptrdiff_t k = 0; k < n && !is_cancelled(b, k); k++)
+        for (int i = 0; i < b->shifts; i++)
+            b->total[i] += b->support[k * size + place_of(b, i)];
 }
 
 /* Parts them around one of those that are left (Hoare's quickselect). */
@@ -246,7 +250,7 @@ double rf_ask_blocks(struct rf_blocks *b, double margin)
     sum_support(b);
     smooth_blocks(b, b->count, 1);
     smooth_blocks(b, b->support, window_size(b));
-    for (ptrdiff_t i = 0; i < n; i++) {
+    for (ptrdiff_t i = 0; i < n && !is_cancelled(b, i); i++) {
         const double count = b->count[i] / 256.0;
         struct wish wish;
         double clear, weight;
@@ -265,6 +269,8 @@ double rf_ask_blocks(struct rf_blocks *b, double margin)
             b->below[i] = weight * wish.shift.y;
         }
     }
+    if (rf_run_cancelled(b->e->pool->run)) /* not all are written */
+        return 1;
     smooth_field(b, b->right);
     smooth_field(b, b->below);
     smooth_field(b, b->weight);

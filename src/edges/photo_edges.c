@@ -155,7 +155,7 @@ void rf_find_map_edges(struct rf_edges *e, const uint16_t *plane)
     rf_pool_run(e->pool, smooth_row, &planes, e->height - 2);
     rf_pool_run(e->pool, slope_row, e, e->height - 4);
     e->edges = 0;
-    for (int y = MARGIN; y < e->height - MARGIN; y++)
+    for (int y = MARGIN; y < e->height - MARGIN && !rf_run_cancelled(e->pool->run); y++)
         for (int x = MARGIN, n; x < e->width - MARGIN; x += n) {
             n = rf_smaller(RF_EDGE_BLOCK - x % RF_EDGE_BLOCK, e->width - MARGIN - x);
             if (rf_edge_is_rough(e, x, y))

@@ -1,10 +1,13 @@
 /* test_place_edges.c: edges of disparity maps in memory and with threads of the caller. */
+#include <limits.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <cmocka.h>
 #include <refocus/refocus.h>
 
@@ -25,13 +28,17 @@ struct stage {
     uint64_t bytes;
     uint8_t *shares; /* for the workers */
     uint16_t *out;
-    int looks, last; /* at the last look the run is cancelled; 0: never */
+    int looks, last;     /* at the last look the run is cancelled; 0: never */
+    clock_t at, longest; /* when it was, and the longest way to one */
 };
 
 static void look(void *user)
 {
     struct stage *s = user;
+    const clock_t now = clock();
 
+    s->longest = now - s->at > s->longest ? now - s->at : s->longest;
+    s->at = now;
     if (++s->looks == s->last)
         atomic_store(&s->run.state, RF_RUN_CANCELLED);
 }
@@ -161,10 +168,33 @@ static void cancelled(void **state)
     assert_true(ended > LOOKS / 10);
 }
 
+/* Whoever cancels waits for the next look: none takes long, of all that is done. The best of a few
+ * is taken, as others are busy, too. */
+static void looks_often(void **state)
+{
+    enum { W = 2000, H = 1500, TIMES = 5, PARTS = 25 };
+    double worst = 1;
+
+    (void)state;
+    for (int i = 0; i < TIMES && worst * PARTS > 1; i++) {
+        struct stage s = {.last = INT_MAX, .bytes = rf_place_edges_bytes(W, H, W + 1, H + 1)};
+        clock_t began;
+
+        draw(&s, W, H, W, H);
+        start(&s, 1);
+        began = s.at = clock();
+        place(&s);
+        worst = fmin(worst, (double)s.longest / (double)(clock() - began));
+        end(&s);
+    }
+    print_message("the longest way to a look is 1/%.0f of all\n", 1 / worst);
+    assert_true(worst * PARTS <= 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(memory_for_all),
-                                       cmocka_unit_test(cancelled)};
+                                       cmocka_unit_test(cancelled), cmocka_unit_test(looks_often)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
