@@ -39,6 +39,7 @@ enum refocus_depth_flags {
  * refocus_depth_map_default().
  * NaN and infinite samples never hold a value; nor does a distance <= 0, nor 65535 of distances of
  * 16 bits where less than a hundredth of the map has it: sensors mark so where they found nothing.
+ * For video refocus_depth_follow_flags() tells that steadily.
  */
 struct refocus_depth_map {
     uint32_t struct_size; /**< sizeof(struct refocus_depth_map) */
@@ -176,6 +177,19 @@ REFOCUS_API int refocus_depth_repair(const struct refocus_depth_map *map,
                                      const struct refocus_repair_params *params,
                                      uint16_t *disparity, ptrdiff_t stride,
                                      struct refocus_depth_report *report);
+
+/**
+ * Tell whether 65535 is a hole in the next map of a video. Where about a hundredth of the maps has
+ * it, it would be one in this map and 65.5 m in the next; so it stays a hole until a tenth of a map
+ * has it, and a distance until less than a hundredth has.
+ *
+ * @param map    see struct refocus_depth_map
+ * @param flags  0 for the first map, and what this function left there after it; becomes
+ *               REFOCUS_DEPTH_MAX_IS_UNKNOWN or 0, to be or-ed into map->flags. Always 0 for other
+ *               samples than distances of 16 bits
+ * @return REFOCUS_OK or REFOCUS_ERR_ARGUMENT, which leaves @p flags as they are. Thread-safe.
+ */
+REFOCUS_API int refocus_depth_follow_flags(const struct refocus_depth_map *map, uint32_t *flags);
 
 /** How to upsample. Start from refocus_upsample_params_default(). */
 struct refocus_upsample_params {

@@ -119,6 +119,46 @@ int refocus_depth_set_unit(struct refocus_depth_map *given, const char *unit)
     return status == REFOCUS_OK ? refocus_struct_write(given, first, map, sizeof *map) : status;
 }
 
+/* The flag of a word of that length; 0: it is none. */
+static uint32_t code_of(const char *word, size_t length)
+{
+    static const struct {
+        const char *name;
+        uint32_t flag;
+    } codes[] = {{"zero", REFOCUS_DEPTH_ZERO_IS_UNKNOWN},
+                 {"max", REFOCUS_DEPTH_MAX_IS_UNKNOWN},
+                 {"2047", REFOCUS_DEPTH_2047_IS_UNKNOWN}};
+
+    for (size_t i = 0; i < sizeof codes / sizeof *codes; i++) {
+        if (strlen(codes[i].name) == length && strncmp(word, codes[i].name, length) == 0) {
+            return codes[i].flag;
+        }
+    }
+    return 0;
+}
+
+int refocus_depth_set_invalid(struct refocus_depth_map *given, const char *codes)
+{
+    const size_t first = REFOCUS_SIZE_TO(struct refocus_depth_map, far_m);
+    struct refocus_depth_map map;
+    const int status = refocus_struct_read(&map, sizeof map, first, given);
+
+    if (status != REFOCUS_OK) {
+        return status;
+    }
+    while (codes && *codes) {
+        const size_t length = strcspn(codes, ",");
+        const uint32_t flag = code_of(codes, length);
+
+        if (!flag) {
+            return REFOCUS_ERR_ARGUMENT;
+        }
+        map.flags |= flag;
+        codes += length + (codes[length] == ',');
+    }
+    return refocus_struct_write(given, first, &map, sizeof map);
+}
+
 static int check_range(double near_m, double far_m, struct refocus_reason *reason)
 {
     if (!(near_m >= 0.0) || isinf(near_m) || !(far_m >= 0.0) ||

@@ -82,7 +82,7 @@ static bool hold(GstRefocus *element, GstBuffer *map, GstClockTime time)
         rf_gst_depths_hold(&element->depths, &element->settings, map, &element->depth_info, time);
     GST_OBJECT_UNLOCK(element);
     if (status == REFOCUS_ERR_NO_DEPTH)
-        warn(element, "a depth map is left out: it is 0 everywhere, which is no distance");
+        warn(element, "a depth map is left out: not one of its samples holds a value");
     else if (status != REFOCUS_OK)
         warn(element, "a depth map is left out: its buffer is no picture of its caps");
     return status == REFOCUS_OK;

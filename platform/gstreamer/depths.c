@@ -30,6 +30,23 @@ static void let_go(struct rf_gst_depths *depths)
     depths->mapped = false;
 }
 
+/* Says which of the words for samples is not known. */
+static int refuse_words(const struct rf_gst_settings *settings, struct refocus_reason *reason)
+{
+    struct refocus_depth_map map = refocus_depth_map_default();
+
+    if (refocus_depth_set_invalid(&map, settings->invalid) != REFOCUS_OK)
+        snprintf(reason->text, sizeof reason->text,
+                 "invalid '%.60s' is not known; give zero, max or 2047, or several with commas",
+                 settings->invalid);
+    else
+        snprintf(reason->text, sizeof reason->text,
+                 "depth-unit '%.60s' is not known; give disparity, inverse, mm, m, or a number per "
+                 "metre such as 5000/m",
+                 settings->depth_unit);
+    return REFOCUS_ERR_ARGUMENT;
+}
+
 int rf_gst_depths_read(struct rf_gst_depths *depths, const struct rf_gst_settings *settings,
                        struct refocus_reason *reason)
 {
@@ -40,8 +57,11 @@ int rf_gst_depths_read(struct rf_gst_depths *depths, const struct rf_gst_setting
 
     if (status != REFOCUS_OK)
         return status;
-    status =
-        reserve(depths, file->depth->width, file->depth->height) ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
+    if (refocus_depth_set_invalid(file->depth, settings->invalid) != REFOCUS_OK)
+        status = refuse_words(settings, reason);
+    else
+        status = reserve(depths, file->depth->width, file->depth->height) ? REFOCUS_OK
+                                                                          : REFOCUS_ERR_MEMORY;
     if (status == REFOCUS_OK)
         status = refocus_depth_to_disparity(file->depth, depths->own,
                                             (ptrdiff_t)file->depth->width * 2, &report);
@@ -49,7 +69,7 @@ int rf_gst_depths_read(struct rf_gst_depths *depths, const struct rf_gst_setting
         use_own(depths, file->depth->width, file->depth->height);
         depths->range = (struct refocus_depth_range){report.near_m, report.far_m};
         depths->known = depths->still = true;
-    } else {
+    } else if (reason->text[0] == '\0') {
         snprintf(reason->text, sizeof reason->text, "%s", refocus_strerror(status));
     }
     refocus_photo_free(&file);
@@ -61,27 +81,41 @@ static bool is_disparity(const char *unit)
     return !unit || strcmp(unit, "disparity") == 0;
 }
 
-static bool is_distance(const char *unit)
+/* Makes a map of a frame by the settings; false: one of their words is not known. */
+static bool describe(const GstVideoFrame *frame, const struct rf_gst_settings *settings,
+                     struct refocus_depth_map *map)
 {
-    struct refocus_depth_map map = refocus_depth_map_default();
-
-    return !is_disparity(unit) && refocus_depth_set_unit(&map, unit) == REFOCUS_OK &&
-           map.meaning == REFOCUS_DEPTH_DISTANCE;
+    *map = refocus_depth_map_default();
+    map->sample = GST_VIDEO_FRAME_FORMAT(frame) == GST_VIDEO_FORMAT_GRAY8 ? REFOCUS_SAMPLE_U8
+                                                                          : REFOCUS_SAMPLE_U16;
+    map->samples = GST_VIDEO_FRAME_PLANE_DATA(frame, 0);
+    map->stride = GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0);
+    map->width = GST_VIDEO_FRAME_WIDTH(frame);
+    map->height = GST_VIDEO_FRAME_HEIGHT(frame);
+    return refocus_depth_set_unit(map, settings->depth_unit ? settings->depth_unit : "disparity") ==
+               REFOCUS_OK &&
+           refocus_depth_set_invalid(map, settings->invalid) == REFOCUS_OK;
 }
 
-/* Whether a map of distances has a sample other than 0, which is no value. */
-static bool has_reading(const GstVideoFrame *frame)
+/* Whether a map has a sample that holds a value. */
+static bool has_reading(const struct refocus_depth_map *map)
 {
-    const size_t row = (size_t)GST_VIDEO_FRAME_COMP_WIDTH(frame, 0) *
-                       (size_t)GST_VIDEO_FRAME_COMP_PSTRIDE(frame, 0);
+    const bool bytes = map->sample == REFOCUS_SAMPLE_U8;
+    const int most = bytes ? UINT8_MAX : UINT16_MAX;
 
-    for (int y = 0; y < GST_VIDEO_FRAME_HEIGHT(frame); y++) {
-        const uint8_t *const bytes = (const uint8_t *)GST_VIDEO_FRAME_PLANE_DATA(frame, 0) +
-                                     (ptrdiff_t)y * GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0);
+    for (int y = 0; y < map->height; y++) {
+        const uint8_t *const row = (const uint8_t *)map->samples + y * map->stride;
 
-        for (size_t i = 0; i < row; i++)
-            if (bytes[i])
+        for (int x = 0; x < map->width; x++) {
+            uint16_t v = row[x];
+
+            if (!bytes)
+                memcpy(&v, row + 2 * (size_t)x, sizeof v);
+            if (!((v == 0 && map->flags & REFOCUS_DEPTH_ZERO_IS_UNKNOWN) ||
+                  (v == most && map->flags & REFOCUS_DEPTH_MAX_IS_UNKNOWN) ||
+                  (v == 2047 && map->flags & REFOCUS_DEPTH_2047_IS_UNKNOWN)))
                 return true;
+        }
     }
     return false;
 }
@@ -89,13 +123,18 @@ static bool has_reading(const GstVideoFrame *frame)
 int rf_gst_depths_hold(struct rf_gst_depths *depths, const struct rf_gst_settings *settings,
                        GstBuffer *buffer, const GstVideoInfo *info, GstClockTime time)
 {
+    struct refocus_depth_map map;
     GstVideoFrame frame;
 
     if (!rf_gst_frame_map(&frame, info, buffer, GST_MAP_READ))
         return REFOCUS_ERR_FORMAT;
-    if (is_distance(settings->depth_unit) && !has_reading(&frame)) {
-        gst_video_frame_unmap(&frame);
-        return REFOCUS_ERR_NO_DEPTH;
+    if (describe(&frame, settings, &map)) {
+        refocus_depth_follow_flags(&map, &depths->flags);
+        map.flags |= depths->flags;
+        if (!has_reading(&map)) {
+            gst_video_frame_unmap(&frame);
+            return REFOCUS_ERR_NO_DEPTH;
+        }
     }
     let_go(depths);
     depths->frame = frame;
@@ -109,42 +148,30 @@ int rf_gst_depths_hold(struct rf_gst_depths *depths, const struct rf_gst_setting
 static int convert(struct rf_gst_depths *depths, const struct rf_gst_settings *settings,
                    struct refocus_reason *reason)
 {
-    const int32_t width = GST_VIDEO_FRAME_WIDTH(&depths->frame);
-    const int32_t height = GST_VIDEO_FRAME_HEIGHT(&depths->frame);
-    const ptrdiff_t stride = GST_VIDEO_FRAME_PLANE_STRIDE(&depths->frame, 0);
-    const void *const samples = GST_VIDEO_FRAME_PLANE_DATA(&depths->frame, 0);
-    const bool bytes = GST_VIDEO_FRAME_FORMAT(&depths->frame) == GST_VIDEO_FORMAT_GRAY8;
-    struct refocus_depth_map map = refocus_depth_map_default();
+    struct refocus_depth_map map;
 
-    if (is_disparity(settings->depth_unit)) {
-        depths->disparity = bytes ? refocus_disparity8(samples, width, height, stride)
-                                  : refocus_disparity16(samples, width, height, stride);
+    if (!describe(&depths->frame, settings, &map))
+        return refuse_words(settings, reason);
+    if (is_disparity(settings->depth_unit) && !map.flags) {
+        depths->disparity =
+            map.sample == REFOCUS_SAMPLE_U8
+                ? refocus_disparity8(map.samples, map.width, map.height, map.stride)
+                : refocus_disparity16(map.samples, map.width, map.height, map.stride);
         return REFOCUS_OK;
     }
-    map.sample = bytes ? REFOCUS_SAMPLE_U8 : REFOCUS_SAMPLE_U16;
-    map.samples = samples;
-    map.stride = stride;
-    map.width = width;
-    map.height = height;
+    map.flags |= depths->flags;
     map.near_m = settings->near_m;
     map.far_m = settings->far_m;
-    if (refocus_depth_set_unit(&map, settings->depth_unit) != REFOCUS_OK) {
-        snprintf(reason->text, sizeof reason->text,
-                 "depth-unit '%.60s' is not known; give disparity, inverse, mm, m, or a number per "
-                 "metre such as 5000/m",
-                 settings->depth_unit);
-        return REFOCUS_ERR_ARGUMENT;
-    }
     if (map.meaning == REFOCUS_DEPTH_DISTANCE && !(map.near_m > 0 && map.far_m > map.near_m)) {
         snprintf(reason->text, sizeof reason->text,
                  "depth in %.60s needs the metres between which it lies: give near and far",
                  settings->depth_unit);
         return REFOCUS_ERR_ARGUMENT;
     }
-    if (!reserve(depths, width, height))
+    if (!reserve(depths, map.width, map.height))
         return REFOCUS_ERR_MEMORY;
-    use_own(depths, width, height);
-    return refocus_depth_to_disparity(&map, depths->own, (ptrdiff_t)width * 2, NULL);
+    use_own(depths, map.width, map.height);
+    return refocus_depth_to_disparity(&map, depths->own, (ptrdiff_t)map.width * 2, NULL);
 }
 
 static int fit_filter(struct rf_gst_depths *depths, double strength)
@@ -203,6 +230,7 @@ void rf_gst_depths_forget(struct rf_gst_depths *depths)
 {
     let_go(depths);
     depths->known = depths->still;
+    depths->flags = 0;
     depths->time = depths->filter_time = GST_CLOCK_TIME_NONE;
     refocus_temporal_reset(depths->filter);
 }

@@ -13,7 +13,8 @@ struct rf_gst_depths {
     bool fresh;        /* no frame has used the map yet */
     GstClockTime time; /* running time of the map, or none */
     GstVideoFrame frame;
-    bool mapped; /* `frame` is that of the map */
+    uint32_t flags; /* refocus_depth_follow_flags() gave them for the last map */
+    bool mapped;    /* `frame` is that of the map */
 
     uint16_t *own; /* disparities that are not the buffer's own samples */
     size_t samples;
@@ -31,7 +32,7 @@ int rf_gst_depths_read(struct rf_gst_depths *depths, const struct rf_gst_setting
                        struct refocus_reason *reason);
 
 /* Hold the map of a buffer, by reference, until the next one. FORMAT: its buffer is no picture of
- * its caps; NO_DEPTH: it is of distances and has not one reading. Then the map before it stays. */
+ * its caps; NO_DEPTH: it has not one reading. Then the map before it stays. */
 int rf_gst_depths_hold(struct rf_gst_depths *depths, const struct rf_gst_settings *settings,
                        GstBuffer *buffer, const GstVideoInfo *info, GstClockTime time);
 

@@ -15,7 +15,7 @@ struct rf_gst_settings {
     int method, quality; /* indices of the enumerations */
     int threads;
     int place_edges, qos; /* booleans */
-    char *aperture, *depth_location, *depth_unit;
+    char *aperture, *depth_location, *depth_unit, *invalid;
 
     struct refocus_aperture_params shape; /* read from `aperture` */
     bool shape_known;

@@ -1,4 +1,5 @@
-/* samples.h: reads the samples of a depth map, and brings them to a number that is linear in d. */
+/* samples.h: checks and reads the samples of a depth map, and brings them to a number that is
+ * linear in d. */
 #ifndef RF_DEPTH_SAMPLES_H
 #define RF_DEPTH_SAMPLES_H
 
@@ -8,6 +9,18 @@
 #include <stdint.h>
 #include <string.h>
 #include <refocus/depth.h>
+
+enum {
+    RF_FIRST_MAP = REFOCUS_SIZE_TO(struct refocus_depth_map, far_m),
+    RF_RARE_PERCENT = 1, /* 65535 of distances is a hole where less of the map has it */
+};
+
+/* Whether a map can be read: REFOCUS_OK or REFOCUS_ERR_ARGUMENT. */
+int rf_check_map(const struct refocus_depth_map *map);
+
+/* Whether distances of 16 bits have the greatest code in less than so much of the map: a sensor
+ * found nothing there. More of them are a sky that is beyond the range. */
+bool rf_greatest_is_below(const struct refocus_depth_map *map, int percent);
 
 /* The codes that sensors have for "no value". */
 static inline bool rf_is_code(const struct refocus_depth_map *map, double v)

@@ -12,11 +12,6 @@
 #include "depth/strays.h"
 #include "image/format.h"
 
-enum {
-    KNOWN_FLAGS = REFOCUS_DEPTH_ZERO_IS_UNKNOWN | REFOCUS_DEPTH_MAX_IS_UNKNOWN |
-                  REFOCUS_DEPTH_2047_IS_UNKNOWN,
-};
-
 /* Each value of large maps of whole numbers is converted once. REFOCUS_MAX_SIDE is below 2^16, so
  * 32 bits hold their number. */
 enum { VALUES = 65536, LARGE = VALUES };
@@ -35,68 +30,14 @@ struct conversion {
     uint64_t unknown, clamped, specks, strays;
 };
 
-static int sample_bytes(uint32_t sample)
-{
-    switch (sample) {
-    case REFOCUS_SAMPLE_U8:
-        return 1;
-    case REFOCUS_SAMPLE_U16:
-        return 2;
-    case REFOCUS_SAMPLE_F32:
-        return 4;
-    }
-    return 0;
-}
-
-static bool is_depth_or_unknown(double metres)
-{
-    return metres == 0 || (metres > 0 && 1 / metres < INFINITY);
-}
-
 static int check(const struct refocus_depth_map *map, const uint16_t *disparity, ptrdiff_t stride)
 {
-    if (!map->samples || !disparity || ((uintptr_t)disparity & 1) || map->width < 1 ||
-        map->height < 1 || map->width > REFOCUS_MAX_SIDE || map->height > REFOCUS_MAX_SIDE)
+    const int status = rf_check_map(map);
+
+    if (status == REFOCUS_OK && (!disparity || ((uintptr_t)disparity & 1) || stride % 2 != 0 ||
+                                 !rf_good_stride(stride, (ptrdiff_t)map->width * 2, map->height)))
         return REFOCUS_ERR_ARGUMENT;
-
-    const int bytes = sample_bytes(map->sample);
-    if (bytes == 0 || (map->flags & ~(uint32_t)KNOWN_FLAGS) != 0 || stride % 2 != 0 ||
-        !rf_good_stride(map->stride, (ptrdiff_t)map->width * bytes, map->height) ||
-        !rf_good_stride(stride, (ptrdiff_t)map->width * 2, map->height))
-        return REFOCUS_ERR_ARGUMENT;
-
-    if (!is_depth_or_unknown(map->near_m) || !is_depth_or_unknown(map->far_m) ||
-        map->near_m == INFINITY || (map->near_m > 0 && map->far_m > 0 && map->near_m >= map->far_m))
-        return REFOCUS_ERR_ARGUMENT;
-
-    if (map->meaning == REFOCUS_DEPTH_DISPARITY)
-        return isfinite(map->value_near) && isfinite(map->value_far) &&
-                       isfinite(map->value_near - map->value_far)
-                   ? REFOCUS_OK
-                   : REFOCUS_ERR_ARGUMENT;
-    if (map->meaning == REFOCUS_DEPTH_DISTANCE)
-        return isfinite(map->metres_per_unit) && map->metres_per_unit != 0 &&
-                       isfinite(map->metres_at_zero)
-                   ? REFOCUS_OK
-                   : REFOCUS_ERR_ARGUMENT;
-    return REFOCUS_ERR_ARGUMENT;
-}
-
-/* Whether some distances, but less than a hundredth, have the greatest code of 16 bits: a sensor
- * found nothing there. More of them are a sky that is beyond the range. */
-static bool greatest_is_rare(const struct refocus_depth_map *map)
-{
-    uint64_t count = 0;
-
-    if (map->meaning != REFOCUS_DEPTH_DISTANCE || map->sample != REFOCUS_SAMPLE_U16)
-        return false;
-    for (int y = 0; y < map->height; y++) {
-        const char *row = rf_row_of(map, y);
-
-        for (int x = 0; x < map->width; x++)
-            count += rf_whole_of(map, row, x) == UINT16_MAX;
-    }
-    return 100 * count < (uint64_t)map->width * (uint64_t)map->height;
+    return status;
 }
 
 /* Counts so many samples of a value, as known ones of a rank or as unknown ones. */
@@ -347,8 +288,7 @@ static int read_arguments(struct refocus_depth_map *map, struct refocus_repair_p
                           const struct refocus_repair_params *given_params,
                           const struct refocus_depth_report *report)
 {
-    int status = refocus_struct_read(map, sizeof *map,
-                                     REFOCUS_SIZE_TO(struct refocus_depth_map, far_m), given_map);
+    int status = refocus_struct_read(map, sizeof *map, RF_FIRST_MAP, given_map);
 
     if (status != REFOCUS_OK)
         return status;
@@ -381,7 +321,7 @@ int refocus_depth_repair(const struct refocus_depth_map *given_map,
         status = REFOCUS_ERR_ARGUMENT;
     if (status == REFOCUS_OK)
         status = take_values(&conversion, params);
-    if (status == REFOCUS_OK && greatest_is_rare(map))
+    if (status == REFOCUS_OK && rf_greatest_is_below(map, RF_RARE_PERCENT))
         own_map.flags |= REFOCUS_DEPTH_MAX_IS_UNKNOWN;
     if (status == REFOCUS_OK)
         status = measure(&conversion);

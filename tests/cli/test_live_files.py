@@ -4,6 +4,7 @@ import json
 import os
 import random
 import signal
+import struct
 import subprocess
 import time
 import unittest
@@ -132,6 +133,29 @@ class Files(Live):
         for more in [], ['--frames-policy', 'newest']:
             self.fails(1, 'y4m:none.y4m: it ended without a depth map', '--camera', 'y4m:in.y4m',
                        '--depth', 'y4m:none.y4m', '--out', 'y4m:out.y4m', *more)
+
+    def test_samples_without_a_value(self):
+        """65535 of distances does not become 65.5 m from map to map, nor what is said to hold no value."""
+        def maps(*codes):
+            flat = [2000] * 12 * 48 + [1000] * 20 * 48
+            data = b''
+            for code, count in codes:
+                samples = flat[:1000] + [code] * count + flat[1000 + count:]
+                data += b''.join(struct.pack('<H', v) for v in samples)
+            write('depth.raw', data)
+            r = self.report('--camera', 'y4m:in.y4m', '--depth', 'raw:depth.raw,Z16,48x32,30',
+                            '--focus-at', '2,40', '--out', 'y4m:out.y4m', *more)
+            return r['far_m'], content('out.y4m')
+        more = []
+        plain = maps(*[(1000, 0)] * 10)
+        self.assertEqual(plain[0], 2)
+        self.assertEqual(maps(*[(65535, 14), (65535, 17)] * 5), plain)  # 16 are a hundredth
+        self.assertGreater(maps(*[(65535, 200)] * 10)[0], 60)
+        for codes, code in ('max', 65535), ('zero,2047', 2047):
+            more = ['--invalid', codes]
+            self.assertEqual(maps(*[(code, 200)] * 10), plain)
+        self.fails(2, "--invalid: 'most' is not known", '--camera', 'y4m:in.y4m', '--depth', 'depth.pgm',
+                   '--invalid', 'most')
 
     def test_what_a_header_says_is_carried_on(self):
         video = content('in.y4m')

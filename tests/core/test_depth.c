@@ -213,6 +213,35 @@ static void the_greatest_distance(void **state)
     }
 }
 
+/* In a video 65535 changes its meaning where its share is another one by far, not at each map. */
+static void the_greatest_distance_in_video(void **state)
+{
+    enum { W = 100, H = 50, PERCENT = W * H / 100 };
+    static const struct {
+        int count;
+        bool hole;
+    } maps[] = {
+        {PERCENT, false},      {PERCENT - 1, true}, {PERCENT, true}, {10 * PERCENT - 1, true},
+        {10 * PERCENT, false}, {PERCENT, false},    {0, true},       {W * H, false}};
+    static uint16_t samples[W * H];
+    struct refocus_depth_map map = distances_of(REFOCUS_SAMPLE_U16, samples, W, H);
+    uint32_t flags = 0;
+
+    (void)state;
+    for (size_t i = 0; i < sizeof maps / sizeof *maps; i++) {
+        for (int k = 0; k < W * H; k++)
+            samples[k] = k < maps[i].count ? 65535 : 1000;
+        assert_int_equal(refocus_depth_follow_flags(&map, &flags), REFOCUS_OK);
+        assert_int_equal(flags, maps[i].hole ? REFOCUS_DEPTH_MAX_IS_UNKNOWN : 0);
+    }
+    samples[0] = 1000;
+    flags = REFOCUS_DEPTH_MAX_IS_UNKNOWN;
+    map.meaning = REFOCUS_DEPTH_DISPARITY;
+    map.flags = 0;
+    assert_int_equal(refocus_depth_follow_flags(&map, &flags), REFOCUS_OK);
+    assert_int_equal(flags, 0);
+}
+
 /* A round hole in a slope is filled from its sides and smoothed: what lies farthest off the slope
  * is a seventh of what it rises by from the hole's middle to its side. */
 static void holes_in_slopes(void **state)
@@ -557,6 +586,7 @@ int main(void)
         cmocka_unit_test(test_distances),
         cmocka_unit_test(test_unknown_samples),
         cmocka_unit_test(the_greatest_distance),
+        cmocka_unit_test(the_greatest_distance_in_video),
         cmocka_unit_test(test_one_depth),
         cmocka_unit_test(test_strides),
         cmocka_unit_test(test_bad_arguments),

@@ -263,13 +263,13 @@ static void damaged_map(void **state)
 /* A depth camera whose lens is covered: the map before it serves on, and the next one counts. */
 static void map_without_readings(void **state)
 {
-    static const int samples[] = {0, 1, 0, 2}; /* no value, 257 mm, no value, 514 mm */
+    static const int samples[] = {0, 1, 255, 2}; /* no value, 257 mm, no value, 514 mm */
     struct bench bench;
 
     (void)state;
     bench_open(&bench, NV12, MM);
     g_object_set(bench.element, "depth-unit", "mm", "near", 0.257, "far", 0.514, "focus", 1.0,
-                 "blur", 8.0, "threads", 1, NULL);
+                 "blur", 8.0, "threads", 1, "invalid", "max", NULL);
     assert_int_equal(gst_harness_push(bench.video, frame_make(NV12, 3, 0)), GST_FLOW_OK);
     for (int i = 0; i < 4; i++) {
         if (i == 3)

@@ -142,21 +142,71 @@ static void unknown_aperture(void **state)
     bench_close(&bench);
 }
 
+/* The picture by a map of 1028 mm but for so many samples. */
+static GstBuffer *by_codes(struct bench *bench, int code, int count)
+{
+    GstBuffer *const map = frame_flat(MAPS, 4, GST_CLOCK_TIME_NONE);
+    GstMapInfo info;
+
+    gst_buffer_map(map, &info, GST_MAP_WRITE);
+    for (int i = 0; i < count; i++)
+        ((uint16_t *)(void *)info.data)[20 * 64 + i] = (uint16_t)code;
+    gst_buffer_unmap(map, &info);
+    assert_int_equal(gst_harness_push(bench->depth, map), GST_FLOW_OK);
+    gst_harness_push(bench->video, frame_make(NV12, 3, 0));
+    return gst_harness_pull(bench->video);
+}
+
+/* Whether 65535 is a distance does not change from map to map, and codes that are said to hold no
+ * value do not. */
+static void samples_without_a_value(void **state)
+{
+    static const struct {
+        const char *unit, *invalid;
+        int code, count;
+        bool hole;
+    } maps[] = {{"mm", NULL, 65535, 30, true}, /* 31 are a hundredth */
+                {"mm", NULL, 65535, 32, true},          {"mm", NULL, 65535, 400, false},
+                {"mm", "max", 65535, 400, true},        {"mm", "zero,2047", 2047, 400, true},
+                {"disparity", NULL, 65535, 400, false}, {"disparity", "max", 65535, 400, true}};
+    struct bench bench;
+
+    (void)state;
+    for (size_t i = 0; i < G_N_ELEMENTS(maps); i++) {
+        GstBuffer *plain, *out;
+
+        begin(&bench, maps[i].unit, 0.5, 4);
+        g_object_set(bench.element, "invalid", maps[i].invalid, NULL);
+        plain = by_codes(&bench, 65535, 0);
+        out = by_codes(&bench, maps[i].code, maps[i].count);
+        assert_int_equal(frame_same(NV12, out, plain), maps[i].hole);
+        gst_buffer_unref(plain);
+        gst_buffer_unref(out);
+        bench_close(&bench);
+    }
+}
+
 /* Before the first frame there is nothing to go on with. */
 static void wrong_from_the_beginning(void **state)
 {
-    struct bench bench;
-    char *words;
+    static const char *const wrong[][3] = {
+        {"aperture", "polygon", "aperture 'polygon' is not known"},
+        {"invalid", "zero,7", "invalid 'zero,7' is not known; give zero, max or 2047"}};
 
     (void)state;
-    begin(&bench, "disparity", 0, 0);
-    g_object_set(bench.element, "aperture", "polygon", NULL);
-    push(&bench);
-    words = bench_error(&bench);
-    assert_non_null(words);
-    assert_non_null(strstr(words, "aperture 'polygon' is not known"));
-    g_free(words);
-    bench_close(&bench);
+    for (size_t i = 0; i < G_N_ELEMENTS(wrong); i++) {
+        struct bench bench;
+        char *words;
+
+        begin(&bench, "disparity", 0, 0);
+        g_object_set(bench.element, wrong[i][0], wrong[i][1], NULL);
+        push(&bench);
+        words = bench_error(&bench);
+        assert_non_null(words);
+        assert_non_null(strstr(words, wrong[i][2]));
+        g_free(words);
+        bench_close(&bench);
+    }
 }
 
 int main(void)
@@ -166,6 +216,7 @@ int main(void)
         cmocka_unit_test(lens_before_range),
         cmocka_unit_test(more_blur_than_the_method_has),
         cmocka_unit_test(unknown_aperture),
+        cmocka_unit_test(samples_without_a_value),
         cmocka_unit_test(wrong_from_the_beginning),
     };
 

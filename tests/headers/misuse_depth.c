@@ -77,15 +77,21 @@ static void bad_depth_maps(void)
                                  BAD(refocus_depth_map, near_m, (double)NAN),
                                  BAD(refocus_depth_map, far_m, (double)NAN)};
     const struct refocus_repair_params repair = refocus_repair_params_default();
+    const struct refocus_depth_map good = depth_map();
+    uint32_t flags = REFOCUS_DEPTH_MAX_IS_UNKNOWN;
 
     REFUSED(refocus_depth_to_disparity, NULL, out, 2 * W, NULL);
     REFUSED(refocus_depth_repair, NULL, &repair, out, 2 * W, NULL);
+    REFUSED(refocus_depth_follow_flags, NULL, &flags);
+    REFUSED(refocus_depth_follow_flags, &good, NULL);
     for (size_t i = 0; i < COUNT(bad); i++) {
         struct refocus_depth_map map = depth_map();
 
         misuse_spoil(&map, &bad[i]);
         REFUSED(refocus_depth_to_disparity, &map, out, 2 * W, NULL);
         REFUSED(refocus_depth_repair, &map, &repair, out, 2 * W, NULL);
+        REFUSED(refocus_depth_follow_flags, &map, &flags);
+        assert_int_equal(flags, REFOCUS_DEPTH_MAX_IS_UNKNOWN);
     }
     misuse_spoil(NULL, NULL);
 }

@@ -91,6 +91,9 @@ static void units(void)
     REFUSED(refocus_depth_set_unit, &map, NULL);
     REFUSED(refocus_depth_set_unit, &map, "");
     REFUSED(refocus_depth_set_unit, &map, "-1/m");
+    REFUSED(refocus_depth_set_invalid, NULL, "max");
+    REFUSED(refocus_depth_set_invalid, &map, "zero,7");
+    assert_int_equal(map.flags, 0);
     for (size_t i = 0; i < COUNT(bad); i++) {
         map.samples = samples;
         map.width = W;

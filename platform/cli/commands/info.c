@@ -80,13 +80,11 @@ static int measure_depth(struct input *input, const struct settings *settings,
     struct refocus_depth_map *map = input->photo->depth;
     struct refocus_depth_report *report = &input->report;
     const uint64_t samples = (uint64_t)map->width * (uint64_t)map->height;
-    uint32_t codes;
     int status = input_settle_embedded(input, &settings->depth);
 
     if (status != EXIT_DONE)
         return status;
-    input_find_codes(settings->depth.invalid, &codes);
-    map->flags |= codes;
+    refocus_depth_set_invalid(map, settings->depth.invalid);
     params.speckle = (int32_t)settings->depth.speckle;
     found->unit_is_doubtful =
         !settings->depth.unit && unit_is_doubtful(input->photo, false, found->unit_line);

@@ -5,33 +5,6 @@
 #include <string.h>
 #include "line/report.h"
 
-bool input_find_codes(const char *names, uint32_t *flags)
-{
-    static const struct {
-        const char *name;
-        uint32_t flag;
-    } codes[] = {{"zero", REFOCUS_DEPTH_ZERO_IS_UNKNOWN},
-                 {"max", REFOCUS_DEPTH_MAX_IS_UNKNOWN},
-                 {"2047", REFOCUS_DEPTH_2047_IS_UNKNOWN}};
-
-    *flags = 0;
-    while (names && *names) {
-        const size_t length = strcspn(names, ",");
-        bool found = false;
-
-        for (size_t i = 0; i < sizeof codes / sizeof *codes; i++) {
-            if (strlen(codes[i].name) == length && !strncmp(names, codes[i].name, length)) {
-                *flags |= codes[i].flag;
-                found = true;
-            }
-        }
-        if (!found)
-            return false;
-        names += length + (names[length] == ',');
-    }
-    return true;
-}
-
 int input_check_range(const struct input *input, const struct refocus_depth_map *map)
 {
     if (map->near_m > 0 && map->far_m > 0 && map->near_m >= map->far_m)
@@ -198,10 +171,8 @@ int input_convert(struct input *input, const struct depth_settings *settings)
     struct refocus_repair_params params = refocus_repair_params_default();
     const uint64_t bytes = (uint64_t)map->width * (uint64_t)map->height * sizeof(uint16_t);
     int status = REFOCUS_ERR_MEMORY;
-    uint32_t flags;
 
-    input_find_codes(settings->invalid, &flags);
-    map->flags |= flags;
+    refocus_depth_set_invalid(map, settings->invalid);
     if (input_check_range(input, map) != EXIT_DONE)
         return EXIT_WRONG;
     if (bytes <= SIZE_MAX) {

@@ -4,9 +4,6 @@
 
 #include "inputs/input.h"
 
-/* Find the flags for the names in --invalid, NULL for none; false when one is not known. */
-bool input_find_codes(const char *names, uint32_t *flags);
-
 /* Whether edges of the disparities go to the photo's: where there is a photo, unless the settings
  * say otherwise. */
 bool input_has_edges_placed(const struct input *input, const struct depth_settings *settings);

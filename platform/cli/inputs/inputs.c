@@ -28,10 +28,9 @@ bool input_depth_is_made(const struct depth_settings *settings)
 int input_check_depth(const struct depth_settings *settings)
 {
     struct refocus_depth_map map = refocus_depth_map_default();
-    uint32_t flags;
 
     limits_take(&settings->limits);
-    if (!input_find_codes(settings->invalid, &flags))
+    if (refocus_depth_set_invalid(&map, settings->invalid) != REFOCUS_OK)
         return report_failure(EXIT_WRONG, "--invalid",
                               "'%s' is not known; give zero, max or 2047, or several "
                               "with commas",
@@ -98,7 +97,6 @@ static int report_no_depth(const char *photo, const struct refocus_photo *read)
 static int read_side(struct input *input, const char *file, const struct depth_settings *settings)
 {
     struct refocus_reason reason = {""};
-    uint32_t flags;
     int status;
 
     input->depth_name = file;
@@ -110,8 +108,7 @@ static int read_side(struct input *input, const char *file, const struct depth_s
     if (status != REFOCUS_OK)
         return report_failure(input_exit_code(status), file, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
-    input_find_codes(settings->invalid, &flags);
-    input->side->depth->flags |= flags;
+    refocus_depth_set_invalid(input->side->depth, settings->invalid);
     input->depth_from = input->side;
     return EXIT_DONE;
 }

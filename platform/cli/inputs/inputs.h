@@ -97,14 +97,17 @@ const char *gain_map_summary(uint32_t index);
                 "portrait matte "                                                                  \
                 "of the photo, if it has one; none: no matte"                                      \
     }
+#define INVALID_OPTION(type, member)                                                               \
+    {                                                                                              \
+        .kind = OPTION_TEXT, .name = "--invalid", .argument = "CODES",                             \
+        .offset = offsetof(type, member.invalid),                                                  \
+        .help =                                                                                    \
+            "samples that hold no value, with commas: zero, max (255 or 65535), "                  \
+            "2047; NaN and infinity never do, nor in distances zero, and 65535 if less than a "    \
+            "hundredth has it"                                                                     \
+    }
 #define REPAIR_OPTIONS(type, member)                                                               \
-    {.kind = OPTION_TEXT,                                                                          \
-     .name = "--invalid",                                                                          \
-     .argument = "CODES",                                                                          \
-     .offset = offsetof(type, member.invalid),                                                     \
-     .help = "samples that hold no value, with commas: zero, max (255 or 65535), "                 \
-             "2047; NaN and infinity never do, nor in distances zero, and 65535 if less than a "   \
-             "hundredth has it"},                                                                  \
+    INVALID_OPTION(type, member),                                                                  \
     {                                                                                              \
         .kind = OPTION_INTEGER, .name = "--speckle", .argument = "N",                              \
         .offset = offsetof(type, member.speckle), .least = 0, .greatest = REFOCUS_MAX_SPECKLE,     \

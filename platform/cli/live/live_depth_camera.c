@@ -16,6 +16,7 @@ struct samples {
     size_t capacity; /* number of samples in each */
     void *work;      /* memory of the repair */
     size_t work_bytes;
+    uint32_t flags; /* refocus_depth_follow_flags() gave them for the last map */
 };
 
 static bool reserve(struct samples *samples, const struct refocus_calibration *c,
@@ -76,6 +77,24 @@ static int describe(struct live_lane *lane, const struct refocus_frame *frame,
         snprintf(reason->text, sizeof reason->text, "%s", live_look_no_metres);
         return REFOCUS_ERR_ARGUMENT;
     }
+    return REFOCUS_OK;
+}
+
+/* Distances without a value become 0, before they are registered and their range is measured.
+ * Where 65535 may be one, it is or is not from map to map alike. */
+static int clear_codes(struct samples *samples, struct refocus_depth_map *map, const char *invalid)
+{
+    const size_t count = (size_t)map->width * (size_t)map->height;
+    const int status = refocus_depth_follow_flags(map, &samples->flags);
+
+    if (status != REFOCUS_OK)
+        return status;
+    map->flags |= samples->flags;
+    refocus_depth_set_invalid(map, invalid);
+    for (size_t i = 0; map->meaning == REFOCUS_DEPTH_DISTANCE && i < count; i++)
+        if ((samples->own[i] == UINT16_MAX && map->flags & REFOCUS_DEPTH_MAX_IS_UNKNOWN) ||
+            (samples->own[i] == 2047 && map->flags & REFOCUS_DEPTH_2047_IS_UNKNOWN))
+            samples->own[i] = 0;
     return REFOCUS_OK;
 }
 
@@ -143,6 +162,8 @@ static int deliver_depth(struct live_lane *lane, const struct refocus_frame *fra
         status = refocus_convert_samples(lane->converter, frame, samples->own, reason);
     if (status == REFOCUS_OK)
         status = describe(lane, frame, &map, reason);
+    if (status == REFOCUS_OK)
+        status = clear_codes(samples, &map, live->settings->depth.invalid);
     if (status == REFOCUS_OK && live->calibration)
         status = register_map(lane, &map, reason);
     if (status == REFOCUS_OK && !reserve_work(samples, &map))

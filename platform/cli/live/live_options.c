@@ -60,6 +60,7 @@ const struct option live_options[] = {
              "scenes: the camera moves its lens, and a focus stack becomes the depth, at the "
              "beginning and at each command 'stack'; the parts are the options of refocus stack"},
     DEPTH_UNIT_OPTIONS(struct live_settings, depth),
+    INVALID_OPTION(struct live_settings, depth),
     {.kind = OPTION_NUMBER,
      .name = "--steady",
      .argument = "S",

@@ -250,6 +250,24 @@ static void unit_words(void **state)
     assert_int_equal(refocus_depth_set_unit(&map, NULL), REFOCUS_ERR_ARGUMENT);
 }
 
+static void invalid_words(void **state)
+{
+    static const char *const bad[] = {"7", "zero,7", "ma", "maxi", ",max", "max,,zero", "max zero"};
+    struct refocus_depth_map map = refocus_depth_map_default();
+
+    (void)state;
+    assert_int_equal(refocus_depth_set_invalid(&map, NULL), REFOCUS_OK);
+    assert_int_equal(refocus_depth_set_invalid(&map, ""), REFOCUS_OK);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_int_equal(refocus_depth_set_invalid(&map, bad[i]), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(map.flags, 0);
+    assert_int_equal(refocus_depth_set_invalid(&map, "max"), REFOCUS_OK);
+    assert_int_equal(map.flags, REFOCUS_DEPTH_MAX_IS_UNKNOWN);
+    assert_int_equal(refocus_depth_set_invalid(&map, "2047,zero"), REFOCUS_OK);
+    assert_int_equal(map.flags, REFOCUS_DEPTH_ZERO_IS_UNKNOWN | REFOCUS_DEPTH_MAX_IS_UNKNOWN |
+                                    REFOCUS_DEPTH_2047_IS_UNKNOWN);
+}
+
 static void range_overrules(void **state)
 {
     static const double bad[][2] = {{-1, 0},  {0, -1},  {2, 1},       {1, 1},
@@ -450,6 +468,7 @@ int main(void)
         cmocka_unit_test(pfm_refused),
         cmocka_unit_test(ends_of_floats),
         cmocka_unit_test(unit_words),
+        cmocka_unit_test(invalid_words),
         cmocka_unit_test(range_overrules),
         cmocka_unit_test(unknown_content),
         cmocka_unit_test(limits_are_kept),
