@@ -177,6 +177,34 @@ class Pull(Case):
         self.assertIn('a.mp4: there is no ffmpeg program', result.stderr)
         shutil.rmtree(folder)
 
+    @unittest.skipUnless(shutil.which('ffmpeg') and shutil.which('ffprobe'), 'there is no ffmpeg')
+    def test_colours_of_films(self):
+        """A film says by what its Y, U and V are R, G and B, and they are the photo's."""
+        colours = [(255, 0, 0), (0, 255, 0), (0, 0, 255), (200, 120, 40), (90, 90, 90)]
+        with open('colours.ppm', 'wb') as file:
+            file.write(b'P6\n80 32\n255\n' + b''.join(bytes(c) * 16 for c in colours) * 32)
+        with open('flat.pgm', 'wb') as file:
+            file.write(b'P5\n80 32\n255\n' + bytes([9]) * 80 * 32)
+        encoders = subprocess.run(['ffmpeg', '-encoders'], capture_output=True, text=True).stdout
+        for name, encoder in ('a.mp4', 'libx264'), ('a.webm', 'libvpx'):
+            if encoder not in encoders:
+                continue
+            self.succeeds('pull', 'colours.ppm', '--depth', 'flat.pgm', '-o', name, '--seconds', '0.2',
+                          '--fps', '10')
+            said = subprocess.run(['ffprobe', '-v', 'error', '-of', 'json', '-show_streams', name],
+                                  capture_output=True, check=True).stdout
+            stream = json.loads(said)['streams'][0]
+            self.assertEqual([stream['color_' + of] for of in ('space', 'primaries', 'transfer', 'range')],
+                             ['bt709', 'bt709', 'iec61966-2-1', 'tv'])
+            subprocess.run(['ffmpeg', '-v', 'error', '-y', '-i', name, '-frames:v', '1', '-vf',
+                            'scale=in_color_matrix=bt709:in_range=tv,format=rgb24', 'frame.ppm'], check=True)
+            with open('frame.ppm', 'rb') as file:
+                frame = file.read()[-80 * 32 * 3:]
+            for i, colour in enumerate(colours):
+                at = (16 * 80 + 16 * i + 8) * 3
+                self.assertLessEqual(max(abs(a - b) for a, b in zip(frame[at:at + 3], colour)), 4)
+            os.remove(name)
+
     def test_interrupted(self):
         for name, *more in (('f-%02d.ppm',), ('a.y4m',), ('a.apng',), ('a.y4m', '--wiggle', '9')):
             before = sorted(os.listdir('.'))

@@ -73,8 +73,11 @@ static int start(struct encoder *e, int read_end, char *const *arguments)
 int encoder_open(struct encoder **encoder, const char *path, int width, int height, double fps,
                  struct refocus_reason *reason)
 {
-    /* Sides of 4:2:0 are even; the one more row or column repeats the last. */
-    static char even[] = "pad=ceil(iw/2)*2:ceil(ih/2)*2,format=yuv420p";
+    /* Sides of 4:2:0 are even; the one more row or column repeats the last. Players take what does
+     * not say its matrix for BT.709, or what is small for BT.601. */
+    static char film[] =
+        "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p,"
+        "setparams=color_primaries=bt709:color_trc=iec61966-2-1:colorspace=bt709:range=tv";
     static char palette[] = "split[a][b];[a]palettegen[p];[b][p]paletteuse";
     const size_t length = strlen(path);
     const bool gif = length > 4 && strcasecmp(path + length - 4, ".gif") == 0;
@@ -94,7 +97,7 @@ int encoder_open(struct encoder **encoder, const char *path, int width, int heig
                                "-i",
                                "pipe:0",
                                "-vf",
-                               gif ? palette : even,
+                               gif ? palette : film,
                                "-y",
                                file,
                                NULL};
