@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """refocus pull: frames are what render makes of the same setting, every kind of file holds them
 all, and nothing partial stays. Usage: test_pull.py REFOCUS [unittest arguments]"""
+import fractions
 import json
 import os
 import re
@@ -127,9 +128,20 @@ class Pull(Case):
         os.remove('a.y4m')
         self.assertRegex(data, rb'^YUV4MPEG2 W%d H%d F(10:1|10000:1000) ' % (W, H))
         self.assertEqual(data.count(b'FRAME\n'), 3)
+        self.succeeds(*self.pull('-o', 'a.y4m', '--seconds', '0.1', '--fps', '30000/1001'))
+        with open('a.y4m', 'rb') as file:
+            self.assertIn(b' F30000:1001 ', file.read(80))
+        os.remove('a.y4m')
+        for fps in '30/', '/2', '30/0', '30/-1', '30/1/1', '1/2', '30/inf':
+            self.fails(2, "--fps: '%s' cannot be used; give a number from 1 to 240" % fps,
+                       *self.pull('-o', 'a.y4m', '--fps', fps))
 
     def test_apng(self):
-        self.succeeds(*self.pull('-o', 'a.apng', '--seconds', '0.2', '--fps', '10'))
+        for fps, delay in ('10', (1, 10)), ('30', (1, 30)), ('23.976', (125, 2997)), ('30000/1001', (1001, 30000)):
+            self.check_apng(fps, delay)
+
+    def check_apng(self, fps, delay):
+        self.succeeds(*self.pull('-o', 'a.apng', '--seconds', str(float(2 / fractions.Fraction(fps))), '--fps', fps))
         with open('a.apng', 'rb') as file:
             data = file.read()
         os.remove('a.apng')
@@ -143,7 +155,7 @@ class Pull(Case):
             if kind == b'fcTL':
                 numbers.append(struct.unpack('>I', body[:4])[0])
                 self.assertEqual(struct.unpack('>II', body[4:12]), (W, H))
-                self.assertEqual(struct.unpack('>HH', body[20:24]), (100, 1000))
+                self.assertEqual(struct.unpack('>HH', body[20:24]), delay)
                 pixels.append(b'')
             elif kind == b'fdAT':
                 numbers.append(struct.unpack('>I', body[:4])[0])

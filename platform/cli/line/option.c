@@ -130,6 +130,20 @@ static bool read_number(const char **text, double *value)
     return true;
 }
 
+/* Divides a number by one behind a slash at *text, if there is one; false: it is no divisor. */
+static bool read_divisor(const char **text, double *value)
+{
+    double divisor = 1;
+
+    if (**text != '/')
+        return true;
+    ++*text;
+    if (!read_number(text, &divisor) || !(divisor > 0))
+        return false;
+    *value /= divisor;
+    return true;
+}
+
 static int wrong_number(const struct option *option, const char *name, const char *text)
 {
     char range[OPTION_RANGE_LENGTH];
@@ -158,8 +172,8 @@ static int parse_numbers(const struct option *option, const char *name, const ch
         if (i > 0 && !(*at == ',' || (*at == 'x' && count == 2)))
             return wrong_number(option, name, text);
         at += i > 0;
-        if (!read_number(&at, &value) || !in_range(option, value) ||
-            (is_whole(option) && value != floor(value)))
+        if (!read_number(&at, &value) || (option->fraction && !read_divisor(&at, &value)) ||
+            !in_range(option, value) || (is_whole(option) && value != floor(value)))
             return wrong_number(option, name, text);
         values[i] = value;
     }

@@ -28,6 +28,7 @@ struct option {
     double least, greatest; /* bounds of numbers; least is not allowed itself when above is set */
     bool above;
     int count;              /* number of OPTION_NUMBERS */
+    bool fraction;          /* OPTION_NUMBER that may be written as 30000/1001, too */
     bool decimals;          /* OPTION_NUMBERS that need not be whole, as pixels are */
     const char *word;       /* one word that stands for a number, or
                                NULL */

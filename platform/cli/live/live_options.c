@@ -120,7 +120,9 @@ const struct option live_options[] = {
      .least = 0,
      .above = true,
      .greatest = 10000,
-     .help = "frames a second; default as the source has them, and where it does not say, as "
+     .fraction = true,
+     .help = "frames a second, also as 30000/1001; default as the source has them, and where it "
+             "does not say, as "
              "file: and raw: without a rate, as the other of camera and depth has them, else 30"},
     {.kind = OPTION_CHOICE,
      .name = "--matrix",

@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +16,7 @@ struct apng {
     FILE *file;
     char beside[PATH_MAX]; /* where frames lie on their way, as a picture's name */
     int width, height, frames, written;
-    uint16_t milliseconds;
+    uint16_t delay[2]; /* seconds of a frame: numerator, denominator */
     uint32_t sequence;
 };
 
@@ -70,11 +71,26 @@ static int cannot_write(struct refocus_reason *reason)
     return REFOCUS_ERR_IO;
 }
 
+/* The least fraction that is nearest to 1 / fps: 1001/30000 of 29.97002997. */
+static void set_delay(struct apng *a, double fps)
+{
+    double best = INFINITY;
+
+    for (int n = 1; n * fps + 0.5 < 65536; n++) {
+        const double d = floor(n * fps + 0.5), off = fabs(d / n - fps);
+
+        if (d >= 1 && off < best - 1e-12 * fps) {
+            best = off;
+            a->delay[0] = (uint16_t)n;
+            a->delay[1] = (uint16_t)d;
+        }
+    }
+}
+
 int apng_open(struct apng **apng, const char *path, int width, int height, double fps, int frames,
               struct refocus_reason *reason)
 {
     struct apng *a = calloc(1, sizeof *a);
-    const double ms = 1000 / fps + 0.5;
 
     *apng = a;
     if (!a) {
@@ -84,7 +100,7 @@ int apng_open(struct apng **apng, const char *path, int width, int height, doubl
     a->width = width;
     a->height = height;
     a->frames = frames;
-    a->milliseconds = (uint16_t)(ms < 1 ? 1 : ms > 65535 ? 65535 : ms);
+    set_delay(a, fps);
     if (snprintf(a->beside, sizeof a->beside, "%s.png", path) >= (int)sizeof a->beside) {
         snprintf(reason->text, sizeof reason->text, "the name is too long");
         return REFOCUS_ERR_ARGUMENT;
@@ -112,10 +128,10 @@ static bool put_control(struct apng *a)
     put32(control, a->sequence++);
     put32(control + 4, (uint32_t)a->width);
     put32(control + 8, (uint32_t)a->height);
-    control[20] = (uint8_t)(a->milliseconds >> 8);
-    control[21] = (uint8_t)a->milliseconds;
-    control[22] = 1000 >> 8;
-    control[23] = 1000 & 255;
+    for (int i = 0; i < 2; i++) {
+        control[20 + 2 * i] = (uint8_t)(a->delay[i] >> 8);
+        control[21 + 2 * i] = (uint8_t)a->delay[i];
+    }
     return put_chunk(a, "fcTL", control, sizeof control, NULL, 0);
 }
 

@@ -110,7 +110,7 @@ int encoder_open(struct encoder **encoder, const char *path, int width, int heig
     e->process = -1;
     e->pipe = -1;
     snprintf(size, sizeof size, "%dx%d", width, height);
-    snprintf(rate, sizeof rate, "%g", fps);
+    snprintf(rate, sizeof rate, "%.12g", fps);
     snprintf(file, sizeof file, "file:%s", path);
     if (pipe(ends) != 0)
         return failed(reason, "no pipe to ffmpeg", errno);
