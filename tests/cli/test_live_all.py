@@ -55,7 +55,7 @@ GROUPS = [
     FEW,
     ['--rays', '4', '--frames', '3'],  # the newest wins; from files to files each frame
     [*FEW, '--steady', '0.9', '--near', '0.5', '--far', 'inf', '--depth-unit', 'mm', '--focus',
-     '0.7', '--blur-most', '9', '--threads', '1', '--cpu', 'c', '--no-commands',
+     '0.7', '--blur-most', '9', '--threads', '1', '--cpu', 'c', '--no-commands', '--invalid', 'max',
      '--patience', '1', '--matrix', 'bt709', '--highlights', 'off', '--depth-edges', 'auto',
      '--tilt-angle', '20', '--tilt-line', '0,5,9,5', '--tilt-compress', '0.5', '--far-clamp', '0.1',
      '--near-clamp', '0.9', '--blur-limit', '4', '--f-number', '2', '--focal-length', '50',
