@@ -19,7 +19,15 @@
 #include "support/executor.h"
 
 /* Most stars of a picture; the highlights after them, row by row, have no spikes. */
-enum { RF_MOST_STARS = 1024, RF_MOST_SPIKES = 16, RF_NOISE_LEVELS = 8, RF_NOISE_BINS = 1024 };
+enum { RF_MOST_STARS = 1024, RF_MOST_SPIKES = 16 };
+
+enum {
+    RF_NOISE_LEVELS = 8,
+    RF_NOISE_WIDTH = 256 / RF_NOISE_LEVELS, /* codes of a level */
+    RF_NOISE_BINS = 960,
+    RF_GRAIN_PLACES = 1024,
+    RF_GRAIN_UNIT = 128, /* unit of weights of smoothed noise */
+};
 
 /* A highlight with spikes: its place in 1/16 pixel, its light, and its blur radius, Q7.8. */
 struct rf_star {
@@ -37,13 +45,13 @@ struct rf_stars {
 
 /* Grain of the photo, measured where it is smooth. */
 struct rf_grain {
-    /* number of blocks by luma and by variance, 1/16 code^2, between every other pixel; and the
-     * sum of their variances between neighbours */
+    /* number of blocks by luma and by variance between every other pixel, in 64 bins an octave; and
+     * the sum of their variances between neighbours, 1/16 code^2 */
     uint32_t blocks[RF_NOISE_LEVELS][RF_NOISE_BINS], near[RF_NOISE_LEVELS][RF_NOISE_BINS];
     bool any;                        /* there is some */
     uint16_t sigma[RF_NOISE_LEVELS]; /* standard deviation of luma, 1/256 code */
     int side;                        /* weight of neighbours in smoothed noise, Q7 */
-    uint8_t lost[1024]; /* the share of the grain a blur takes, Q8, by |s| in 1/8 pixel;
+    uint8_t lost[RF_GRAIN_PLACES]; /* the share of the grain a blur takes, Q8, by |s| in 1/8 pixel;
                            the last one is of all larger ones */
 };
 
@@ -84,6 +92,11 @@ void rf_add_grain(const struct rf_look *look, const struct rf_canvas *canvas, st
 /* Signed blurs, as they are stored, of a few pixels of the photo, at most RF_DEQUANTISE_PATCH in
  * width and height, row by row. */
 void rf_blurs_at(const struct rf_look *look, int x, int y, int width, int height, int16_t *blur);
+
+static inline int rf_luma(int r, int g, int b)
+{
+    return (54 * r + 183 * g + 19 * b + 128) >> 8;
+}
 
 /* Finds the codes R, G, B of a pixel of the window in the picture. */
 void rf_codes_at(const struct rf_canvas *canvas, int x, int y, uint8_t *code[3]);

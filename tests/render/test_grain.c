@@ -18,13 +18,13 @@ static void about(const char *what, double is, double wanted, double part)
         fail_msg("%s is %g, should be %g", what, is, wanted);
 }
 
-/* Noise of the sharp half in the blurred one. */
-static double noise_of(int x0, int x1)
+/* Noise of a part of the blurred half. */
+static double noise_within(int x0, int x1, int y0, int y1)
 {
     double sum = 0, squares = 0;
     int n = 0;
 
-    for (int y = 4; y < H - 4; y++) {
+    for (int y = y0; y < y1; y++) {
         for (int x = x0; x < x1; x++, n++) {
             const double v = out[3 * (y * W + x) + 1];
 
@@ -33,6 +33,11 @@ static double noise_of(int x0, int x1)
         }
     }
     return sqrt(squares / n - sum / n * (sum / n));
+}
+
+static double noise_of(int x0, int x1)
+{
+    return noise_within(x0, x1, 4, H - 4);
 }
 
 /* A photo of this noise at 120, smoothed by (a, 1, a) each way, the nearer half of it in focus. */
@@ -82,12 +87,12 @@ static double correlation(void)
 /* Grain is of the strength and the size of the photo's, and there is none where no noise is. */
 static void grain_size(void **state)
 {
-    static const double sigmas[] = {2.5, 6, 0.6}, sides[] = {0, 0.2, 0.4};
+    static const double sigmas[] = {2.5, 6, 0.6, 10, 20}, sides[] = {0, 0.2, 0.4};
     struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 20);
 
     (void)state;
     params.render.prefilter = 0;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 5; i++) {
         for (int k = 0; k < 3; k++) {
             struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
             const double a = sides[k];
@@ -111,6 +116,45 @@ static void grain_size(void **state)
             picture_free(&p);
         }
     }
+}
+
+/* Noise of codes 48 above and of 208 below in the blurred half, where the photo has these. */
+static void bands(double dark, double bright, double noises[2])
+{
+    struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
+    struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 12);
+    struct refocus_renderer *renderer;
+    static uint8_t above[3 * W * H / 2];
+
+    draw_noise(&p, dark, 0);
+    memcpy(above, p.rgb, sizeof above);
+    draw_noise(&p, bright, 0);
+    memcpy(p.rgb, above, sizeof above);
+    for (int i = 0; i < 3 * W * H; i++)
+        p.rgb[i] = (uint8_t)(p.rgb[i] + (i < 3 * W * H / 2 ? 48 - 120 : 208 - 120));
+    renderer = prepared(&p, 12, 2);
+    params.look.grain = 1;
+    assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
+    noises[0] = noise_within(W / 2 + 20, W, 4, H / 2 - 16);
+    noises[1] = noise_within(W / 2 + 20, W, H / 2 + 16, H - 4);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+}
+
+/* Noise may rise towards the dark as a sensor's does, and little towards what is bright. */
+static void noise_follows_brightness(void **state)
+{
+    double noises[2];
+
+    (void)state;
+    bands(5, 2, noises);
+    about("dark", noises[0], 5, 0.12);
+    about("bright", noises[1], 2, 0.12);
+    bands(9, 2, noises);
+    about("dark, too much", noises[0], 2 * 1.25 * 2.56, 0.12);
+    bands(2.5, 8, noises);
+    about("dark", noises[0], 2.5, 0.12);
+    about("bright, too much", noises[1], 2.5 * 1.25, 0.12);
 }
 
 /* Texture of one brightness is no noise where others are smooth. */
@@ -144,12 +188,13 @@ static void uneven_texture_is_no_grain(void **state)
     struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 20);
 
     (void)state;
-    for (int even = 0; even < 2; even++) {
+    for (int kind = 0; kind < 4; kind++) {
+        const bool even = kind % 2;
         struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
         struct refocus_renderer *renderer;
 
         for (int k = even ? 0 : 7; k >= 0; k--) {
-            draw_noise(&p, strengths[k], 0.2);
+            draw_noise(&p, strengths[k] * (kind < 2 ? 1 : 2), 0.2);
             for (int i = 0; i < W * H; i++)
                 if (even || (i % W / 8 + 3 * (i / W / 8)) % 8 == k)
                     memcpy(drawn + 3 * i, p.rgb + 3 * i, 3);
@@ -165,6 +210,16 @@ static void uneven_texture_is_no_grain(void **state)
         refocus_renderer_destroy(&renderer);
         picture_free(&p);
     }
+}
+
+/* A number that hangs on every code of the picture. */
+static uint64_t weigh_codes(void)
+{
+    uint64_t sum = 0;
+
+    for (uint64_t i = 0; i < sizeof out; i++)
+        sum += out[i] * (i % 251 + 1);
+    return sum;
 }
 
 static void grain(void **state)
@@ -195,6 +250,7 @@ static void grain(void **state)
         for (int y = 0; y < H; y++) /* a sharp pixel has its own grain */
             assert_memory_equal(out + 3 * y * W, p.rgb + 3 * y * W, 3 * (W / 2 - 16));
     }
+    assert_int_equal(weigh_codes(), 0x2b88799e); /* on every processor */
     memcpy(first, out, sizeof out);
     assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     assert_memory_equal(first, out, sizeof out);
@@ -226,6 +282,7 @@ static void grain(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(grain), cmocka_unit_test(grain_size),
+                                       cmocka_unit_test(noise_follows_brightness),
                                        cmocka_unit_test(texture_is_no_grain),
                                        cmocka_unit_test(uneven_texture_is_no_grain)};
 
