@@ -1,8 +1,7 @@
 /* openexr_read.cpp: an OpenEXR file is read: its colour as linear light, its channel Z as depth in
- * metres. Channels may lie in layers: "R" or "beauty.R". Depth is called "Depth.V" where Blender
- * writes what its compositor has, and is in R, G and B where tools know pictures alone. Colour and
- * depth may be parts of their own, as compositing programs write them. */
+ * metres. Depth is in R, G and B where tools know pictures alone. */
 #include "openexr.hpp"
+#include "openexr_channels.hpp"
 #include "openexr_file.hpp"
 
 #include <algorithm>
@@ -20,96 +19,7 @@
 namespace
 {
 
-/* The channels that are taken, and their parts; empty: there is none. */
-struct Chosen {
-    std::string red, green, blue, grey, depth;
-    int picture = 0, depth_part = 0;
-};
-
-bool ends_in(const std::string &name, const std::string &end)
-{
-    return name == end ||
-           (name.size() > end.size() + 1 &&
-            name.compare(name.size() - end.size() - 1, std::string::npos, "." + end) == 0);
-}
-
-/* The first of that name, those without a layer before others. */
-std::string find(const Imf::ChannelList &channels, const char *name)
-{
-    std::string found;
-
-    if (channels.findChannel(name))
-        return name;
-    for (auto i = channels.begin(); i != channels.end() && found.empty(); ++i)
-        if (ends_in(i.name(), name))
-            found = i.name();
-    return found;
-}
-
-/* R, G, B of a layer of one part. */
-bool choose_colour(const OpenExrFile &file, int part, Chosen &chosen)
-{
-    const Imf::ChannelList &channels = file.header(part).channels();
-    const std::string red = find(channels, "R");
-    const std::string layer = red.empty() ? "" : red.substr(0, red.size() - 1);
-
-    if (red.empty() || !channels.findChannel(layer + "G") || !channels.findChannel(layer + "B"))
-        return false;
-    chosen.red = red;
-    chosen.green = layer + "G";
-    chosen.blue = layer + "B";
-    chosen.picture = part;
-    return true;
-}
-
-bool choose_depth(const OpenExrFile &file, int part, Chosen &chosen)
-{
-    for (const char *name : {"Z", "depth", "Depth", "Depth.V"})
-        if (chosen.depth.empty())
-            chosen.depth = find(file.header(part).channels(), name);
-    chosen.depth_part = part;
-    return !chosen.depth.empty();
-}
-
-/* Whether two parts show the same pixels, of the left or of the right view. */
-bool are_beside(const OpenExrFile &file, int part, int other)
-{
-    const Imf::Header &one = file.header(part), &two = file.header(other);
-
-    return one.dataWindow() == two.dataWindow() &&
-           (!one.hasView() || !two.hasView() || one.view() == two.view());
-}
-
-/* The first parts that have what is looked for; depth beside a picture belongs to it. */
-Chosen choose(const OpenExrFile &file, bool is_photo)
-{
-    Chosen chosen;
-
-    for (int part = 0; part < file.count() && chosen.red.empty(); part++)
-        if (file.is_read(part))
-            choose_colour(file, part, chosen);
-    for (int part = 0; part < file.count() && chosen.red.empty() && chosen.grey.empty(); part++)
-        if (file.is_read(part)) {
-            chosen.grey = find(file.header(part).channels(), "Y");
-            chosen.picture = part;
-        }
-    for (int part = 0; part < file.count() && chosen.depth.empty(); part++)
-        if (file.is_read(part) && (!is_photo || are_beside(file, part, chosen.picture)))
-            choose_depth(file, part, chosen);
-    if (chosen.red.empty() && chosen.grey.empty() && chosen.depth.empty() && file.count() == 1) {
-        const Imf::ChannelList &channels = file.header(0).channels();
-        auto only = channels.begin();
-
-        if (only != channels.end()) {
-            chosen.grey = only.name();
-            if (++only != channels.end())
-                chosen.grey.clear();
-        }
-    }
-    return chosen;
-}
-
-/* Say which channels there are and which are taken, as far as a line goes. */
+/* Says which channels are taken, and which there are as far as a line goes. */
 void tell(struct rf_read *read, const OpenExrFile &file, const std::string &taken)
 {
     std::string names;
@@ -118,7 +28,7 @@ void tell(struct rf_read *read, const OpenExrFile &file, const std::string &take
         for (auto i = file.header(part).channels().begin(); i != file.header(part).channels().end();
              ++i)
             names += std::string(names.empty() ? "" : " ") + i.name();
-    rf_note(read->info, "OpenEXR: channels %.90s; taken %.30s", names.c_str(), taken.c_str());
+    rf_note(read->info, "OpenEXR: channels taken %.70s; of %.90s", taken.c_str(), names.c_str());
 }
 
 struct Window {
@@ -238,7 +148,7 @@ int check_sampling(struct rf_read *read, const OpenExrFile &file, int part,
     return REFOCUS_OK;
 }
 
-int decode_picture(struct rf_read *read, OpenExrFile &file, const Chosen &chosen)
+int decode_picture(struct rf_read *read, OpenExrFile &file, const OpenExrChannels &chosen)
 {
     const Window window(file.header(chosen.picture).dataWindow());
     Imf::FrameBuffer frame;
@@ -283,7 +193,7 @@ int decode_depth(struct rf_read *read, OpenExrFile &file, int part, const std::s
 
 int decode(struct rf_read *read, OpenExrFile &file)
 {
-    const Chosen chosen = choose(file, read->picture_always);
+    const OpenExrChannels chosen = choose_channels(file, read->picture_always);
     const bool colour = !chosen.red.empty();
     const bool red_is_depth = !read->picture_always && colour && chosen.depth.empty();
     const bool picture = read->picture_always || red_is_depth;
@@ -313,8 +223,7 @@ int decode(struct rf_read *read, OpenExrFile &file)
     if (!chosen.depth.empty())
         mean_metres(read, chosen.depth);
     tell(read, file,
-         (picture ? (colour ? chosen.red + " " + chosen.green + " " + chosen.blue : chosen.grey)
-                  : "") +
+         (picture ? (colour ? chosen.red + " G B" : chosen.grey) : "") +
              (picture && !depth.empty() ? " " : "") + depth);
     return REFOCUS_OK;
 }

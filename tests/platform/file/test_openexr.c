@@ -52,6 +52,52 @@ static void exr_layers(void **state)
     read_depth(make_exr(W, H, "P Q", 0, 0), NULL, REFOCUS_ERR_NO_DEPTH);
 }
 
+/* The picture and its depth are found among the many layers that renderers write. Channels are
+ * counted in the order of their names. */
+static void exr_many_layers(void **state)
+{
+    static const struct {
+        const char *channels;
+        int red, green, blue, depth;
+        const char *taken;
+    } cases[] = {
+        {"Combined.B Combined.G Combined.R Depth.V Normal.X Normal.Y Normal.Z", 2, 1, 0, 3,
+         "taken Combined.R G B Depth.V"},
+        {"B Camera.Normal.X Camera.Normal.Y Camera.Normal.Z Depth.Z G R", 6, 5, 0, 4,
+         "taken R G B Depth.Z"},
+        {"AO.B AO.G AO.R Combined.B Combined.G Combined.R Depth.Z", 5, 4, 3, 6,
+         "taken Combined.R G B Depth.Z"},
+        {"AO.R V.Beauty.B V.Beauty.G V.Beauty.R V.Depth.Z", 3, 2, 1, 4,
+         "taken V.Beauty.R G B V.Depth.Z"},
+        {"Col.B Col.G Col.R V.DenoisingDepth.Z V.Depth.Z V.Mist.Z", 2, 1, 0, 4,
+         "taken Col.R G B V.Depth.Z"},
+        {"A.Mist.Z B Combined.B Combined.G Combined.R Depth.Z G R Z", 7, 6, 1, 8, "taken R G B Z"},
+        {"B G Mist.Z N.Y N.Z R zDepth.Z", 5, 1, 0, 6, "taken R G B zDepth.Z"},
+        {"Normal.X Normal.Y Normal.Z Y a.Z", 3, 3, 3, 4, "taken Y a.Z"},
+        {"A.X A.Y B G R X Y Z", 4, 3, 2, -1, "taken R G B"},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct refocus_photo *photo =
+            read_photo(make_exr(W, H, cases[i].channels, 0, 0), REFOCUS_OK);
+        const int colours[3] = {cases[i].red, cases[i].green, cases[i].blue};
+
+        for (int c = 0; c < 3; c++)
+            assert_true(light_at(photo->deep, 2, 1, c) ==
+                        (float)pattern(2, 1, colours[c], 255) / 64);
+        if (cases[i].depth < 0)
+            assert_null(photo->depth->samples);
+        else
+            assert_true(float_at(photo->depth, 2, 1) ==
+                        (double)((float)pattern(2, 1, cases[i].depth, 255) / 64));
+        assert_true(has_evidence(photo, cases[i].taken));
+        refocus_photo_free(&photo);
+    }
+    read_depth(make_exr(W, H, "N.X N.Y N.Z", 0, 0), NULL, REFOCUS_ERR_NO_DEPTH);
+    read_photo(make_exr(W, H, "N.X N.Y N.Z Z", 0, 0), REFOCUS_ERR_UNSUPPORTED);
+}
+
 /* Changes the first sample of a channel in row y of make_exr(). */
 static void set_sample(struct bytes *file, int channels, int channel, int y, float value)
 {
@@ -135,6 +181,18 @@ static void exr_parts(void **state)
     refuse_cut(file, false);
     refuse_large(file);
     bytes_free(&file);
+    {
+        static const struct exr_part named[] = {
+            {"AO", "B G R", NULL, W, 0, 0, false},   {"N", "X Y Z", NULL, W, 0, 0, false},
+            {"V.Mist", "a.Z", NULL, W, 0, 0, false}, {"V.Combined", "B G R", NULL, W, 0, 0, false},
+            {"V.Depth", "Z", NULL, W, 0, 0, false},
+        };
+
+        photo = read_photo(make_exr_parts(H, named, 5), REFOCUS_OK);
+        assert_true(light_at(photo->deep, 2, 1, 0) == (float)pattern(2, 1, 9, 255) / 64);
+        assert_true(float_at(photo->depth, 2, 1) == (double)((float)pattern(2, 1, 10, 255) / 64));
+        refocus_photo_free(&photo);
+    }
     /* The picture alone; a part of the other view, or of other pixels, is not its depth. */
     photo = read_photo(make_exr_parts(H, parts, 4), REFOCUS_OK);
     assert_null(photo->depth->samples);
@@ -187,9 +245,13 @@ static void exr_written(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(exr_colour_and_depth), cmocka_unit_test(exr_layers),
-        cmocka_unit_test(exr_other_depth),      cmocka_unit_test(exr_parts),
-        cmocka_unit_test(exr_deep_parts),       cmocka_unit_test(exr_written),
+        cmocka_unit_test(exr_colour_and_depth),
+        cmocka_unit_test(exr_layers),
+        cmocka_unit_test(exr_many_layers),
+        cmocka_unit_test(exr_other_depth),
+        cmocka_unit_test(exr_parts),
+        cmocka_unit_test(exr_deep_parts),
+        cmocka_unit_test(exr_written),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
