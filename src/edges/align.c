@@ -6,7 +6,8 @@
  *   1. For each block the shift with the most of it is looked for. The map is on the photo where
  *      most blocks want none: nothing is done.
  *   2. Else one shift of the whole map, or one number of pixels by which near surfaces are too
- *      large or too small, is undone if it is clearly better than none.
+ *      large or too small, is undone if it is clearly better than none, and the latter if half of
+ *      the edges come to lie on the photo: thin surfaces that are less fat than others would go.
  *   3. Else each block's edges go where they fit best, and then once more in blocks half as large,
  *      if they fit clearly better there.
  *
@@ -32,7 +33,7 @@ static const double ON_PHOTO = 0.75;  /* share of edges: the map needs nothing *
 static const double FITS = 1.4;       /* support in place: blocks are unsure, not wrong */
 static const double UNRELATED = 1.06; /* less support in place: it is the photo of something else */
 static const double CLEARLY = 1.15;   /* times better */
-static const double STICKS = 0.05;    /* in a video both limits lean so far to the last decision */
+static const double STICKS = 0.05;    /* in a video all of them lean so far to the last decision */
 static const double SOFTEST = 3.2;    /* pixels: softer edges say little of their place */
 
 /* 1 or -1: the last frame's edges were moved, or were not; 0: there is none. */
@@ -226,25 +227,39 @@ static void look_again(struct rf_edges *e, const struct rf_ramp_limits *limits)
     rf_find_map_edges(e, limits ? e->label : e->map);
 }
 
-/* Makes near surfaces smaller or larger by the whole number of pixels that fits best. */
+/*
+ * Makes near surfaces smaller or larger by the whole number of pixels that fits best, by the sum of
+ * the support, so that edges of surfaces that are gone count as none. Where half of the edges, or
+ * more, come to lie on the photo, with twice the support, there is half as much more. Else they are
+ * off by different lengths, and wires would be cut up: 0, and the map is as it was.
+ */
 static int undo_growth(struct rf_edges *e, double grown, const struct rf_ramp_limits *limits)
 {
+    static const double HALF_FIT = 1.5;
     const int sign = grown < 0 ? -1 : 1, least = rf_smaller((int)fabs(grown), RF_MOST_GROWN - 1);
-    double support[2];
+    double most = (HALF_FIT - STICKS * was_moved(e)) * e->edges * support_in_place(e);
+    int best = 0;
 
     rf_copy_plane(e, e->kept, e->map);
-    for (int i = 0; i < 2; i++) {
+    for (int pixels = least; pixels <= least + 1; pixels++) {
+        double support;
+
         rf_copy_plane(e, e->map, e->kept);
-        rf_regrow(e, sign * (least + i));
+        rf_regrow(e, sign * pixels);
         look_again(e, limits);
-        support[i] = support_in_place(e);
+        support = e->edges * support_in_place(e);
+        if (support > most) {
+            most = support;
+            best = sign * pixels;
+        }
     }
-    if (support[1] > support[0])
-        return sign * (least + 1);
+    if (best == sign * (least + 1))
+        return best;
     rf_copy_plane(e, e->map, e->kept);
-    rf_regrow(e, sign * least);
+    if (best)
+        rf_regrow(e, best);
     look_again(e, limits);
-    return sign * least;
+    return best;
 }
 
 /* Moves edges block by block; false, and the map is as it was, if they do not fit clearly better.

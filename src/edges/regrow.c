@@ -10,23 +10,29 @@ struct growth {
     int grown;
 };
 
-static bool in_disc(int x, int y, int radius)
+/* A pixel that becomes far by mistake leaves a wire with gaps, one that becomes near by mistake
+ * costs less: the disc that makes near surfaces smaller holds no pixel beyond its radius, the one
+ * that makes them larger some that are a quarter of a pixel beyond. */
+static bool in_disc(const struct growth *growth, int x, int y)
 {
-    return x * x + y * y <= radius * radius + radius / 2;
+    const int grown = growth->grown;
+
+    return x * x + y * y <= grown * grown + (grown < 0 ? -grown / 2 : 0);
 }
 
-/* The greatest value of a plane within a disc around a pixel, for those beside the sides. */
-static uint16_t greatest_around(const struct rf_edges *e, const uint16_t *plane, int x, int y,
-                                int radius)
+/* The greatest of the turned disparities around a pixel, for those beside the sides. */
+static uint16_t greatest_around(const struct growth *growth, int x, int y)
 {
+    const struct rf_edges *e = growth->e;
+    const int radius = abs(growth->grown);
     const int y1 = rf_smaller(y + radius, e->height - 1);
     const int x0 = rf_larger(x - radius, 0), x1 = rf_smaller(x + radius, e->width - 1);
     uint16_t most = 0;
 
     for (int v = rf_larger(y - radius, 0); v <= y1; v++)
         for (int u = x0; u <= x1; u++)
-            if (in_disc(u - x, v - y, radius) && plane[v * e->stride + u] > most)
-                most = plane[v * e->stride + u];
+            if (in_disc(growth, u - x, v - y) && e->label[v * e->stride + u] > most)
+                most = e->label[v * e->stride + u];
     return most;
 }
 
@@ -59,13 +65,13 @@ static void regrow_row(void *context, int y, int worker)
     (void)worker;
     for (int v = rf_larger(-radius, -y); v <= rf_smaller(radius, e->height - 1 - y); v++)
         for (int u = -radius; u <= radius; u++)
-            if (in_disc(u, v, radius))
+            if (in_disc(growth, u, v))
                 row[rows++] = e->label + (y + v) * e->stride + radius + u;
     e->kernels->greatest(out + radius, row, rows, inside);
     for (int i = 0; i < e->width - inside; i++) {
         const int x = inside > 0 && i >= radius ? i + inside : i;
 
-        out[x] = greatest_around(e, e->label, x, y, radius);
+        out[x] = greatest_around(growth, x, y);
     }
     for (int x = 0; x < e->width; x++) {
         const uint16_t found = out[x] ^ turn;
