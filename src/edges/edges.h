@@ -155,6 +155,10 @@ void rf_find_steepest(struct rf_edges *e);
  * tell. After rf_find_steepest(). */
 double rf_measure_softness(const struct rf_edges *e, int percentile);
 
+/* The share of pixels on ramps that are alone between two surfaces, as means over areas are. After
+ * rf_find_steepest(). */
+double rf_share_mixed(const struct rf_edges *e);
+
 /* The percentile that is the softness of a map. Wires and hair look less soft than the map is:
  * their two ramps overlap. */
 enum { RF_SOFTNESS_PERCENTILE = 85 };
@@ -168,12 +172,18 @@ struct rf_ramp_limits {
 /* Follows each ramp to its ends: writes near, far and label. After rf_find_steepest(). */
 void rf_find_ramps(struct rf_edges *e, struct rf_ramp_limits limits);
 
+/* Whether a disparity is between two others and not close to either. */
+static inline bool rf_is_mixed(int near, int far, int disparity)
+{
+    const int contrast = near - far, above = 20 * (disparity - far);
+
+    return above > 3 * contrast && above < 17 * contrast;
+}
+
 /* Whether a pixel is on a ramp and not close to either end. */
 static inline bool rf_is_between(const struct rf_edges *e, ptrdiff_t i, int disparity)
 {
-    const int contrast = e->near[i] - e->far[i], above = 20 * (disparity - e->far[i]);
-
-    return above > 3 * contrast && above < 17 * contrast;
+    return rf_is_mixed(e->near[i], e->far[i], disparity);
 }
 
 /* Writes the gradient of the photo. */

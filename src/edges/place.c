@@ -13,12 +13,16 @@ enum {
     MOST_ENLARGED = 4,     /* the map is brought to at most so many times its size */
     LEAST_CONTRAST = 2621, /* 0.04, of a ramp */
 };
-/* Softer edges hold disparities that nothing in the scene has, be it in one pixel. An exact map has
- * 0.41, one with smooth (antialiased) silhouettes 0.49 and more. What lossy compression leaves
- * around the edges of an exact map looks soft, but many of them are steps still, so that it is
- * those that tell. */
+/* Softer edges hold disparities that nothing in the scene has. An exact map has 0.41. What lossy
+ * compression leaves around the edges of an exact map looks soft, but many of them are steps still,
+ * so that it is those that tell. */
 static const double SOFT = 0.475;
 enum { SHARP_PERCENTILE = 40 };
+/* So do antialiased silhouettes, of which many pixels look like steps: 0.11 to 0.39 are mixed where
+ * pixels are means over areas of two or three samples of six scenes, up to 0.04 where they are
+ * samples, compressed or not. Between these is their geometric mean; with one scene left out it is
+ * 0.045 to 0.09, and the one is on its side of that. Such means are no softer than SOFT. */
+static const double ANTIALIASED = 0.065;
 /* Samples of a small map that were taken at points, as sensors do, have 0.41 at their own size;
  * means over areas mix two surfaces along some edges. */
 static const double MIXED = 0.5;
@@ -157,12 +161,11 @@ static double steady(const struct rf_edges *e, double softness)
     return last > 0 && fabs(softness - last) < last / 4 ? (3 * last + softness) / 4 : softness;
 }
 
-/* Whether the map is parted; in a video that leans to what the last frame was. */
-static bool is_soft(const struct rf_edges *e)
+/* Whether what was found of a map is enough to part it; in a video that leans to what the last
+ * frame was. */
+static bool is_enough(const struct rf_edges *e, double found, double least)
 {
-    const double least = !e->last ? SOFT : e->last->parted ? SOFT - 0.03 : SOFT + 0.03;
-
-    return rf_measure_softness(e, SHARP_PERCENTILE) >= least;
+    return found >= least + (!e->last ? 0 : e->last->parted ? -0.03 : 0.03);
 }
 
 static bool is_moved(const struct refocus_depth_edges_report *found)
@@ -183,16 +186,20 @@ static bool run_passes(struct rf_edge_job *job, struct refocus_depth_edges_repor
 
     rf_find_steepest(e);
     softness = steady(e, rf_measure_softness(e, RF_SOFTNESS_PERCENTILE));
-    soft = job->enlarged || is_soft(e);
+    soft = job->enlarged || is_enough(e, rf_measure_softness(e, SHARP_PERCENTILE), SOFT);
     if (job->enlarged)
         softness = fmax(softness, SOFT);
+    report->softness = (float)(softness * pixel);
+    if (!soft && is_enough(e, rf_share_mixed(e), ANTIALIASED)) {
+        soft = true;
+        softness = fmin(softness, SOFT);
+    }
     /* A ramp of a Gaussian is 4 standard deviations long. */
     limits =
         (struct rf_ramp_limits){.steps = (int)(4 * softness + 2.5), .contrast = LEAST_CONTRAST};
     if (soft)
         rf_find_ramps(e, limits);
     found = rf_align(e, softness, soft ? &limits : NULL);
-    report->softness = (float)(softness * pixel);
     report->on_photo = (float)found.on_photo;
     report->grown = (float)(found.grown * pixel);
     report->shift_x = (float)(found.shift_x * pixel);

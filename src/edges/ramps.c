@@ -13,6 +13,8 @@ enum {
     BINS = 256,              /* contrast / largest step, in 1/16 pixels */
     MOST_STEPS = 16,         /* a longer ramp is a slope, when softness is measured */
     ROWS = 64,               /* softness is measured on so many, at least */
+    WAVES = 16,              /* contrast / what a flat surface differs by */
+    BEYOND = 3,              /* pixels: a step to the end of a ramp, and two beyond */
     FEWEST = 50,             /* pixels along edges to measure softness by */
 };
 
@@ -303,7 +305,35 @@ static int local_step(const struct rf_edges *e, ptrdiff_t i)
  * its own share of the ramp, so that wide ramps do not count more than narrow ones. */
 struct histogram {
     int64_t bin[BINS], all;
+    int64_t narrow, mixed; /* between flat surfaces: all ramps of up to two steps; their middles */
 };
+
+/* Whether the surface at the end of a ramp stays as it is for two pixels beyond. */
+static bool is_flat(const struct rf_edges *e, ptrdiff_t end, ptrdiff_t onward, int most)
+{
+    const uint16_t *map = e->map + end;
+
+    return abs(map[onward] - map[0]) < most && abs(map[2 * onward] - map[0]) < most;
+}
+
+/* Counts a pixel of a ramp of one step or two, between surfaces that are flat beside its contrast:
+ * where compression left waves it is not known what a sample between two others is. */
+static void add_narrow(const struct rf_edges *e, ptrdiff_t at, ptrdiff_t near, ptrdiff_t far,
+                       int share, struct histogram *ramps)
+{
+    const int contrast = e->map[near] - e->map[far], most = contrast / WAVES;
+    const ptrdiff_t up = near != at ? near - at : at - far;
+    const ptrdiff_t down = far != at ? far - at : at - near;
+    const int x = (int)(at % e->stride), y = (int)(at / e->stride);
+
+    if (x < BEYOND || y < BEYOND || x >= e->width - BEYOND || y >= e->height - BEYOND)
+        return;
+    if (!is_flat(e, near, up, most) || !is_flat(e, far, down, most))
+        return;
+    ramps->narrow += share;
+    if (near != at && far != at && rf_is_mixed(e->map[near], e->map[far], e->map[at]))
+        ramps->mixed += share;
+}
 
 static void add_ramp(const struct rf_edges *e, ptrdiff_t at, struct histogram *ramps)
 {
@@ -317,6 +347,28 @@ static void add_ramp(const struct rf_edges *e, ptrdiff_t at, struct histogram *r
     share = 256 * local_step(e, at) / contrast;
     ramps->bin[rf_smaller(16 * contrast / first, BINS - 1)] += share;
     ramps->all += share;
+    if (near.steps <= 1 && far.steps <= 1)
+        add_narrow(e, at, near.at, far.at, share, ramps);
+}
+
+/* The ramps of some rows; all = 0: there are too few to tell. */
+static struct histogram measure_ramps(const struct rf_edges *e)
+{
+    const int every = e->height / ROWS + 1;
+    struct histogram ramps = {.all = 0};
+
+    if (rf_run_cancelled(e->pool->run)) /* the plane of directions is not complete */
+        return ramps;
+    for (int y = every / 2; y < e->height; y += every)
+        for (int x = 0; x < e->width; x++) {
+            const ptrdiff_t at = y * e->stride + x;
+
+            if (rf_edge_is_rough(e, x, y) && local_step(e, at) >= LEAST_STEP)
+                add_ramp(e, at, &ramps);
+        }
+    ramps.all *= ramps.all * every >= FEWEST * 256;
+    ramps.narrow *= ramps.narrow * every >= FEWEST * 256;
+    return ramps;
 }
 
 /*
@@ -326,23 +378,20 @@ static void add_ramp(const struct rf_edges *e, ptrdiff_t at, struct histogram *r
  */
 double rf_measure_softness(const struct rf_edges *e, int percentile)
 {
-    const int every = e->height / ROWS + 1;
-    struct histogram ramps = {{0}, 0};
+    const struct histogram ramps = measure_ramps(e);
     int64_t below = 0;
     int i = 0;
 
-    if (rf_run_cancelled(e->pool->run)) /* the plane of directions is not complete */
-        return 0;
-    for (int y = every / 2; y < e->height; y += every)
-        for (int x = 0; x < e->width; x++) {
-            const ptrdiff_t at = y * e->stride + x;
-
-            if (rf_edge_is_rough(e, x, y) && local_step(e, at) >= LEAST_STEP)
-                add_ramp(e, at, &ramps);
-        }
-    if (ramps.all * every < FEWEST * 256)
+    if (ramps.all == 0)
         return 0;
     while (i < BINS - 1 && (below += ramps.bin[i]) * 100 < ramps.all * percentile)
         i++;
     return (i + 0.5) / (16 * 2.5066);
+}
+
+double rf_share_mixed(const struct rf_edges *e)
+{
+    const struct histogram ramps = measure_ramps(e);
+
+    return ramps.narrow ? (double)ramps.mixed / (double)ramps.narrow : 0;
 }
