@@ -106,7 +106,7 @@ struct share {
     alignas(64) struct lookups lookups;
     alignas(64) struct rf_sorted_rays sorted;
     alignas(64) uint32_t corners[3][LANES];
-    bool past_slabs; /* whether a ray of the tile looks past all slabs */
+    bool past_slabs; /* Some ray of the tile looks past all slabs. */
 };
 
 /* Where fine means lie in the share: splats, which come between, use what is before them. */

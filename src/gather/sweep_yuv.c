@@ -73,7 +73,7 @@ struct share {
     alignas(64) struct sums sums;
     alignas(64) struct lookups lookups;
     alignas(64) uint32_t corners[2][LANES]; /* luma, chroma */
-    bool past_slabs;                        /* whether a ray of the tile looks past all slabs */
+    bool past_slabs;                        /* Some ray of the tile looks past all slabs. */
 };
 
 uint64_t rf_sweep_yuv_share(void)

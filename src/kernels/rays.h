@@ -87,7 +87,7 @@ struct rf_sort_job {
 
 struct rf_sorted_rays {
     int rays;
-    bool past_slabs; /* whether the last of any ray is that at offset[slabs] */
+    bool past_slabs; /* The last light of some ray is that at offset[slabs]. */
     uint8_t tests[RF_RAY_CHUNK];
     uint8_t begin[RF_SORTED_TESTS + 1]; /* ray that those of so many tests begin at; `rays` */
     /* Test t, nearest first, at offset[t], hits where rf_in_range(from[t], to[t], blur). */
