@@ -31,12 +31,14 @@ def frames(folder):
         for line in path.read_text().splitlines():
             place, size, kind = line.split('\t')
             name = place.split(':')[-1]
-            if '/papers/' in place:
+            source = SRC / place.split(':')[0].split('src/', 1)[1]
+            # What a build left of a source that is gone since is in no library.
+            if '/papers/' in place or not source.exists():
                 continue
             if kind == 'dynamic':
                 sys.exit(f'{place}: the size of its frame is not known')
             sizes[name] = max(sizes[name], int(size))
-            files[name].add(SRC / place.split(':')[0].split('src/', 1)[1])
+            files[name].add(source)
     return sizes, files
 
 
