@@ -28,9 +28,26 @@ void rf_estimate_highlights(struct rf_light_grid *grid, struct rf_arena *arena,
 /* Estimates the light that was lost from the grid's measures, by the scale. */
 void rf_estimate_make(const struct rf_estimate *estimate);
 
+/* Estimates how much light each cell of row y has lost, as times its own; for a fixed gain,
+ * RF_MOST_GAIN - 1 where that is what it gets. Below 0 where nothing is clipped. */
+void rf_estimate_cells(const struct rf_light_grid *grid, int y, bool fixed, float *lost);
+
+/* The estimate along a row of the photo's pixels. */
+struct rf_estimate_row {
+    const struct rf_light_grid *grid;
+    const float *lost[2]; /* the rows of cells above and below the middle of the pixels */
+    float low;            /* how far they are down between these, 0 to 1 */
+};
+struct rf_estimate_row rf_estimate_row(const struct rf_estimate *estimate, int y);
+
 /* The estimate for a pixel, between the middles of cells in proportion; 0 where nothing around is
  * clipped. */
-float rf_estimate_at(const struct rf_estimate *estimate, int x, int y);
+float rf_estimate_at(const struct rf_estimate_row *row, int x);
+
+/* Tells of each column of cells whether the estimate for some pixel in it may be `least`: 0 or 1.
+ * Returns whether any may. */
+bool rf_estimate_reaches(const struct rf_estimate_row *row, float least,
+                         uint8_t reaches[RF_GRID_SIDE]);
 
 /* The hue of the light around the clipped pixels of a cell, as times its luminance: of what
  * exceeds the surroundings. Returns false if there is hardly any. */

@@ -177,19 +177,12 @@ static void set_tables(struct rf_light_grid *grid, const struct rf_transfer *lin
     }
 }
 
-static float *cell_of(const struct rf_light_grid *grid, enum rf_grid_measure measure, int x, int y)
-{
-    const struct rf_grid_plane *plane = &grid->plane[measure];
-
-    return &plane->scale[plane->first]
-                        [(y >> plane->first) * rf_grid_size(grid->width, plane->first) +
-                         (x >> plane->first)];
-}
-
 static void add(const struct rf_light_grid *grid, enum rf_grid_measure measure, int x, int y,
                 int sum)
 {
-    *cell_of(grid, measure, x, y) += (float)sum;
+    const int k = scales[measure].first;
+
+    grid->plane[measure].scale[k][(y >> k) * rf_grid_size(grid->width, k) + (x >> k)] += (float)sum;
 }
 
 /* Adds up light that is not clipped, in one row of cells y of scale 1. */
@@ -236,26 +229,36 @@ static void add_unclipped(const struct rf_light_grid *grid, int y, int row)
     }
 }
 
-/* Adds up what is clipped of n pixels of a row. */
+/* Adds up what is clipped of n pixels of a row, cell by cell. */
 static void add_clipped(const struct rf_light_grid *grid, int x, int y, int n, int cy)
 {
     const struct rf_grid_tables *t = grid->tables;
     uint8_t rgb[3 * RF_GRID_RUN];
     const struct rf_grid_pixels pixels = rf_grid_pixels(grid, x, y, n, rgb);
 
-    for (int i = 0; i < n; i++) {
-        int colour[3], most, cx, soft;
+    for (int i = 0, cx = rf_grid_cell(x, grid->photo->width, grid->width); i < n; cx++) {
+        const int end = rf_smaller(t->first[cx + 1] - x, n);
+        int soft = 0, grey = 0, plateau = 0, white = 0;
 
-        rf_grid_colour(&pixels, i, colour);
-        most = greatest(colour);
-        soft = t->soft[most];
+        for (; i < end; i++) {
+            int colour[3], most, own;
+
+            rf_grid_colour(&pixels, i, colour);
+            most = greatest(colour);
+            own = t->soft[most];
+            if (own == 0)
+                continue;
+            soft += own;
+            grey += 16 * own * t->linear[least(colour)] / t->linear[most];
+            plateau += t->plateau[most];
+            white += t->white[least(colour)];
+        }
         if (soft == 0)
             continue;
-        cx = rf_grid_cell(x + i, grid->photo->width, grid->width);
         add(grid, RF_GRID_CLIPPED, cx, cy, soft);
-        add(grid, RF_GRID_GREY, cx, cy, 16 * soft * t->linear[least(colour)] / t->linear[most]);
-        add(grid, RF_GRID_PLATEAU, cx, cy, t->plateau[most]);
-        add(grid, RF_GRID_WHITE, cx, cy, t->white[least(colour)]);
+        add(grid, RF_GRID_GREY, cx, cy, grey);
+        add(grid, RF_GRID_PLATEAU, cx, cy, plateau);
+        add(grid, RF_GRID_WHITE, cx, cy, white);
     }
 }
 
@@ -376,20 +379,25 @@ bool rf_light_grid_measure(struct rf_light_grid *grid, const struct rf_transfer 
     return !rf_cancelled(grid->exec);
 }
 
-struct rf_grid_place rf_grid_place(const struct rf_light_grid *grid, int scale, int x, int y)
+struct rf_grid_row rf_grid_row(const struct rf_light_grid *grid, int scale, int y)
 {
     const int across = rf_grid_size(grid->width, scale), down = rf_grid_size(grid->height, scale);
-    const float unit = 1 / (float)(1 << scale);
-    const float u = ((float)x + 0.5f) * unit - 0.5f, v = ((float)y + 0.5f) * unit - 0.5f;
-    const int x0 = u < 0 ? -1 : (int)u, y0 = v < 0 ? -1 : (int)v;
-    const int left = rf_larger(x0, 0), right = rf_smaller(x0 + 1, across - 1);
-    const ptrdiff_t above = (ptrdiff_t)rf_larger(y0, 0) * across;
-    const ptrdiff_t below = (ptrdiff_t)rf_smaller(y0 + 1, down - 1) * across;
+    const float unit = 1 / (float)(1 << scale), v = ((float)y + 0.5f) * unit - 0.5f;
+    const int y0 = v < 0 ? -1 : (int)v;
 
-    return (struct rf_grid_place){
+    return (struct rf_grid_row){
         scale,
-        {above + left, above + right, below + left, below + right},
-        u - (float)x0,
+        across,
+        unit,
+        (ptrdiff_t)rf_larger(y0, 0) * across,
+        (ptrdiff_t)rf_smaller(y0 + 1, down - 1) * across,
         v - (float)y0,
     };
+}
+
+struct rf_grid_place rf_grid_place(const struct rf_light_grid *grid, int scale, int x, int y)
+{
+    const struct rf_grid_row row = rf_grid_row(grid, scale, y);
+
+    return rf_grid_place_in(&row, x);
 }

@@ -19,6 +19,7 @@
 #include "highlights/light_pyramid.h"
 #include "image/photo_source.h"
 #include "support/arena.h"
+#include "support/compare.h"
 #include "support/executor.h"
 
 enum { RF_GRID_SIDE = RF_PYRAMID_SIDE, RF_GRID_SCALES = 7, RF_CODES_OF_LIGHT = RF_LIGHT_MAX + 1 };
@@ -87,6 +88,30 @@ struct rf_grid_place {
 };
 struct rf_grid_place rf_grid_place(const struct rf_light_grid *grid, int scale, int x, int y);
 
+/* A row of cells at a scale: between two rows of means. */
+struct rf_grid_row {
+    int scale, across;
+    float unit;
+    ptrdiff_t above, below;
+    float low;
+};
+struct rf_grid_row rf_grid_row(const struct rf_light_grid *grid, int scale, int y);
+
+/* The middle of cell x in it. */
+static inline struct rf_grid_place rf_grid_place_in(const struct rf_grid_row *row, int x)
+{
+    const float u = ((float)x + 0.5f) * row->unit - 0.5f;
+    const int before = u < 0 ? -1 : (int)u;
+    const int left = rf_larger(before, 0), right = rf_smaller(before + 1, row->across - 1);
+
+    return (struct rf_grid_place){
+        row->scale,
+        {row->above + left, row->above + right, row->below + left, row->below + right},
+        u - (float)before,
+        row->low,
+    };
+}
+
 /* A mean there, at a scale that its plane has. */
 static inline float rf_grid_at(const struct rf_light_grid *grid, enum rf_grid_measure measure,
                                const struct rf_grid_place *place)
@@ -103,6 +128,14 @@ static inline float rf_grid_at(const struct rf_light_grid *grid, enum rf_grid_me
 static inline int rf_grid_cell(int i, int pixels, int cells)
 {
     return (int)((int64_t)i * cells / pixels);
+}
+
+/* The mean light, by one of the measures of what is not clipped, of what is not. */
+static inline float rf_unclipped_at(const struct rf_light_grid *grid, enum rf_grid_measure measure,
+                                    const struct rf_grid_place *place)
+{
+    return rf_grid_at(grid, measure, place) /
+           (1 - rf_grid_at(grid, RF_GRID_CLIPPED, place) + 0.001f);
 }
 
 /* Pixels of a row of the photo: their light, or their codes. */

@@ -15,8 +15,14 @@ struct listing {
     bool counts; /* runs are counted, as the capacity of their part, and not listed */
 };
 
-/* A run in the making. */
-struct open {
+/* A row of the photo, with the run in the making. */
+struct row {
+    const struct listing *listing;
+    struct rf_estimate_row estimate;
+    int y, cell; /* the row of cells that it lies in */
+    int hue_of;  /* the cell that the hue is of */
+    bool mixes;  /* there is a hue */
+    float hue[3];
     struct rf_highlight run;
     float light[3]; /* Q12, of all its pixels */
 };
@@ -40,10 +46,9 @@ static float whiteness(const int colour[3])
 }
 
 /* How much light a pixel has lost, as times its own; 0: hardly any. */
-static float gain_at(const struct listing *listing, const int colour[3], int x, int y)
+static float gain_at(const struct row *row, const int colour[3], int x)
 {
-    const struct rf_estimate *estimate = listing->estimate;
-    const struct rf_grid_tables *tables = estimate->grid->tables;
+    const struct rf_grid_tables *tables = row->estimate.grid->tables;
     const int most = rf_larger(colour[0], rf_larger(colour[1], colour[2]));
     float gain, white;
 
@@ -52,87 +57,116 @@ static float gain_at(const struct listing *listing, const int colour[3], int x, 
     white = whiteness(colour);
     if (white <= 0)
         return 0;
-    gain = rf_estimate_at(estimate, x, y) * white * ((float)tables->soft[most] * (1 / 256.0f));
-    return gain * (float)most < listing->least ? 0 : gain;
+    gain = rf_estimate_at(&row->estimate, x) * white * ((float)tables->soft[most] * (1 / 256.0f));
+    return gain * (float)most < row->listing->least ? 0 : gain;
 }
 
 /* Adds the light that a pixel has lost, Q12. Half of it has its own hue, half that of what is
  * around the clipped pixels; a channel far below white has lost none, whatever a fixed gain adds to
  * it. */
-static void add_light(const struct rf_estimate *estimate, const int colour[3], float gain, int x,
-                      int y, float light[3])
+static void add_light(struct row *row, const int colour[3], float gain, int cell)
 {
-    const struct rf_light_grid *grid = estimate->grid;
-    const int cx = rf_grid_cell(x, grid->photo->width, grid->width);
-    const int cy = rf_grid_cell(y, grid->photo->height, grid->height);
     const float luminance =
         (218 * (float)colour[0] + 732 * (float)colour[1] + 74 * (float)colour[2]) * (1 / 1024.0f);
-    float hue[3];
-    const bool mixes = rf_skirt_hue(grid, cx, cy, hue);
 
+    if (row->hue_of != cell)
+        row->mixes = rf_skirt_hue(row->estimate.grid, cell, row->cell, row->hue);
+    row->hue_of = cell;
     for (int c = 0; c < 3; c++) {
         const float own = (float)colour[c];
-        const float lost = mixes ? gain * 0.5f * (own + luminance * hue[c]) : gain * own;
+        const float lost = row->mixes ? gain * 0.5f * (own + luminance * row->hue[c]) : gain * own;
 
-        light[c] += estimate->scale > 0 ? lost * nearness_to_white(colour[c]) : lost;
+        row->light[c] +=
+            row->listing->estimate->scale > 0 ? lost * nearness_to_white(colour[c]) : lost;
     }
 }
 
-static void close_run(const struct listing *listing, struct open *open)
+static void close_run(struct row *row)
 {
-    struct rf_highlight_list *list = &listing->highlights->part[open->run.y / RF_HIGHLIGHT_ROWS];
+    struct rf_highlight_list *list = &row->listing->highlights->part[row->y / RF_HIGHLIGHT_ROWS];
 
-    if (open->run.count && listing->counts) {
+    if (row->run.count && row->listing->counts) {
         list->capacity++;
-    } else if (open->run.count && list->count < list->capacity) {
+    } else if (row->run.count && list->count < list->capacity) {
         for (int c = 0; c < 3; c++) {
             /* A gain of RF_MOST_GAIN adds a third of this RF_MOST_GAIN - 1 times. */
-            const float each = open->light[c] * (3.0f / (RF_MOST_GAIN - 1)) / open->run.count;
+            const float each = row->light[c] * (3.0f / (RF_MOST_GAIN - 1)) / row->run.count;
 
-            open->run.boost[c] =
+            row->run.boost[c] =
                 (uint16_t)(each < 3 * RF_LIGHT_MAX ? each + 0.5f : 3.0f * RF_LIGHT_MAX);
         }
-        list->run[list->count++] = open->run;
+        list->run[list->count++] = row->run;
     }
-    memset(open, 0, sizeof *open);
+    memset(&row->run, 0, sizeof row->run);
+    memset(row->light, 0, sizeof row->light);
 }
 
-static void list_pixel(const struct listing *listing, const int colour[3], struct open *open, int x,
-                       int y)
+static void list_pixel(struct row *row, const int colour[3], int x)
 {
-    const struct rf_light_grid *grid = listing->estimate->grid;
-    const int width = grid->photo->width;
-    float gain;
+    const struct rf_light_grid *grid = row->estimate.grid;
+    const float gain = gain_at(row, colour, x);
+    int cell;
 
-    if (open->run.count &&
-        (open->run.x + open->run.count != x || open->run.count == RF_HIGHLIGHT_RUN))
-        close_run(listing, open);
-    gain = gain_at(listing, colour, x, y);
+    if (row->run.count && (row->run.x + row->run.count != x || row->run.count == RF_HIGHLIGHT_RUN))
+        close_run(row);
     if (gain == 0)
         return;
-    if (!open->run.count) {
-        open->run.x = (uint16_t)x;
-        open->run.y = (uint16_t)y;
-        open->run.size =
-            (uint8_t)rf_clipped_size(grid, rf_grid_cell(x, width, grid->width),
-                                     rf_grid_cell(y, grid->photo->height, grid->height));
+    if (!row->run.count) {
+        row->run.x = (uint16_t)x;
+        row->run.y = (uint16_t)row->y;
     }
-    open->run.count++;
-    if (!listing->counts)
-        add_light(listing->estimate, colour, gain, x, y, open->light);
+    row->run.count++;
+    if (row->listing->counts)
+        return;
+    cell = rf_grid_cell(x, grid->photo->width, grid->width);
+    if (row->run.count == 1)
+        row->run.size = (uint8_t)rf_clipped_size(grid, cell, row->cell);
+    add_light(row, colour, gain, cell);
 }
 
-static void list_pixels(const struct listing *listing, struct open *open, int x, int y, int n)
+/* Lists those of the pixels from x to end - 1 that are highlights. */
+static void list_pixels(struct row *row, int x, int end)
 {
+    const struct rf_light_grid *grid = row->estimate.grid;
     uint8_t rgb[3 * RF_GRID_RUN];
-    const struct rf_grid_pixels pixels = rf_grid_pixels(listing->estimate->grid, x, y, n, rgb);
 
-    for (int i = 0; i < n; i++) {
-        int colour[3];
+    for (int n; x < end; x += n) {
+        struct rf_grid_pixels pixels;
 
-        rf_grid_colour(&pixels, i, colour);
-        list_pixel(listing, colour, open, x + i, y);
+        n = rf_smaller(end - x, RF_GRID_RUN);
+        if (!rf_grid_may_be_clipped(grid, x, row->y, n))
+            continue;
+        pixels = rf_grid_pixels(grid, x, row->y, n, rgb);
+        for (int i = 0; i < n; i++) {
+            int colour[3];
+
+            rf_grid_colour(&pixels, i, colour);
+            list_pixel(row, colour, x + i);
+        }
     }
+}
+
+/* Lists those of a row that lie where enough light was lost. */
+static void list_row(const struct listing *listing, int y)
+{
+    const struct rf_light_grid *grid = listing->estimate->grid;
+    const int *const first = grid->tables->first;
+    struct row row = {.listing = listing,
+                      .estimate = rf_estimate_row(listing->estimate, y),
+                      .y = y,
+                      .cell = rf_grid_cell(y, grid->photo->height, grid->height),
+                      .hue_of = -1};
+    uint8_t reaches[RF_GRID_SIDE];
+
+    if (!rf_estimate_reaches(&row.estimate, listing->least / RF_LIGHT_MAX, reaches))
+        return;
+    for (int x = 0, end; x < grid->width; x = end) {
+        for (end = x + 1; end < grid->width && reaches[end] == reaches[x];)
+            end++;
+        if (reaches[x]) /* from an even pixel on, as chroma may want it */
+            list_pixels(&row, first[x] & ~1, first[end]);
+    }
+    close_run(&row);
 }
 
 /* A part of the list. */
@@ -140,23 +174,13 @@ static void list_part(void *context, int item, int worker)
 {
     const struct listing *listing = context;
     const struct rf_light_grid *grid = listing->estimate->grid;
-    const int width = grid->photo->width;
     const int end = rf_smaller((item + 1) * RF_HIGHLIGHT_ROWS, grid->photo->height);
 
     (void)worker;
     if (!listing->counts && !listing->highlights->part[item].capacity)
         return;
-    for (int y = item * RF_HIGHLIGHT_ROWS; y < end && !rf_cancelled(grid->exec); y++) {
-        struct open open = {.run = {.count = 0}};
-
-        for (int x = 0; x < width; x += RF_GRID_RUN) {
-            const int n = rf_smaller(width - x, RF_GRID_RUN);
-
-            if (rf_grid_may_be_clipped(grid, x, y, n))
-                list_pixels(listing, &open, x, y, n);
-        }
-        close_run(listing, &open);
-    }
+    for (int y = item * RF_HIGHLIGHT_ROWS; y < end && !rf_cancelled(grid->exec); y++)
+        list_row(listing, y);
 }
 
 /* Counts the runs of each part. The darkest are left out, until there is room for the others. */

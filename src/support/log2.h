@@ -30,6 +30,23 @@ static inline double rf_log2(double x)
                (1 + u * (1.0 / 3 + u * (1.0 / 5 + u * (1.0 / 7 + u * (1.0 / 9 + u / 11)))));
 }
 
+/* log2(x) of normal x > 0 in single precision, good to 1e-6; loops of it become vectors. */
+static inline float rf_log2f(float x)
+{
+    uint32_t bits;
+    float exponent, m, t, u;
+
+    memcpy(&bits, &x, sizeof bits);
+    bits += 0x3f800000 - 0x3f400000; /* so that m is 0.75 to 1.5 */
+    exponent = (float)((int)(bits >> 23) - 127);
+    bits = (bits & 0x7fffff) + 0x3f400000;
+    memcpy(&m, &bits, sizeof m);
+    t = (m - 1) / (m + 1);
+    u = t * t;
+    return exponent +
+           2.885390082f * t * (1 + u * (1.0f / 3 + u * (1.0f / 5 + u * (1.0f / 7 + u / 9))));
+}
+
 /* 2^x of 0 <= x <= 64. */
 static inline double rf_exp2(double x)
 {

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 #include <string.h>
 
+#include "highlights/estimate.h"
 #include "highlights/highlights.h"
 #include "highlights/in_window.h"
 #include "support/places.h"
@@ -93,11 +94,46 @@ static void rows_of_wide_photos_are_stacked(void **state)
     free(bins);
 }
 
+/* Where a photo is looked at: no pixel that has lost as much lies elsewhere, however many pixels
+ * its cells are wide. */
+static void lost_light_is_found(void **state)
+{
+    enum { SIDE = 4096 };
+    static float lost[2 * RF_GRID_SIDE];
+    uint32_t seed = 7;
+    int found = 0;
+
+    (void)state;
+    for (int width = 1; width < SIDE; width += 1 + width / 9) {
+        const struct rf_photo_source photo = {.width = width, .height = 2};
+        const struct rf_light_grid grid = {
+            .photo = &photo, .width = rf_smaller(width, RF_GRID_SIDE), .height = 2};
+        const struct rf_estimate estimate = {&grid, lost, 1};
+        uint8_t reaches[RF_GRID_SIDE];
+
+        for (int i = 0; i < 2 * grid.width; i++)
+            lost[i] = noise(&seed) % 6 ? -1 : (float)(noise(&seed) % 3);
+        for (int y = 0; y < 2; y++) {
+            const struct rf_estimate_row row = rf_estimate_row(&estimate, y);
+            const bool any = rf_estimate_reaches(&row, 0.5f, reaches);
+
+            for (int x = 0; x < width; x++) {
+                if (rf_estimate_at(&row, x) < 0.5f)
+                    continue;
+                assert_true(any && reaches[rf_grid_cell(x, width, grid.width)]);
+                found++;
+            }
+        }
+    }
+    assert_true(found > SIDE);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_first_run_is_found),
         cmocka_unit_test(rows_of_wide_photos_are_stacked),
+        cmocka_unit_test(lost_light_is_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
