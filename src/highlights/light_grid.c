@@ -241,17 +241,18 @@ static void add_clipped(const struct rf_light_grid *grid, int x, int y, int n, i
         int soft = 0, grey = 0, plateau = 0, white = 0;
 
         for (; i < end; i++) {
-            int colour[3], most, own;
+            int colour[3], most, lowest, own;
 
             rf_grid_colour(&pixels, i, colour);
             most = greatest(colour);
             own = t->soft[most];
             if (own == 0)
                 continue;
+            lowest = least(colour);
             soft += own;
-            grey += 16 * own * t->linear[least(colour)] / t->linear[most];
+            grey += lowest == most ? 16 * own : 16 * own * t->linear[lowest] / t->linear[most];
             plateau += t->plateau[most];
-            white += t->white[least(colour)];
+            white += t->white[lowest];
         }
         if (soft == 0)
             continue;
