@@ -20,30 +20,53 @@ enum {
     FAR = 3,
 };
 
+enum {
+    RUN = 32, /* pixels that are looked at together: most hold nothing bright at a jump */
+    SIDE = 2 * AROUND + 1,
+    LANES = 16, /* columns that are looked at to count in SIDE of them */
+    COLUMNS = RUN + LANES,
+};
+
+/* A run of pixels from x0 on, from column AROUND on, with those around it: the light of the
+ * brightest channel, which is DARK outside of the window, and disparities by signed16(). */
+struct run {
+    int x0;
+    int16_t light[SIDE][COLUMNS];
+    int16_t disparity[SIDE][COLUMNS];
+};
+
+/* Disparity as a signed number: baseline x86 has no unsigned extremes of 16 bits. */
+static inline int16_t signed16(int disparity)
+{
+    return (int16_t)(disparity - 32768);
+}
+
 static bool is_bright(const struct rf_silhouette_window *w, ptrdiff_t at)
 {
     return rf_brightest_at(&w->light, at) >= LEVEL;
 }
+
+/* The pixels two away from one. */
+static const int8_t ring[16][2] = {{-2, -2}, {-1, -2}, {0, -2}, {1, -2}, {2, -2}, {-2, -1},
+                                   {2, -1},  {-2, 0},  {2, 0},  {-2, 1}, {2, 1},  {-2, 2},
+                                   {-1, 2},  {0, 2},   {1, 2},  {2, 2}};
 
 /* Whether pixel (x, y) is a mixture with the bright, nearer pixel at n. */
 static bool is_mixture(const struct rf_silhouette_window *w, int x, int y, ptrdiff_t n)
 {
     const ptrdiff_t p = y * w->light.stride + x;
     const int middle = (w->disparity.at[p] + w->disparity.at[n]) / 2;
-    int64_t sum[3] = {0, 0, 0}, along = 0, contrast = 0, own = 0;
-    int count = 0;
+    int64_t along = 0, contrast = 0, own = 0;
+    int sum[3] = {0, 0, 0}, count = 0;
 
-    for (int j = -2; j <= 2; j++) {
-        for (int i = -2; i <= 2; i++) {
-            const ptrdiff_t q = rf_within(y + j, w->view->height - 1) * w->light.stride +
-                                rf_within(x + i, w->view->width - 1);
+    for (int k = 0; k < 16; k++) {
+        const ptrdiff_t q = rf_within(y + ring[k][1], w->view->height - 1) * w->light.stride +
+                            rf_within(x + ring[k][0], w->view->width - 1);
+        const int behind = w->disparity.at[q] <= middle;
 
-            if ((i > -2 && i < 2 && j > -2 && j < 2) || w->disparity.at[q] > middle)
-                continue;
-            count++;
-            for (int c = 0; c < 3; c++)
-                sum[c] += w->light.channel[c][q];
-        }
+        count += behind;
+        for (int c = 0; c < 3; c++)
+            sum[c] += behind * w->light.channel[c][q];
     }
     if (!count)
         return false;
@@ -93,33 +116,43 @@ static bool has_far(const struct rf_silhouette_window *w, struct rf_rect in, int
 }
 
 /* Whether of the pixels at that depth at least half as many are dark as are bright, and some bright
- * ones are farther. */
-static bool may_belong_to_background(const struct rf_silhouette_window *w, struct rf_rect in,
-                                     int own)
+ * ones are farther; pixel `at` of the run has it. */
+static bool may_belong_to_background(const struct run *run, int at, int own)
 {
-    int dark = 0, bright = 0, far = 0;
+    const int16_t least = signed16(own < JUMP ? 0 : own - JUMP);
+    const int16_t most = signed16(own + JUMP < UINT16_MAX ? own + JUMP : UINT16_MAX);
+    int16_t dark[LANES] = {0}, bright[LANES] = {0}, farther[LANES] = {0};
+    int darks = 0, brights = 0, fars = 0;
 
-    for (int y = in.y0; y < in.y1; y++)
-        for (int x = in.x0; x < in.x1; x++) {
-            const ptrdiff_t q = y * w->light.stride + x;
-            const int away = w->disparity.at[q] - own, light = rf_brightest_at(&w->light, q);
+    for (int j = 0; j < SIDE; j++) {
+        const int16_t *const light = run->light[j] + at, *const d = run->disparity[j] + at;
 
-            dark += light < DARK && abs(away) <= JUMP;
-            bright += light >= LEVEL && abs(away) <= JUMP;
-            far += light >= LEVEL && away < -JUMP;
+        for (int i = 0; i < LANES; i++) {
+            const int alike = (d[i] >= least) & (d[i] <= most);
+
+            dark[i] = (int16_t)(dark[i] + ((light[i] < DARK) & alike));
+            bright[i] = (int16_t)(bright[i] + ((light[i] >= LEVEL) & alike));
+            farther[i] = (int16_t)(farther[i] + ((light[i] >= LEVEL) & (d[i] < least)));
         }
-    return far >= FAR && 2 * dark >= bright;
+    }
+    for (int i = 0; i < SIDE; i++) {
+        darks += dark[i];
+        brights += bright[i];
+        fars += farther[i];
+    }
+    return fars >= FAR && 2 * darks >= brights;
 }
 
 /* Whether the bright pixel (x, y) belongs to a farther surface, whose disparity it gets. */
-static bool belongs_to_background(const struct rf_silhouette_window *w, int x, int y,
-                                  uint16_t *disparity)
+static bool belongs_to_background(const struct rf_silhouette_window *w, const struct run *run,
+                                  int x, int y, uint16_t *disparity)
 {
     const int own = w->disparity.at[y * w->light.stride + x];
     const struct rf_rect in = rf_around(w->view, x, y, AROUND);
     int far = 0, nearest = 0;
 
-    if (!has_far(w, rf_around(w->view, x, y, 1), own) || !may_belong_to_background(w, in, own))
+    if (!has_far(w, rf_around(w->view, x, y, 1), own) ||
+        !may_belong_to_background(run, x - run->x0, own))
         return false;
     for (int py = in.y0; py < in.y1; py++)
         for (int px = in.x0; px < in.x1; px++) {
@@ -161,14 +194,14 @@ static bool has_other(const struct rf_silhouette_window *w, int x, int y, ptrdif
 
 /* Adds the silhouette around a bright pixel beside something much farther: the pixels of which no
  * other bright pixel comes first. */
-static void find_around(const struct rf_silhouette_window *w, int x, int y,
+static void find_around(const struct rf_silhouette_window *w, const struct run *run, int x, int y,
                         struct rf_silhouettes *list)
 {
     const ptrdiff_t n = y * w->light.stride + x;
     const struct rf_rect in = rf_around(w->view, x, y, 1);
     uint16_t background;
 
-    if (belongs_to_background(w, x, y, &background)) {
+    if (belongs_to_background(w, run, x, y, &background)) {
         if (!has_other(w, x, y, n)) /* else it is a silhouette itself */
             add(w, list, x, y, background);
         return;
@@ -179,20 +212,17 @@ static void find_around(const struct rf_silhouette_window *w, int x, int y,
                 add(w, list, px, py, w->disparity.at[n]);
 }
 
-enum { RUN = 32 }; /* most runs of pixels hold nothing bright at a jump */
-
-/* Copies disparities of a row in a run, and one on each side. They are made signed, as baseline x86
- * has signed 16-bit extremes only. */
+/* Copies disparities of a row in a run, and one on each side. */
 static void copy_row(const struct rf_silhouette_window *w, int x0, int y, int16_t row[RUN + 2])
 {
     const uint16_t *d = w->disparity.at + rf_within(y, w->view->height - 1) * w->light.stride;
 
     if (x0 > 0 && x0 + RUN < w->view->width)
         for (int i = 0; i < RUN + 2; i++)
-            row[i] = (int16_t)(d[x0 - 1 + i] ^ 0x8000);
+            row[i] = signed16(d[x0 - 1 + i]);
     else
         for (int i = 0; i < RUN + 2; i++)
-            row[i] = (int16_t)(d[rf_within(x0 - 1 + i, w->view->width - 1)] ^ 0x8000);
+            row[i] = signed16(d[rf_within(x0 - 1 + i, w->view->width - 1)]);
 }
 
 static inline int16_t min16(int16_t a, int16_t b)
@@ -224,10 +254,43 @@ static uint32_t find_jumps(const struct rf_silhouette_window *w, int x0, int y)
     return bits;
 }
 
+static int16_t max16(int16_t a, int16_t b)
+{
+    return a > b ? a : b;
+}
+
+/* Copies a run and what is around it. */
+static void copy_run(const struct rf_silhouette_window *w, int x0, int y, struct run *run)
+{
+    const int from = x0 < AROUND ? 0 : x0 - AROUND;
+    const int end = x0 + RUN + AROUND < w->view->width ? x0 + RUN + AROUND : w->view->width;
+    const int first = from - (x0 - AROUND);
+
+    run->x0 = x0;
+    for (int j = 0; j < SIDE; j++) {
+        const int row = y + j - AROUND;
+        const ptrdiff_t at = row * w->light.stride + from;
+        const uint16_t *const r = w->light.channel[0] + at, *const g = w->light.channel[1] + at;
+        const uint16_t *const b = w->light.channel[2] + at, *const d = w->disparity.at + at;
+
+        for (int i = 0; i < COLUMNS; i++) {
+            run->light[j][i] = DARK;
+            run->disparity[j][i] = 0;
+        }
+        if (row < 0 || row >= w->view->height)
+            continue;
+        for (int i = 0; i < end - from; i++) {
+            run->light[j][first + i] = max16(max16((int16_t)r[i], (int16_t)g[i]), (int16_t)b[i]);
+            run->disparity[j][first + i] = signed16(d[i]);
+        }
+    }
+}
+
 void rf_find_silhouettes(const struct rf_executor *exec, const struct rf_silhouette_window *w,
                          struct rf_rect part, struct rf_silhouettes *silhouettes)
 {
     uint16_t *const *const light = w->light.channel;
+    struct run run;
 
     for (int y = part.y0; y < part.y1; y++) {
         const ptrdiff_t row = y * w->light.stride;
@@ -242,13 +305,16 @@ void rf_find_silhouettes(const struct rf_executor *exec, const struct rf_silhoue
             if (exec->kernels->brightest(light[0] + at, light[1] + at, light[2] + at, n) < LEVEL)
                 continue;
             bits = find_jumps(w, x0, y) & (UINT32_MAX >> (RUN - n));
-            if (bits && rf_cancelled(exec))
+            if (!bits)
+                continue;
+            if (rf_cancelled(exec))
                 return;
+            copy_run(w, x0, y, &run);
             for (; bits; bits &= bits - 1) {
                 const int x = x0 + __builtin_ctz(bits);
 
                 if (is_bright(w, row + x))
-                    find_around(w, x, y, silhouettes);
+                    find_around(w, &run, x, y, silhouettes);
             }
         }
     }
