@@ -23,13 +23,8 @@ struct settings {
 
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "What is rendered"},
-    {.kind = OPTION_NUMBERS,
-     .name = "--size",
-     .argument = "WxH",
-     .offset = offsetof(struct settings, size),
-     .least = 1,
-     .greatest = REFOCUS_MAX_SIDE,
-     .count = 2,
+    {OPTION(OPTION_NUMBERS, "--size", "WxH", struct settings, size), .least = 1,
+     .greatest = REFOCUS_MAX_SIDE, .count = 2,
      .brief = "of the made-up scene without PHOTO; default 720x540",
      .help = "size of the made-up scene that is taken without PHOTO, default 720x540"},
     DEPTH_FILE_OPTION(struct settings, depth),
@@ -39,22 +34,16 @@ static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "How"},
     METHOD_OPTION(struct settings, engine),
     METHOD_OPTIONS(struct settings, engine, "standard"),
-    {.kind = OPTION_FLAG,
-     .name = "--rays",
-     .offset = offsetof(struct settings, statistics),
+    {OPTION(OPTION_FLAG, "--rays", NULL, struct settings, statistics),
      .brief = "what the rays of the mask hit, in place of times",
      .help = "without a number: no times, but what the rays of the mask hit: how many "
              "find a true intersection after 1, 2, ... tests of the search"},
-    {.kind = OPTION_FLAG,
-     .name = "--frames",
-     .offset = offsetof(struct settings, frames),
+    {OPTION(OPTION_FLAG, "--frames", NULL, struct settings, frames),
      .brief = "a table over blur, quality, threads and sizes",
      .help = "a table over blur, quality, threads and, without PHOTO or --size, sizes; "
              "in turns with a memcpy of the frame and a plain box blur of the same "
              "radius"},
-    {.kind = OPTION_FLAG,
-     .name = "--kernels",
-     .offset = offsetof(struct settings, kernels),
+    {OPTION(OPTION_FLAG, "--kernels", NULL, struct settings, kernels),
      .brief = "the loops that frames are made of",
      .help = "no frames, but the loops that they are made of: nanoseconds for a pixel "
              "or a ray sample, and those of plain C"},

@@ -25,63 +25,38 @@ struct stack_settings {
 
 /* Rows for tables of options. */
 #define STACK_OPTIONS(type, member)                                                                \
-    {.kind = OPTION_FLAG,                                                                          \
-     .name = "--focal-stack",                                                                      \
-     .offset = offsetof(type, member.on),                                                          \
+    {OPTION(OPTION_FLAG, "--focal-stack", NULL, type, member.on),                                  \
      .brief = "the FILEs show one view at 2 to 32 focus distances, or apertures",                  \
      .help =                                                                                       \
          "the FILEs show one view at 2 to 32 focus distances, one after the other, or at several " \
          "apertures: depth, and a photo that is in focus everywhere, are made of them"},           \
-        {.kind = OPTION_TEXT,                                                                      \
-         .name = "--positions",                                                                    \
-         .argument = "LIST",                                                                       \
-         .offset = offsetof(type, member.positions),                                               \
+        {OPTION(OPTION_TEXT, "--positions", "LIST", type, member.positions),                       \
          .help =                                                                                   \
              "focus of each frame in dioptres, 1 / metres, with commas, or a .json file with a "   \
              "list of them; then any order will do, and depth is in metres; default: the subject " \
              "distances of EXIF, else equally far apart",                                          \
          .needs = "--focal-stack"},                                                                \
-        {.kind = OPTION_INTEGER,                                                                   \
-         .name = "--reference",                                                                    \
-         .argument = "N",                                                                          \
-         .offset = offsetof(type, member.reference),                                               \
-         .least = 1,                                                                               \
+        {OPTION(OPTION_INTEGER, "--reference", "N", type, member.reference), .least = 1,           \
          .greatest = REFOCUS_STACK_MOST_FRAMES,                                                    \
          .help = "the result is seen as in the N-th frame; default: the one in the middle",        \
          .needs = "--focal-stack"},                                                                \
-        {.kind = OPTION_CHOICE,                                                                    \
-         .name = "--align",                                                                        \
-         .argument = "HOW",                                                                        \
-         .offset = offsetof(type, member.align),                                                   \
-         .choice = stack_align_name,                                                               \
-         .summary = stack_align_summary,                                                           \
-         .help = "how frames are laid on each other",                                              \
+        {OPTION(OPTION_CHOICE, "--align", "HOW", type, member.align), .choice = stack_align_name,  \
+         .summary = stack_align_summary, .help = "how frames are laid on each other",              \
          .needs = "--focal-stack"},                                                                \
-        {.kind = OPTION_CHOICE,                                                                    \
-         .name = "--order",                                                                        \
-         .argument = "HOW",                                                                        \
-         .offset = offsetof(type, member.order),                                                   \
-         .choice = stack_order_name,                                                               \
-         .summary = stack_order_summary,                                                           \
-         .help = "order of focus of frames without positions",                                     \
+        {OPTION(OPTION_CHOICE, "--order", "HOW", type, member.order), .choice = stack_order_name,  \
+         .summary = stack_order_summary, .help = "order of focus of frames without positions",     \
          .needs = "--focal-stack"},                                                                \
-        {.kind = OPTION_CHOICE,                                                                    \
-         .name = "--in-focus",                                                                     \
-         .argument = "WHICH",                                                                      \
-         .offset = offsetof(type, member.in_focus),                                                \
-         .choice = stack_in_focus_name,                                                            \
-         .summary = stack_in_focus_summary,                                                        \
+        {OPTION(OPTION_CHOICE, "--in-focus", "WHICH", type, member.in_focus),                      \
+         .choice = stack_in_focus_name, .summary = stack_in_focus_summary,                         \
          .help = "what is in focus in frames of one focus and several apertures, whose f-numbers " \
                  "EXIF tells; of two without, the sharper one has the smaller aperture, and is "   \
                  "the photo",                                                                      \
          .needs = "--focal-stack"},                                                                \
     {                                                                                              \
-        .kind = OPTION_TEXT, .name = "--photo", .argument = "FILE",                                \
-        .offset = offsetof(type, member.photo),                                                    \
-        .help =                                                                                    \
-            "write the photo that is in focus everywhere as well: " OUTPUT_PICTURES "; a .jpg as " \
-            "OUT is that photo with the depth inside",                                             \
-        .needs = "--focal-stack"                                                                   \
+        OPTION(OPTION_TEXT, "--photo", "FILE", type, member.photo),                                \
+            .help = "write the photo that is in focus everywhere as well: " OUTPUT_PICTURES        \
+                    "; a .jpg as OUT is that photo with the depth inside",                         \
+            .needs = "--focal-stack"                                                               \
     }
 
 /* Words of --align and what they mean; NULL ends them. */

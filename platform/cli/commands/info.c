@@ -19,9 +19,7 @@ struct settings {
 };
 
 static const struct option options[] = {
-    {.kind = OPTION_FLAG,
-     .name = "--json",
-     .offset = offsetof(struct settings, json),
+    {OPTION(OPTION_FLAG, "--json", NULL, struct settings, json),
      .brief = "print it as one JSON object",
      .help = "print it as one JSON object; what is not known is null"},
     DEPTH_FILE_OPTION(struct settings, depth),

@@ -21,9 +21,8 @@ struct settings {
 
 #define NUMBER(name_, argument_, field_, least_, greatest_, brief_, help_)                         \
     {                                                                                              \
-        .kind = OPTION_NUMBER, .name = name_, .argument = argument_,                               \
-        .offset = offsetof(struct settings, field_), .least = least_, .greatest = greatest_,       \
-        .brief = brief_, .help = help_                                                             \
+        OPTION(OPTION_NUMBER, name_, argument_, struct settings, field_),                          \
+            .least = least_, .greatest = greatest_, .brief = brief_, .help = help_                 \
     }
 
 static const struct option options[] = {
@@ -42,31 +41,16 @@ static const struct option options[] = {
            "blur radius at the beginning; default --blur"),
     NUMBER("--blur-to", "K", blur_to, 0, REFOCUS_MAX_BLUR_RADIUS, NULL,
            "and at the end; default --blur"),
-    {.kind = OPTION_TEXT,
-     .name = "--keys",
-     .argument = "FILE",
-     .offset = offsetof(struct settings, keys),
+    {OPTION(OPTION_TEXT, "--keys", "FILE", struct settings, keys),
      .help = "JSON list of key frames in place of these; see below"},
     NUMBER("--seconds", "S", seconds, 0.01, 3600, "how long it takes; default 2",
            "how long it takes; default 2"),
-    {.kind = OPTION_NUMBER,
-     .name = "--fps",
-     .argument = "N",
-     .offset = offsetof(struct settings, fps),
-     .least = 1,
-     .greatest = 240,
-     .fraction = true,
-     .brief = "frames a second; default 25",
+    {OPTION(OPTION_NUMBER, "--fps", "N", struct settings, fps), .least = 1, .greatest = 240,
+     .fraction = true, .brief = "frames a second; default 25",
      .help = "frames a second, also as 30000/1001; default 25"},
-    {.kind = OPTION_CHOICE,
-     .name = "--ease",
-     .argument = "HOW",
-     .offset = offsetof(struct settings, ease),
-     .choice = ease_name,
+    {OPTION(OPTION_CHOICE, "--ease", "HOW", struct settings, ease), .choice = ease_name,
      .help = "how it goes from one to the other; default smooth"},
-    {.kind = OPTION_FLAG,
-     .name = "--back",
-     .offset = offsetof(struct settings, back),
+    {OPTION(OPTION_FLAG, "--back", NULL, struct settings, back),
      .help = "and the same way back, so that it can be repeated"},
     NUMBER("--wiggle", "PIXELS", wiggle, 0, STEREO_MOST, NULL,
            "in place of a pull: the eye swings sideways, and what is not in focus "

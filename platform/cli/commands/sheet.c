@@ -20,8 +20,8 @@ struct settings {
 
 #define LIST(name_, argument_, field_, brief_, help_)                                              \
     {                                                                                              \
-        .kind = OPTION_TEXT, .name = name_, .argument = argument_,                                 \
-        .offset = offsetof(struct settings, sheet.field_), .brief = brief_, .help = help_          \
+        OPTION(OPTION_TEXT, name_, argument_, struct settings, sheet.field_), .brief = brief_,     \
+                                                                              .help = help_        \
     }
 
 static const struct option options[] = {
@@ -31,12 +31,8 @@ static const struct option options[] = {
     BEHIND_OPTIONS(struct settings, shot.behind),
     LIGHT_OPTIONS(struct settings, shot.depth),
     {.kind = OPTION_HEADING, .help = "The sheet"},
-    {.kind = OPTION_CHOICE,
-     .name = "--kind",
-     .argument = "WHAT",
-     .offset = offsetof(struct settings, sheet.kind),
-     .choice = sheet_kind_name,
-     .summary = sheet_kind_summary,
+    {OPTION(OPTION_CHOICE, "--kind", "WHAT", struct settings, sheet.kind),
+     .choice = sheet_kind_name, .summary = sheet_kind_summary,
      .brief = "what differs from cell to cell",
      .help = "what differs from cell to cell; default focus"},
     LIST("--focuses", "D,D...", focuses, "disparities in focus",
@@ -49,20 +45,11 @@ static const struct option options[] = {
          "shapes as --aperture takes them; default a disc, polygons, a heart and a "
          "star"),
     LIST("--sigmas", "S,S...", sigmas, NULL, "as --sigma; default off,400,100,30"),
-    {.kind = OPTION_INTEGER,
-     .name = "--cell-width",
-     .argument = "PIXELS",
-     .offset = offsetof(struct settings, sheet.cell_width),
-     .least = 8,
-     .greatest = 8192,
+    {OPTION(OPTION_INTEGER, "--cell-width", "PIXELS", struct settings, sheet.cell_width),
+     .least = 8, .greatest = 8192,
      .help = "width of a cell, at most that of the photo; default 320"},
-    {.kind = OPTION_NUMBERS,
-     .name = "--region",
-     .argument = "X,Y,W,H",
-     .offset = offsetof(struct settings, region),
-     .least = 0,
-     .greatest = REFOCUS_MAX_SIDE,
-     .count = 4,
+    {OPTION(OPTION_NUMBERS, "--region", "X,Y,W,H", struct settings, region), .least = 0,
+     .greatest = REFOCUS_MAX_SIDE, .count = 4,
      .help = "cells show only this part of the picture, pixels"},
     SHOT_LENS_OPTIONS(struct settings, shot),
     SHOT_METHOD_OPTIONS(struct settings, shot),

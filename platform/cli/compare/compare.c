@@ -23,10 +23,7 @@ struct settings {
 
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Files"},
-    {.kind = OPTION_TEXT,
-     .name = "--reference",
-     .argument = "GT",
-     .offset = offsetof(struct settings, reference),
+    {OPTION(OPTION_TEXT, "--reference", "GT", struct settings, reference),
      .brief = "the picture as it should be, of the photo's size",
      .help = "the picture as it should be, of the photo's size"},
     OUTPUT_OPTION(struct settings, output,
@@ -40,19 +37,12 @@ static const struct option options[] = {
     MATTE_OPTION(struct settings, depth),
     LIGHT_OPTIONS(struct settings, depth),
     {.kind = OPTION_HEADING, .help = "What is compared"},
-    {.kind = OPTION_TEXT,
-     .name = "--methods",
-     .argument = "NAME[:OPTION[=VALUE]...],...",
-     .offset = offsetof(struct settings, methods),
+    {OPTION(OPTION_TEXT, "--methods", "NAME[:OPTION[=VALUE]...],...", struct settings, methods),
      .brief = "such as sweep,search:rays=full:iterations=1",
      .help = "methods of 'refocus render', with commas, each with options of its own "
              "such as search:rays=full:iterations=1 or jittered:cell=4; default: all "
              "that know the aperture"},
-    {.kind = OPTION_NUMBER,
-     .name = "--border",
-     .argument = "N",
-     .offset = offsetof(struct settings, border),
-     .least = 0,
+    {OPTION(OPTION_NUMBER, "--border", "N", struct settings, border), .least = 0,
      .greatest = REFOCUS_MAX_SIDE,
      .help = "pixels at each side that do not count, less than half the picture; default the "
              "blur radius"},

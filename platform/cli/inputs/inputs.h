@@ -12,33 +12,25 @@ const char *gain_map_summary(uint32_t index);
 /* Rows for tables of options, where the settings have a member of struct depth_settings. */
 #define DEPTH_FILE_OPTION(type, member)                                                            \
     {                                                                                              \
-        .kind = OPTION_TEXT, .name = "--depth", .argument = "FILE",                                \
-        .offset = offsetof(type, member.file),                                                     \
-        .brief = "depth map; without it the one that the photo carries",                           \
-        .help = "depth map: PNG, PGM or JPEG of 8 or 16 bits, PFM, NumPy's .npy or .npz, or a "    \
+        OPTION(OPTION_TEXT, "--depth", "FILE", type, member.file),                                 \
+            .brief = "depth map; without it the one that the photo carries",                       \
+            .help =                                                                                \
+                "depth map: PNG, PGM or JPEG of 8 or 16 bits, PFM, NumPy's .npy or .npz, or a "    \
                 "photo that "                                                                      \
                 "carries one; without it the depth that the photo itself carries"                  \
     }
 #define DEPTH_RANGE_OPTIONS(type, member)                                                          \
-    {.kind = OPTION_NUMBER,                                                                        \
-     .name = "--near",                                                                             \
-     .argument = "M",                                                                              \
-     .offset = offsetof(type, member.near_m),                                                      \
-     .least = 0,                                                                                   \
-     .above = true,                                                                                \
+    {OPTION(OPTION_NUMBER, "--near", "M", type, member.near_m), .least = 0, .above = true,         \
      .greatest = 1e9,                                                                              \
      .help = "metres of disparity 1; default: what the file says, else what is "                   \
              "measured in distances, without single samples far nearer than all others"},          \
     {                                                                                              \
-        .kind = OPTION_NUMBER, .name = "--far", .argument = "M",                                   \
-        .offset = offsetof(type, member.far_m), .least = 0, .above = true, .greatest = INFINITY,   \
-        .help = "metres of disparity 0, also 'inf'; default as for --near"                         \
+        OPTION(OPTION_NUMBER, "--far", "M", type, member.far_m),                                   \
+            .least = 0, .above = true, .greatest = INFINITY,                                       \
+            .help = "metres of disparity 0, also 'inf'; default as for --near"                     \
     }
 #define DEPTH_UNIT_OPTIONS(type, member)                                                           \
-    {.kind = OPTION_TEXT,                                                                          \
-     .name = "--depth-unit",                                                                       \
-     .argument = "U",                                                                              \
-     .offset = offsetof(type, member.unit),                                                        \
+    {OPTION(OPTION_TEXT, "--depth-unit", "U", type, member.unit),                                  \
      .brief = "disparity (bright = near), inverse, mm, m, or 5000/m",                              \
      .help = "what its samples are: disparity (bright = near), inverse (dark = "                   \
              "near), mm, m, or a number per metre such as 5000/m; default: what the "              \
@@ -46,10 +38,7 @@ const char *gain_map_summary(uint32_t index);
         DEPTH_RANGE_OPTIONS(type, member)
 #define DEPTH_WAYS_OPTIONS(type, member)                                                           \
     ESTIMATE_OPTIONS(type, member.model, member.network, NULL),                                    \
-        {.kind = OPTION_TEXT,                                                                      \
-         .name = "--stereo",                                                                       \
-         .argument = "RIGHT",                                                                      \
-         .offset = offsetof(type, member.right),                                                   \
+        {OPTION(OPTION_TEXT, "--stereo", "RIGHT", type, member.right),                             \
          .help = "depth of the photo and the right picture of its stereo pair"},                   \
         STEREO_FILE_OPTION(type, member.stereo, NULL),                                             \
         {MATCH_OPTION(type, member.stereo, NULL), .needs = "--stereo,--stereo-file"},              \
@@ -58,60 +47,54 @@ const char *gain_map_summary(uint32_t index);
     }
 #define DEPTH_EDGES_OPTION(type, member)                                                           \
     {                                                                                              \
-        .kind = OPTION_CHOICE, .name = "--depth-edges", .argument = "HOW",                         \
-        .offset = offsetof(type, member.edges), .choice = edges_name, .summary = edges_summary,    \
-        .help = "the edges of the depth map"                                                       \
+        OPTION(OPTION_CHOICE, "--depth-edges", "HOW", type, member.edges),                         \
+            .choice = edges_name, .summary = edges_summary, .help = "the edges of the depth map"   \
     }
 #define ORIENT_DEPTH_OPTION(type, member)                                                          \
     {                                                                                              \
-        .kind = OPTION_CHOICE, .name = "--orient-depth", .argument = "DEGREES",                    \
-        .offset = offsetof(type, member.orient), .choice = orient_name, .summary = orient_summary, \
-        .help = "turn the depth map clockwise; default auto"                                       \
+        OPTION(OPTION_CHOICE, "--orient-depth", "DEGREES", type, member.orient),                   \
+            .choice = orient_name, .summary = orient_summary,                                      \
+            .help = "turn the depth map clockwise; default auto"                                   \
     }
 #define UPSAMPLE_OPTION(type, member)                                                              \
     {                                                                                              \
-        .kind = OPTION_CHOICE, .name = "--upsample", .argument = "HOW",                            \
-        .offset = offsetof(type, member.upsample), .choice = upsample_name,                        \
-        .help = "how a map of another size gets the photo's, before --depth-edges: by the "        \
-                "library (default), or by filters of OpenCV, the last three by its module "        \
-                "refocus-ximgproc"                                                                 \
+        OPTION(OPTION_CHOICE, "--upsample", "HOW", type, member.upsample),                         \
+            .choice = upsample_name,                                                               \
+            .help = "how a map of another size gets the photo's, before --depth-edges: by the "    \
+                    "library (default), or by filters of OpenCV, the last three by its module "    \
+                    "refocus-ximgproc"                                                             \
     }
 #define LIGHT_OPTIONS(type, member)                                                                \
-    {.kind = OPTION_CHOICE,                                                                        \
-     .name = "--gain-map",                                                                         \
-     .argument = "HOW",                                                                            \
-     .offset = offsetof(type, member.gain_map),                                                    \
-     .choice = gain_map_name,                                                                      \
+    {OPTION(OPTION_CHOICE, "--gain-map", "HOW", type, member.gain_map), .choice = gain_map_name,   \
      .summary = gain_map_summary,                                                                  \
      .help = "the gain map of a photo (Ultra HDR, ISO 21496-1, Apple); default use"},              \
     {                                                                                              \
-        .kind = OPTION_FLAG, .name = "--no-dither", .offset = offsetof(type, member.no_dither),    \
-        .help = "photos of more than 8 bits, or with a gain map: 8 bits of the result are rounded" \
+        OPTION(OPTION_FLAG, "--no-dither", NULL, type, member.no_dither),                          \
+            .help =                                                                                \
+                "photos of more than 8 bits, or with a gain map: 8 bits of the result are rounded" \
     }
 #define MATTE_OPTION(type, member)                                                                 \
     {                                                                                              \
-        .kind = OPTION_TEXT, .name = "--matte", .argument = "FILE|none",                           \
-        .offset = offsetof(type, member.matte),                                                    \
-        .help = "how much of each pixel is subject: a grey PNG, PGM or JPEG of 8 or 16 bits, "     \
-                "white = subject; its edges and hair are drawn by it (sweep); default: the "       \
-                "portrait matte "                                                                  \
-                "of the photo, if it has one; none: no matte"                                      \
+        OPTION(OPTION_TEXT, "--matte", "FILE|none", type, member.matte),                           \
+            .help = "how much of each pixel is subject: a grey PNG, PGM or JPEG of 8 or 16 bits, " \
+                    "white = subject; its edges and hair are drawn by it (sweep); default: the "   \
+                    "portrait matte "                                                              \
+                    "of the photo, if it has one; none: no matte"                                  \
     }
 #define INVALID_OPTION(type, member)                                                               \
     {                                                                                              \
-        .kind = OPTION_TEXT, .name = "--invalid", .argument = "CODES",                             \
-        .offset = offsetof(type, member.invalid),                                                  \
-        .help =                                                                                    \
-            "samples that hold no value, with commas: zero, max (255 or 65535), "                  \
-            "2047; NaN and infinity never do, nor in distances zero, and 65535 if less than a "    \
-            "hundredth has it"                                                                     \
+        OPTION(OPTION_TEXT, "--invalid", "CODES", type, member.invalid),                           \
+            .help = "samples that hold no value, with commas: zero, max (255 or 65535), "          \
+                    "2047; NaN and infinity never do, nor in distances zero, and 65535 if less "   \
+                    "than a "                                                                      \
+                    "hundredth has it"                                                             \
     }
 #define REPAIR_OPTIONS(type, member)                                                               \
     INVALID_OPTION(type, member),                                                                  \
     {                                                                                              \
-        .kind = OPTION_INTEGER, .name = "--speckle", .argument = "N",                              \
-        .offset = offsetof(type, member.speckle), .least = 0, .greatest = REFOCUS_MAX_SPECKLE,     \
-        .help = "fill patches of fewer than N samples like holes; default 0: none"                 \
+        OPTION(OPTION_INTEGER, "--speckle", "N", type, member.speckle),                            \
+            .least = 0, .greatest = REFOCUS_MAX_SPECKLE,                                           \
+            .help = "fill patches of fewer than N samples like holes; default 0: none"             \
     }
 
 /* These return exit codes and print why it is not EXIT_DONE. */

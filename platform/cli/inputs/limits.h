@@ -17,32 +17,20 @@ struct limit_settings {
     }
 /* Rows for tables of options, where the settings have a member of the type above. */
 #define LIMIT_OPTIONS(type, member)                                                                \
-    {.kind = OPTION_INTEGER,                                                                       \
-     .elsewhere = true,                                                                            \
-     .name = "--max-side",                                                                         \
-     .argument = "N",                                                                              \
-     .offset = offsetof(type, member.side),                                                        \
-     .least = 1,                                                                                   \
+    {OPTION(OPTION_INTEGER, "--max-side", "N", type, member.side), .elsewhere = true, .least = 1,  \
      .greatest = REFOCUS_MAX_SIDE,                                                                 \
      .help = "refuse picture files with more pixels a side; default 32768"},                       \
-        {.kind = OPTION_INTEGER,                                                                   \
-         .elsewhere = true,                                                                        \
-         .name = "--max-pixels",                                                                   \
-         .argument = "N",                                                                          \
-         .offset = offsetof(type, member.pixels),                                                  \
-         .least = 1,                                                                               \
-         .greatest = 4294836225.0, /* REFOCUS_MAX_SIDE squared */                                  \
+        {OPTION(OPTION_INTEGER, "--max-pixels", "N", type, member.pixels), .elsewhere = true,      \
+         .least = 1, .greatest = 4294836225.0, /* REFOCUS_MAX_SIDE squared */                      \
          .help = "refuse those with more pixels; default 201326592, 16384 x 12288"},               \
-        {.kind = OPTION_FLAG,                                                                      \
-         .elsewhere = true,                                                                        \
-         .name = "--raw-preview",                                                                  \
-         .offset = offsetof(type, member.raw_preview),                                             \
+        {OPTION(OPTION_FLAG, "--raw-preview", NULL, type, member.raw_preview), .elsewhere = true,  \
          .help = "of a camera raw its preview, the JPEG in it, instead of the photo that libraw "  \
                  "develops"},                                                                      \
     {                                                                                              \
-        .kind = OPTION_INTEGER, .elsewhere = true, .name = "--max-memory", .argument = "MIB",      \
-        .offset = offsetof(type, member.mebibytes), .least = 1, .greatest = 1e9,                   \
-        .help = "refuse those that take more memory to read, in MiB; default half the machine's"   \
+        OPTION(OPTION_INTEGER, "--max-memory", "MIB", type, member.mebibytes),                     \
+            .elsewhere = true, .least = 1, .greatest = 1e9,                                        \
+            .help =                                                                                \
+                "refuse those that take more memory to read, in MiB; default half the machine's"   \
     }
 
 /* Settle the limits, before anything is read. */

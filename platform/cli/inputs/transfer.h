@@ -10,19 +10,15 @@ const char *transfer_summary(uint32_t index);
 
 /* Rows of a table of options; `member` is a struct depth_settings. */
 #define TRANSFER_OPTIONS(type, member)                                                             \
-    {.kind = OPTION_CHOICE,                                                                        \
-     .name = "--transfer",                                                                         \
-     .argument = "CURVE",                                                                          \
-     .offset = offsetof(type, member.transfer),                                                    \
-     .choice = transfer_name,                                                                      \
+    {OPTION(OPTION_CHOICE, "--transfer", "CURVE", type, member.transfer), .choice = transfer_name, \
      .summary = transfer_summary,                                                                  \
      .help = "how a photo of more than 8 bits stores light; default auto"},                        \
     {                                                                                              \
-        .kind = OPTION_NUMBER, .name = "--white", .argument = "LIGHT",                             \
-        .offset = offsetof(type, member.white), .least = 1 / 65536.0, .greatest = 65536,           \
-        .help =                                                                                    \
-            "light of such a photo that is shown as white, cd/m2 with pq; what is brighter keeps " \
-            "its light out of focus; default 1, 203 with pq, 0.265 with hlg"                       \
+        OPTION(OPTION_NUMBER, "--white", "LIGHT", type, member.white),                             \
+            .least = 1 / 65536.0, .greatest = 65536,                                               \
+            .help = "light of such a photo that is shown as white, cd/m2 with pq; what is "        \
+                    "brighter keeps "                                                              \
+                    "its light out of focus; default 1, 203 with pq, 0.265 with hlg"               \
     }
 
 #endif

@@ -36,66 +36,49 @@ const char *ways_order_summary(uint32_t index);
 /* Rows for tables of options: `model` is a text, `network` and `stereo` are the settings above,
  * short_help is a line of --help or NULL. */
 #define ESTIMATE_OPTIONS(type, model, network, short_help)                                         \
-    {.kind = OPTION_TEXT,                                                                          \
-     .name = "--estimate",                                                                         \
-     .argument = "MODEL.onnx",                                                                     \
-     .offset = offsetof(type, model),                                                              \
-     .brief = short_help,                                                                          \
+    {OPTION(OPTION_TEXT, "--estimate", "MODEL.onnx", type, model), .brief = short_help,            \
      .help = "depth of the one photo, by a network"},                                              \
-        {.kind = OPTION_CHOICE,                                                                    \
-         .name = "--network",                                                                      \
-         .argument = "NAME",                                                                       \
-         .offset = offsetof(type, network.preset),                                                 \
-         .choice = ways_network,                                                                   \
+        {OPTION(OPTION_CHOICE, "--network", "NAME", type, network.preset), .choice = ways_network, \
          .help = "which network it is: range of its input, and its size where the file "           \
                  "leaves it open",                                                                 \
          .needs = "--estimate"},                                                                   \
-        {.kind = OPTION_NUMBERS,                                                                   \
-         .name = "--input-size",                                                                   \
-         .argument = "W,H",                                                                        \
-         .offset = offsetof(type, network.size),                                                   \
+        {OPTION(OPTION_NUMBERS, "--input-size", "W,H", type, network.size),                        \
          .least = 32,                                                                              \
          .greatest = 2048,                                                                         \
          .count = 2,                                                                               \
          .help = "of the picture that the network takes; default: what the file says, else "       \
                  "that of --network",                                                              \
          .needs = "--estimate"},                                                                   \
-        {.kind = OPTION_NUMBERS,                                                                   \
-         .name = "--input-mean",                                                                   \
-         .argument = "R,G,B",                                                                      \
-         .offset = offsetof(type, network.mean),                                                   \
+        {OPTION(OPTION_NUMBERS, "--input-mean", "R,G,B", type, network.mean),                      \
          .least = -1000,                                                                           \
          .greatest = 1000,                                                                         \
          .count = 3,                                                                               \
          .decimals = true,                                                                         \
          .help = "codes that the network takes as 0; default: those of --network",                 \
          .needs = "--estimate"},                                                                   \
-        {.kind = OPTION_NUMBER,                                                                    \
-         .name = "--input-scale",                                                                  \
-         .argument = "S",                                                                          \
-         .offset = offsetof(type, network.scale),                                                  \
-         .least = -1000,                                                                           \
+        {OPTION(OPTION_NUMBER, "--input-scale", "S", type, network.scale), .least = -1000,         \
          .greatest = 1000,                                                                         \
          .help = "worth of a code: value = (code - mean) S; default: that of --network",           \
          .needs = "--estimate"},                                                                   \
     {                                                                                              \
-        .kind = OPTION_FLAG, .name = "--far-is-large", .offset = offsetof(type, network.inverse),  \
-        .help = "the network gives distances: larger = farther", .needs = "--estimate"             \
+        OPTION(OPTION_FLAG, "--far-is-large", NULL, type, network.inverse),                        \
+            .help = "the network gives distances: larger = farther", .needs = "--estimate"         \
     }
 #define STEREO_FILE_OPTION(type, stereo, short_help)                                               \
     {                                                                                              \
-        .kind = OPTION_FLAG, .name = "--stereo-file", .brief = short_help,                         \
-        .offset = offsetof(type, stereo.within),                                                   \
-        .help = "the photo's file holds both pictures of a stereo pair: an MPO, two JPEGs or a "   \
+        OPTION(OPTION_FLAG, "--stereo-file", NULL, type, stereo.within),                           \
+            .brief = short_help,                                                                   \
+            .help =                                                                                \
+                "the photo's file holds both pictures of a stereo pair: an MPO, two JPEGs or a "   \
                 "stereo HEIC"                                                                      \
     }
 #define MATCH_OPTION(type, stereo, short_help)                                                     \
-    .kind = OPTION_CHOICE, .name = "--match", .brief = short_help, .argument = "HOW",              \
-    .offset = offsetof(type, stereo.method), .choice = ways_match, .summary = ways_match_summary,  \
-    .help = "how a stereo pair is matched"
+    OPTION(OPTION_CHOICE, "--match", "HOW", type, stereo.method),                                  \
+        .brief = short_help, .choice = ways_match, .summary = ways_match_summary,                  \
+        .help = "how a stereo pair is matched"
 #define PAIR_ORDER_OPTION(type, stereo)                                                            \
-    .kind = OPTION_CHOICE, .name = "--pair-order", .argument = "HOW",                              \
-    .offset = offsetof(type, stereo.order), .choice = ways_order, .summary = ways_order_summary,   \
-    .help = "which picture of a stereo pair is the first one"
+    OPTION(OPTION_CHOICE, "--pair-order", "HOW", type, stereo.order),                              \
+        .choice = ways_order, .summary = ways_order_summary,                                       \
+        .help = "which picture of a stereo pair is the first one"
 
 #endif

@@ -64,6 +64,11 @@ struct option {
     size_t of_offset; /* where the choice's value lies, an int; below 0: several */
 };
 
+/* The beginning of a row: what it is, its name with its dashes, the word for its value in the help
+ * or NULL, and where the value lies in the settings. */
+#define OPTION(kind_, name_, argument_, type, field)                                               \
+    .kind = kind_, .name = name_, .argument = argument_, .offset = offsetof(type, field)
+
 struct command {
     const char *name;
     const char *usage;            /* words behind the name */

@@ -12,21 +12,14 @@ struct keep_settings {
 
 /* Rows for tables of options, where the settings have a member of the type above. */
 #define KEEP_OPTIONS(type, member)                                                                 \
-    {.kind = OPTION_FLAG,                                                                          \
-     .elsewhere = true,                                                                            \
-     .name = "--editable",                                                                         \
-     .offset = offsetof(type, member.editable),                                                    \
+    {OPTION(OPTION_FLAG, "--editable", NULL, type, member.editable), .elsewhere = true,            \
      .help = "keep the all-in-focus original and its depth in the result, which every command "    \
              "then starts from; the default for a JPEG or HEIC made of one of them"},              \
-        {.kind = OPTION_FLAG,                                                                      \
-         .elsewhere = true,                                                                        \
-         .name = "--no-editable",                                                                  \
-         .offset = offsetof(type, member.no_editable),                                             \
+        {OPTION(OPTION_FLAG, "--no-editable", NULL, type, member.no_editable), .elsewhere = true,  \
          .help = "keep neither: the file is smaller"},                                             \
     {                                                                                              \
-        .kind = OPTION_FLAG, .elsewhere = true, .name = "--strip",                                 \
-        .offset = offsetof(type, member.strip),                                                    \
-        .help = "keep nothing of the photo's file but its colour profile"                          \
+        OPTION(OPTION_FLAG, "--strip", NULL, type, member.strip),                                  \
+            .elsewhere = true, .help = "keep nothing of the photo's file but its colour profile"   \
     }
 
 /* Check before the work that they go together with each other, the name of the output, and a

@@ -10,9 +10,9 @@
 /* A row for tables of options. */
 #define OUTPUT_OPTION(type, member, text)                                                          \
     {                                                                                              \
-        .kind = OPTION_TEXT, .letter = 'o', .elsewhere = true, .name = "--output",                 \
-        .argument = "OUT", .offset = offsetof(type, member),                                       \
-        .brief = "the file to write; its ending says the format", .help = text                     \
+        OPTION(OPTION_TEXT, "--output", "OUT", type, member),                                      \
+            .letter = 'o', .elsewhere = true,                                                      \
+            .brief = "the file to write; its ending says the format", .help = text                 \
     }
 
 /* These return exit codes and print why it is not EXIT_DONE. */

@@ -25,29 +25,21 @@ const char *result_format(uint32_t index);
 
 /* Rows of a table of options. */
 #define RESULT_OPTIONS(type, member)                                                               \
-    {.kind = OPTION_CHOICE,                                                                        \
-     .elsewhere = true,                                                                            \
-     .name = "--format",                                                                           \
-     .argument = "NAME",                                                                           \
-     .offset = offsetof(type, member.format),                                                      \
+    {OPTION(OPTION_CHOICE, "--format", "NAME", type, member.format), .elsewhere = true,            \
      .choice = result_format,                                                                      \
      .help = "of standard output (-o -), and {ext} of names; default the photo's own"},            \
-        {.kind = OPTION_TEXT,                                                                      \
-         .elsewhere = true,                                                                        \
-         .name = "--resize",                                                                       \
-         .argument = "SIZE",                                                                       \
-         .offset = offsetof(type, member.resize),                                                  \
+        {OPTION(OPTION_TEXT, "--resize", "SIZE", type, member.resize), .elsewhere = true,          \
          .brief = "size of the picture: W, WxH or N%",                                             \
          .help =                                                                                   \
              "make the picture smaller: W pixels wide, to fit into WxH, or N% of its sides; "      \
              "never larger than it is. Everything else is in pixels of the photo; the mean of "    \
              "areas is taken in linear light"},                                                    \
     {                                                                                              \
-        .kind = OPTION_INTEGER, .elsewhere = true, .name = "--jpeg-quality", .argument = "Q",      \
-        .offset = offsetof(type, member.quality), .least = 1, .greatest = 100,                     \
-        .help = "of JPEG, default 95, or HEIC, default 90. Below 90 the colour of a JPEG is "      \
-                "stored at half "                                                                  \
-                "the size"                                                                         \
+        OPTION(OPTION_INTEGER, "--jpeg-quality", "Q", type, member.quality),                       \
+            .elsewhere = true, .least = 1, .greatest = 100,                                        \
+            .help = "of JPEG, default 95, or HEIC, default 90. Below 90 the colour of a JPEG is "  \
+                    "stored at half "                                                              \
+                    "the size"                                                                     \
     }
 
 /* These return exit codes and print why it is not EXIT_DONE. */

@@ -27,22 +27,18 @@ enum { CONFIG_MOST_BYTES = 1 << 20 };
 /* Rows for tables of options, before that of a file of settings. A file of settings makes the same
  * picture for everybody, so that beside one defaults count only when they are asked for. */
 #define CONFIG_OPTIONS(type, file, preset, short_help)                                             \
-    {.kind = OPTION_TEXT,                                                                          \
-     .name = "--config",                                                                           \
-     .argument = "FILE|none",                                                                      \
-     .load = config_load,                                                                          \
+    {OPTION(OPTION_TEXT, "--config", "FILE|none", type, file), .load = config_load,                \
      .unless = "--settings",                                                                       \
-     .offset = offsetof(type, file),                                                               \
      .help = "options of every call, and presets; default: refocus/config in "                     \
              "$XDG_CONFIG_HOME or ~/.config, if it is there, but not beside --settings",           \
      .elsewhere = true},                                                                           \
     {                                                                                              \
-        .kind = OPTION_TEXT, .name = "--preset", .argument = "NAME", .load = config_load_preset,   \
-        .offset = offsetof(type, preset), .choice = config_preset_name,                            \
-        .summary = config_preset_summary, .brief = short_help,                                     \
-        .help = "several options at once, which other options overrule: a preset of the "          \
-                "configuration file, or",                                                          \
-        .elsewhere = true                                                                          \
+        OPTION(OPTION_TEXT, "--preset", "NAME", type, preset),                                     \
+            .load = config_load_preset, .choice = config_preset_name,                              \
+            .summary = config_preset_summary, .brief = short_help,                                 \
+            .help = "several options at once, which other options overrule: a preset of the "      \
+                    "configuration file, or",                                                      \
+            .elsewhere = true                                                                      \
     }
 
 /* Presets that come with the command; NULL ends them. */

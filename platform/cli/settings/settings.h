@@ -28,16 +28,15 @@ enum { SETTINGS_VERSION = 1, SETTINGS_MOST_BYTES = 1 << 20 };
 /* Rows for tables of options. */
 #define SETTINGS_OPTION(type, member)                                                              \
     {                                                                                              \
-        .kind = OPTION_TEXT, .name = "--settings", .argument = "FILE", .load = settings_load,      \
-        .offset = offsetof(type, member),                                                          \
-        .help = "JSON object of options; the command line overrules it", .elsewhere = true         \
+        OPTION(OPTION_TEXT, "--settings", "FILE", type, member),                                   \
+            .load = settings_load,                                                                 \
+            .help = "JSON object of options; the command line overrules it", .elsewhere = true     \
     }
 #define SAVE_SETTINGS_OPTION(type, save)                                                           \
     {                                                                                              \
-        .kind = OPTION_TEXT, .name = "--save-settings", .argument = "FILE",                        \
-        .offset = offsetof(type, save),                                                            \
-        .help = "write the options that make this picture as JSON for --settings",                 \
-        .elsewhere = true                                                                          \
+        OPTION(OPTION_TEXT, "--save-settings", "FILE", type, save),                                \
+            .help = "write the options that make this picture as JSON for --settings",             \
+            .elsewhere = true                                                                      \
     }
 
 /* Read a file of settings; OPTIONS_PARSED, or the exit code after an error, which is

@@ -30,32 +30,21 @@ const char *bokeh_figure_summary(uint32_t index);
 
 #define BOKEH_NUMBER(type, member, name_, argument_, field_, least_, greatest_, help_)             \
     {                                                                                              \
-        .kind = OPTION_NUMBER, .name = name_, .argument = argument_,                               \
-        .offset = offsetof(type, member.field_), .least = least_, .greatest = greatest_,           \
-        .help = help_                                                                              \
+        OPTION(OPTION_NUMBER, name_, argument_, type, member.field_),                              \
+            .least = least_, .greatest = greatest_, .help = help_                                  \
     }
 
 /* Rows of a table of options; `method` is the member with the method. */
 #define BOKEH_OPTIONS(type, member, method)                                                        \
     {.kind = OPTION_HEADING, .help = "Bokeh"},                                                     \
-        {.kind = OPTION_CHOICE,                                                                    \
-         .name = "--bokeh",                                                                        \
-         .argument = "NAME",                                                                       \
-         .offset = offsetof(type, member.preset),                                                  \
-         .choice = bokeh_preset_name,                                                              \
-         .summary = bokeh_preset_summary,                                                          \
-         .brief = "the look of a lens",                                                            \
-         .help = "presets; what else is given overrules them"},                                    \
+        {OPTION(OPTION_CHOICE, "--bokeh", "NAME", type, member.preset),                            \
+         .choice = bokeh_preset_name, .summary = bokeh_preset_summary,                             \
+         .brief = "the look of a lens", .help = "presets; what else is given overrules them"},     \
         BOKEH_NUMBER(type, member, "--curvature", "C", curvature, 0, 1,                            \
                      "of the blades of a polygon: 0 = straight, the default, 1 = arcs of "         \
                      "the circle"),                                                                \
-        {.kind = OPTION_NUMBER,                                                                    \
-         .name = "--open-f-number",                                                                \
-         .argument = "N",                                                                          \
-         .offset = offsetof(type, member.open_f_number),                                           \
-         .least = 0,                                                                               \
-         .above = true,                                                                            \
-         .greatest = 1000,                                                                         \
+        {OPTION(OPTION_NUMBER, "--open-f-number", "N", type, member.open_f_number), .least = 0,    \
+         .above = true, .greatest = 1000,                                                          \
          .help = "f-number of the lens wide open, where it is round: a polygon shows as "          \
                  "--f-number closes it"},                                                          \
         BOKEH_NUMBER(type, member, "--squeeze", "Q", squeeze, 0.5, 2,                              \
@@ -73,22 +62,17 @@ const char *bokeh_figure_summary(uint32_t index);
         BOKEH_NUMBER(type, member, "--fringe", "A", fringe, -0.5, 0.5,                             \
                      "edges of colour: green behind the focus and magenta before it, or "          \
                      "the contrary; default 0"),                                                   \
-        {.kind = OPTION_NUMBER,                                                                    \
-         .name = "--grain",                                                                        \
-         .argument = "G",                                                                          \
-         .offset = offsetof(type, member.grain),                                                   \
-         .least = 0,                                                                               \
-         .greatest = 4,                                                                            \
+        {OPTION(OPTION_NUMBER, "--grain", "G", type, member.grain), .least = 0, .greatest = 4,     \
          .word = "off",                                                                            \
          .help = "the photo's noise put back into what is blurred: 1 = as much as was measured, "  \
                  "off = 0; default 1 for stills of 8 bits, 0 for others and for live; --seed "     \
                  "chooses it, in live one more for each frame"},                                   \
     {                                                                                              \
-        .kind = OPTION_NUMBER, .name = "--highlight-stops", .argument = "S",                       \
-        .offset = offsetof(type, member.highlight_stops), .least = 0, .greatest = 4,               \
-        .help = "sweep, search: light given back to small clipped highlights, in stops, for "      \
-                "--highlights 2^S",                                                                \
-        OF_METHODS(type, method, OF_SWEEP | OF_SEARCH)                                             \
+        OPTION(OPTION_NUMBER, "--highlight-stops", "S", type, member.highlight_stops),             \
+            .least = 0, .greatest = 4,                                                             \
+            .help = "sweep, search: light given back to small clipped highlights, in stops, for "  \
+                    "--highlights 2^S",                                                            \
+            OF_METHODS(type, method, OF_SWEEP | OF_SEARCH)                                         \
     }
 
 /* These return exit codes and print why it is not EXIT_DONE. */

@@ -29,20 +29,17 @@ struct controls {
 
 #define CONTROL_NUMBER(type, member, name_, argument_, field_, least_, greatest_, help_)           \
     {                                                                                              \
-        .kind = OPTION_NUMBER, .name = name_, .argument = argument_,                               \
-        .offset = offsetof(type, member.field_), .least = least_, .greatest = greatest_,           \
-        .help = help_                                                                              \
+        OPTION(OPTION_NUMBER, name_, argument_, type, member.field_),                              \
+            .least = least_, .greatest = greatest_, .help = help_                                  \
     }
 #define CONTROL_NUMBERS(type, member, name_, argument_, field_, count_, help_)                     \
     {                                                                                              \
-        .kind = OPTION_NUMBERS, .name = name_, .argument = argument_,                              \
-        .offset = offsetof(type, member.field_), .least = 0, .greatest = REFOCUS_MAX_SIDE - 1,     \
-        .count = count_, .help = help_                                                             \
+        OPTION(OPTION_NUMBERS, name_, argument_, type, member.field_),                             \
+            .least = 0, .greatest = REFOCUS_MAX_SIDE - 1, .count = count_, .help = help_           \
     }
 #define CONTROL_TEXT(type, member, name_, argument_, field_, help_)                                \
     {                                                                                              \
-        .kind = OPTION_TEXT, .name = name_, .argument = argument_,                                 \
-        .offset = offsetof(type, member.field_), .help = help_                                     \
+        OPTION(OPTION_TEXT, name_, argument_, type, member.field_), .help = help_                  \
     }
 
 /* Rows of a table of options. */

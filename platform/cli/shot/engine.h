@@ -46,17 +46,13 @@ const char *engine_blend_summary(uint32_t index);
 /* Rows of tables of options, for settings with a member of the type above. */
 #define METHOD_OPTION(type, member)                                                                \
     {                                                                                              \
-        .kind = OPTION_CHOICE, .name = "--method", .argument = "NAME",                             \
-        .offset = offsetof(type, member.method), .choice = refocus_method_name,                    \
-        .summary = refocus_method_summary, .brief = "how it is rendered",                          \
-        .help = "how it is rendered; default sweep"                                                \
+        OPTION(OPTION_CHOICE, "--method", "NAME", type, member.method),                            \
+            .choice = refocus_method_name, .summary = refocus_method_summary,                      \
+            .brief = "how it is rendered", .help = "how it is rendered; default sweep"             \
     }
 /* usual: the quality that is the default; summaries: what each of them is. */
 #define RAY_OPTIONS(type, member, usual, summaries)                                                \
-    {.kind = OPTION_INTEGER,                                                                       \
-     .name = "--rays",                                                                             \
-     .argument = "N",                                                                              \
-     .offset = offsetof(type, member.rays),                                                        \
+    {OPTION(OPTION_INTEGER, "--rays", "N", type, member.rays),                                     \
      .least = 1,                                                                                   \
      .greatest = REFOCUS_MAX_RAYS,                                                                 \
      .word = "full",                                                                               \
@@ -64,68 +60,43 @@ const char *engine_blend_summary(uint32_t index);
      .help = "ray samples a pixel at the largest blur; full = every pixel of the "                 \
              "aperture mask; default: by --quality",                                               \
      OF_METHODS_THAT(type, member.method, method_takes_rays)},                                     \
-        {.kind = OPTION_CHOICE,                                                                    \
-         .name = "--quality",                                                                      \
-         .argument = "NAME",                                                                       \
-         .offset = offsetof(type, member.quality),                                                 \
-         .choice = engine_quality_name,                                                            \
-         .summary = summaries,                                                                     \
-         .brief = "time against smoothness",                                                       \
+        {OPTION(OPTION_CHOICE, "--quality", "NAME", type, member.quality),                         \
+         .choice = engine_quality_name, .summary = summaries, .brief = "time against smoothness",  \
          .help = "presets; default " usual "; --rays overrules"},                                  \
-        {.kind = OPTION_INTEGER,                                                                   \
-         .name = "--iterations",                                                                   \
-         .argument = "T",                                                                          \
-         .offset = offsetof(type, member.iterations),                                              \
-         .least = 1,                                                                               \
+        {OPTION(OPTION_INTEGER, "--iterations", "T", type, member.iterations), .least = 1,         \
          .greatest = 64,                                                                           \
          .help = "search: tests of the randomized intersection search, default 2; the "            \
                  "paper's is 1",                                                                   \
          OF_METHODS(type, member.method, OF_SEARCH)},                                              \
-        {.kind = OPTION_FLAG,                                                                      \
-         .name = "--mirror",                                                                       \
-         .offset = offsetof(type, member.mirror),                                                  \
+        {OPTION(OPTION_FLAG, "--mirror", NULL, type, member.mirror),                               \
          .help = "search: where a ray is hidden take the mirrored pixel",                          \
          OF_METHODS(type, member.method, OF_SEARCH)},                                              \
     {                                                                                              \
-        .kind = OPTION_FLAG, .name = "--background", .offset = offsetof(type, member.background),  \
-        .help = "search: where a ray is hidden take the background layer",                         \
-        OF_METHODS(type, member.method, OF_SEARCH)                                                 \
+        OPTION(OPTION_FLAG, "--background", NULL, type, member.background),                        \
+            .help = "search: where a ray is hidden take the background layer",                     \
+            OF_METHODS(type, member.method, OF_SEARCH)                                             \
     }
 #define LAYER_OPTIONS(type, member)                                                                \
-    {.kind = OPTION_FLAG,                                                                          \
-     .name = "--no-thin",                                                                          \
-     .offset = offsetof(type, member.no_thin),                                                     \
+    {OPTION(OPTION_FLAG, "--no-thin", NULL, type, member.no_thin),                                 \
      .help = "sweep: gather thin structures far before the focus, and in it, by rays "             \
              "like everything else, instead of splatting them; so does quality preview",           \
      OF_METHODS(type, member.method, OF_SWEEP)},                                                   \
     {                                                                                              \
-        .kind = OPTION_CHOICE, .name = "--fill", .argument = "HOW",                                \
-        .offset = offsetof(type, member.fill), .choice = engine_fill_name,                         \
-        .summary = engine_fill_summary,                                                            \
-        .help = "sweep: how the background is made up that a blurred foreground uncovers",         \
-        OF_METHODS(type, member.method, OF_SWEEP)                                                  \
+        OPTION(OPTION_CHOICE, "--fill", "HOW", type, member.fill),                                 \
+            .choice = engine_fill_name, .summary = engine_fill_summary,                            \
+            .help = "sweep: how the background is made up that a blurred foreground uncovers",     \
+            OF_METHODS(type, member.method, OF_SWEEP)                                              \
     }
 #define BLEND_OPTIONS(type, member)                                                                \
-    {.kind = OPTION_TEXT,                                                                          \
-     .name = "--aperture",                                                                         \
-     .argument = "SHAPE",                                                                          \
-     .offset = offsetof(type, member.aperture),                                                    \
-     .choice = bokeh_figure_name,                                                                  \
-     .summary = bokeh_figure_summary,                                                              \
+    {OPTION(OPTION_TEXT, "--aperture", "SHAPE", type, member.aperture),                            \
+     .choice = bokeh_figure_name, .summary = bokeh_figure_summary,                                 \
      .brief = "disc, polygon:6, heart, star, or a mask picture",                                   \
      .help = "disc (default), polygon:BLADES or polygon:BLADES:DEGREES with 3 to 16 "              \
              "blades, a mask picture of at most 255x255, white = open, or a figure:"},             \
-        {.kind = OPTION_CHOICE,                                                                    \
-         .name = "--blend",                                                                        \
-         .argument = "NAME",                                                                       \
-         .offset = offsetof(type, member.blend),                                                   \
-         .choice = engine_blend_name,                                                              \
-         .summary = engine_blend_summary,                                                          \
+        {OPTION(OPTION_CHOICE, "--blend", "NAME", type, member.blend),                             \
+         .choice = engine_blend_name, .summary = engine_blend_summary,                             \
          .help = "the values that are averaged; default linear"},                                  \
-        {.kind = OPTION_NUMBER,                                                                    \
-         .name = "--sigma",                                                                        \
-         .argument = "S",                                                                          \
-         .offset = offsetof(type, member.sigma),                                                   \
+        {OPTION(OPTION_NUMBER, "--sigma", "S", type, member.sigma),                                \
          .least = 1,                                                                               \
          .greatest = 1e30,                                                                         \
          .word = "off",                                                                            \
@@ -133,43 +104,35 @@ const char *engine_blend_summary(uint32_t index);
          .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default "           \
                  "off"},                                                                           \
     {                                                                                              \
-        .kind = OPTION_NUMBER, .name = "--highlights", .argument = "GAIN",                         \
-        .offset = offsetof(type, member.highlights), .least = 1, .greatest = 16, .word = "off",    \
-        .word_value = 1, .other_word = "auto", .other_value = HIGHLIGHTS_ESTIMATED,                \
-        .help = "sweep, search: light given back to clipped highlights: auto = as much as the "    \
+        OPTION(OPTION_NUMBER, "--highlights", "GAIN", type, member.highlights),                    \
+            .least = 1, .greatest = 16, .word = "off", .word_value = 1, .other_word = "auto",      \
+            .other_value = HIGHLIGHTS_ESTIMATED,                                                   \
+            .help =                                                                                \
+                "sweep, search: light given back to clipped highlights: auto = as much as the "    \
                 "photo tells, the default; up to GAIN times white to small ones",                  \
-        OF_METHODS(type, member.method, OF_SWEEP | OF_SEARCH)                                      \
+            OF_METHODS(type, member.method, OF_SWEEP | OF_SEARCH)                                  \
     }
 #define METHOD_OPTIONS(type, member, usual)                                                        \
     RAY_OPTIONS(type, member, usual, engine_quality_summary), LAYER_OPTIONS(type, member),         \
         BLEND_OPTIONS(type, member)
 #define RUN_OPTIONS(type, member)                                                                  \
-    {.kind = OPTION_INTEGER,                                                                       \
-     .elsewhere = true,                                                                            \
-     .name = "--threads",                                                                          \
-     .argument = "N",                                                                              \
-     .offset = offsetof(type, member.threads),                                                     \
-     .greatest = 64,                                                                               \
-     .help = "0 = one for each processor, the default; never changes the result"},                 \
-        {.kind = OPTION_CHOICE,                                                                    \
-         .elsewhere = true,                                                                        \
-         .name = "--cpu",                                                                          \
-         .argument = "NAME",                                                                       \
-         .offset = offsetof(type, member.cpu),                                                     \
+    {OPTION(OPTION_INTEGER, "--threads", "N", type, member.threads), .elsewhere = true,            \
+     .greatest = 64, .help = "0 = one for each processor, the default; never changes the result"}, \
+        {OPTION(OPTION_CHOICE, "--cpu", "NAME", type, member.cpu), .elsewhere = true,              \
          .choice = refocus_cpu_name,                                                               \
          .help = "instruction set, auto = the best that there is, the default; never "             \
                  "changes the result"},                                                            \
     {                                                                                              \
-        .kind = OPTION_FLAG, .elsewhere = true, .name = "--json",                                  \
-        .offset = offsetof(type, member.json), .brief = "print a report as one JSON object",       \
-        .help = "print a report as one JSON object; times in milliseconds, without "               \
-                "reading and writing of files"                                                     \
+        OPTION(OPTION_FLAG, "--json", NULL, type, member.json),                                    \
+            .elsewhere = true, .brief = "print a report as one JSON object",                       \
+            .help = "print a report as one JSON object; times in milliseconds, without "           \
+                    "reading and writing of files"                                                 \
     }
 #define REPEAT_OPTION(type, member)                                                                \
     {                                                                                              \
-        .kind = OPTION_INTEGER, .elsewhere = true, .name = "--repeat", .argument = "N",            \
-        .offset = offsetof(type, member.repeat), .least = 1, .greatest = 10000,                    \
-        .help = "render N times and report the times"                                              \
+        OPTION(OPTION_INTEGER, "--repeat", "N", type, member.repeat),                              \
+            .elsewhere = true, .least = 1, .greatest = 10000,                                      \
+            .help = "render N times and report the times"                                          \
     }
 
 struct engine {

@@ -40,8 +40,8 @@ const char *papers_solver_name(uint32_t index);
     }
 #define PAPER_CHOICE(type, member, name_, field_, choice_, help_, ...)                             \
     {                                                                                              \
-        .kind = OPTION_CHOICE, .name = name_, .argument = "NAME",                                  \
-        .offset = offsetof(type, member.field_), .choice = choice_, .help = help_, __VA_ARGS__     \
+        .choice = choice_, .help = help_,                                                          \
+        OPTION(OPTION_CHOICE, name_, "NAME", type, member.field_), __VA_ARGS__                     \
     }
 #define PAPER_STAR_NEEDS  .needs = "--star,--bokeh"
 #define PAPER_FIELD_NEEDS .needs = "--field"
@@ -119,10 +119,7 @@ const char *papers_solver_name(uint32_t index);
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--field-angle", "DEG", field_angle, -3600,      \
                      3600, "of a plane: 0 = upright and along the view, 90 = facing it",           \
                      PAPER_FIELD_NEEDS),                                                           \
-        {.kind = OPTION_TEXT,                                                                      \
-         .name = "--field-map",                                                                    \
-         .argument = "FILE",                                                                       \
-         .offset = offsetof(type, member.field_map),                                               \
+        {OPTION(OPTION_TEXT, "--field-map", "FILE", type, member.field_map),                       \
          .help = "for picture: grey picture of the field, white = the full blur"},                 \
         PAPER_NUMBER(type, member, OPTION_INTEGER, "--layers", "N", layers, 1, 8,                  \
                      "diffusion: that the picture is split into by depth; default 4",              \

@@ -8,8 +8,9 @@
 /* Rows for tables of options, for settings with members of engine_settings. */
 #define STRIPS_OPTION(type, member)                                                                \
     {                                                                                              \
-        .kind = OPTION_FLAG, .name = "--low-memory", .offset = offsetof(type, member.in_strips),   \
-        .help = "render in strips: a fourth of the memory, and longer. Thin structures are "       \
+        OPTION(OPTION_FLAG, "--low-memory", NULL, type, member.in_strips),                         \
+            .help =                                                                                \
+                "render in strips: a fourth of the memory, and longer. Thin structures are "       \
                 "gathered by rays, what is hidden is smooth, no matte is used, of a photo 8 bits " \
                 "are taken, and in photos of more than 4 megapixels edges of the depth map are "   \
                 "placed at a smaller size. The picture waits in a temporary file in TMPDIR or "    \

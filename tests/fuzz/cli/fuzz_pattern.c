@@ -15,19 +15,9 @@ struct values {
 
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "heading"},
-    {.kind = OPTION_NUMBER,
-     .name = "--number",
-     .argument = "N",
-     .offset = offsetof(struct values, number),
-     .greatest = 9,
-     .word = "off",
-     .word_value = INFINITY,
-     .help = "number"},
-    {.kind = OPTION_TEXT,
-     .name = "--text",
-     .argument = "TEXT",
-     .offset = offsetof(struct values, text),
-     .help = "text"},
+    {OPTION(OPTION_NUMBER, "--number", "N", struct values, number), .greatest = 9, .word = "off",
+     .word_value = INFINITY, .help = "number"},
+    {OPTION(OPTION_TEXT, "--text", "TEXT", struct values, text), .help = "text"},
     {.help = NULL},
 };
 
