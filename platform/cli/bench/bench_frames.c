@@ -121,7 +121,7 @@ static json_t *row_json(const struct place *place, const struct engine *engine,
 {
     return json_pack("{s:i, s:i, s:f, s:s, s:i, s:i, s:s, s:f, s:f, s:f, s:f}", "width",
                      place->width, "height", place->height, "blur", place->blur, "quality",
-                     engine_quality_name((uint32_t)place->quality), "rays",
+                     engine_quality_words[place->quality].name, "rays",
                      (int)engine->params.render.rays, "threads", (int)engine->info.threads, "cpu",
                      refocus_cpu_name(engine->info.cpu), "memcpy_ms", t->copy, "box_ms", t->box,
                      "prepare_ms", t->prepare, "render_ms", t->render);
@@ -130,7 +130,7 @@ static json_t *row_json(const struct place *place, const struct engine *engine,
 static void print_row(const struct place *place, const struct engine *engine, const struct times *t)
 {
     printf("%5dx%-5d %5g  %-9s %7d  %8.3f %8.2f %8.2f %9.2f %8.1f %8.2f\n", place->width,
-           place->height, place->blur, engine_quality_name((uint32_t)place->quality),
+           place->height, place->blur, engine_quality_words[place->quality].name,
            (int)engine->info.threads, t->copy, t->box, t->prepare, t->render, 1e3 / t->render,
            t->render / t->box);
 }

@@ -7,21 +7,11 @@
 #include "line/report.h"
 #include "outputs/outputs.h"
 
-static const char *view_name(uint32_t index)
-{
-    static const char *const names[] = {"none", "disparity", "confidence"};
-
-    return index < sizeof names / sizeof *names ? names[index] : NULL;
-}
-
-static const char *view_summary(uint32_t index)
-{
-    static const char *const words[] = {"the disparities as they are",
-                                        "their picture, bright = near",
-                                        "white where measured, black where filled"};
-
-    return index < sizeof words / sizeof *words ? words[index] : NULL;
-}
+static const struct option_word view_words[] = {
+    {"none", "the disparities as they are"},
+    {"disparity", "their picture, bright = near"},
+    {"confidence", "white where measured, black where filled"},
+    {0}};
 
 static const struct option options[] = {
     OUTPUT_OPTION(struct depth_command_settings, output,
@@ -37,10 +27,9 @@ static const struct option options[] = {
      .brief = "bring the depth to the photo's size, edge on edge",
      .help = "bring the depth to the photo's size, its edges on the photo's"},
     {OPTION(OPTION_CHOICE, "--depth-edges", "HOW", struct depth_command_settings, depth.edges),
-     .choice = edges_name, .summary = edges_summary, .help = "the edges of the depth map",
-     .needs = "--full"},
+     .words = edges_words, .help = "the edges of the depth map", .needs = "--full"},
     {OPTION(OPTION_CHOICE, "--upsample", "HOW", struct depth_command_settings, depth.upsample),
-     .choice = upsample_name,
+     .words = upsample_words,
      .help = "how --full does it, before --depth-edges: by the library (default), or by filters "
              "of OpenCV, the last three by its module refocus-ximgproc",
      .needs = "--full,--strokes"},
@@ -59,7 +48,7 @@ static const struct option options[] = {
      .brief = "FILE holds a stereo pair, the left picture left",
      .help = "FILE holds both pictures of a stereo pair, the left one left"},
     {OPTION(OPTION_CHOICE, "--view", "WHAT", struct depth_command_settings, view),
-     .choice = view_name, .summary = view_summary, .brief = "write a picture to look at instead",
+     .words = view_words, .brief = "write a picture to look at instead",
      .help = "write an 8-bit picture to look at instead: " OUTPUT_PICTURES},
     {OPTION(OPTION_NUMBERS, "--focus-at", "X,Y", struct depth_command_settings, focus_at),
      .least = 0, .greatest = REFOCUS_MAX_SIDE, .count = 2,

@@ -18,26 +18,12 @@
 /* More of it is no order: 0.03 in stacks of nine frames as they were taken, 0.9 shuffled. */
 #define MOST_DISORDER 0.5
 
-static const struct {
-    const char *name, *summary;
-} aligns[] = {
+const struct option_word stack_align_words[] = {
     [REFOCUS_STACK_ALIGN_SIMILARITY] = {"similarity", "scale, shift and rotation are undone"},
     [REFOCUS_STACK_ALIGN_NONE] = {"none", "frames are taken as they are"},
-};
+    {0}};
 
-const char *stack_align_name(uint32_t index)
-{
-    return index < sizeof aligns / sizeof *aligns ? aligns[index].name : NULL;
-}
-
-const char *stack_align_summary(uint32_t index)
-{
-    return index < sizeof aligns / sizeof *aligns ? aligns[index].summary : NULL;
-}
-
-static const struct {
-    const char *name, *summary;
-} orders[] = {
+const struct option_word stack_order_words[] = {
     [REFOCUS_STACK_ORDER_ADDED] = {"given", "the farthest focus first"},
     [REFOCUS_STACK_ORDER_FOUND] = {"found",
                                    "found by their sharpness; edges, and what lies lower, show "
@@ -45,36 +31,14 @@ static const struct {
     [REFOCUS_STACK_ORDER_EITHER] = {"auto",
                                     "as given, the farthest first or last: edges, and what lies "
                                     "lower, show which, else first"},
-};
+    {0}};
 
-const char *stack_order_name(uint32_t index)
-{
-    return index < sizeof orders / sizeof *orders ? orders[index].name : NULL;
-}
-
-const char *stack_order_summary(uint32_t index)
-{
-    return index < sizeof orders / sizeof *orders ? orders[index].summary : NULL;
-}
-
-static const struct {
-    const char *name, *summary;
-} in_focus[] = {
+const struct option_word stack_in_focus_words[] = {
     [IN_FOCUS_AUTO] = {"auto", "the focus differs, unless EXIF tells of one focus and several "
                                "apertures: then it is on the nearest surface"},
     [IN_FOCUS_NEAREST] = {"nearest", "the aperture differs, and the nearest surface is in focus"},
     [IN_FOCUS_FARTHEST] = {"farthest", "the aperture differs, and the farthest one is"},
-};
-
-const char *stack_in_focus_name(uint32_t index)
-{
-    return index < sizeof in_focus / sizeof *in_focus ? in_focus[index].name : NULL;
-}
-
-const char *stack_in_focus_summary(uint32_t index)
-{
-    return index < sizeof in_focus / sizeof *in_focus ? in_focus[index].summary : NULL;
-}
+    {0}};
 
 /* ----- frames ----- */
 

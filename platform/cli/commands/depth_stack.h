@@ -40,14 +40,12 @@ struct stack_settings {
          .greatest = REFOCUS_STACK_MOST_FRAMES,                                                    \
          .help = "the result is seen as in the N-th frame; default: the one in the middle",        \
          .needs = "--focal-stack"},                                                                \
-        {OPTION(OPTION_CHOICE, "--align", "HOW", type, member.align), .choice = stack_align_name,  \
-         .summary = stack_align_summary, .help = "how frames are laid on each other",              \
-         .needs = "--focal-stack"},                                                                \
-        {OPTION(OPTION_CHOICE, "--order", "HOW", type, member.order), .choice = stack_order_name,  \
-         .summary = stack_order_summary, .help = "order of focus of frames without positions",     \
-         .needs = "--focal-stack"},                                                                \
+        {OPTION(OPTION_CHOICE, "--align", "HOW", type, member.align), .words = stack_align_words,  \
+         .help = "how frames are laid on each other", .needs = "--focal-stack"},                   \
+        {OPTION(OPTION_CHOICE, "--order", "HOW", type, member.order), .words = stack_order_words,  \
+         .help = "order of focus of frames without positions", .needs = "--focal-stack"},          \
         {OPTION(OPTION_CHOICE, "--in-focus", "WHICH", type, member.in_focus),                      \
-         .choice = stack_in_focus_name, .summary = stack_in_focus_summary,                         \
+         .words = stack_in_focus_words,                                                            \
          .help = "what is in focus in frames of one focus and several apertures, whose f-numbers " \
                  "EXIF tells; of two without, the sharper one has the smaller aperture, and is "   \
                  "the photo",                                                                      \
@@ -59,15 +57,8 @@ struct stack_settings {
             .needs = "--focal-stack"                                                               \
     }
 
-/* Words of --align and what they mean; NULL ends them. */
-const char *stack_align_name(uint32_t index);
-const char *stack_align_summary(uint32_t index);
-/* Likewise of --order. */
-const char *stack_order_name(uint32_t index);
-const char *stack_order_summary(uint32_t index);
-/* Likewise of --in-focus. */
-const char *stack_in_focus_name(uint32_t index);
-const char *stack_in_focus_summary(uint32_t index);
+/* Words of --align, --order and --in-focus. */
+extern const struct option_word stack_align_words[], stack_order_words[], stack_in_focus_words[];
 
 /* Read the frames, one after the other, and make the input of them: its photo is in focus
  * everywhere. The list of files ends with NULL. Returns an exit code and prints why. */

@@ -48,7 +48,7 @@ static const struct option options[] = {
     {OPTION(OPTION_NUMBER, "--fps", "N", struct settings, fps), .least = 1, .greatest = 240,
      .fraction = true, .brief = "frames a second; default 25",
      .help = "frames a second, also as 30000/1001; default 25"},
-    {OPTION(OPTION_CHOICE, "--ease", "HOW", struct settings, ease), .choice = ease_name,
+    {OPTION(OPTION_CHOICE, "--ease", "HOW", struct settings, ease), .words = ease_words,
      .help = "how it goes from one to the other; default smooth"},
     {OPTION(OPTION_FLAG, "--back", NULL, struct settings, back),
      .help = "and the same way back, so that it can be repeated"},

@@ -66,8 +66,8 @@ static const struct option options[] = {
     {OPTION(OPTION_NUMBERS, "--region", "X,Y,W,H", struct settings, region), .least = 0,
      .greatest = REFOCUS_MAX_SIDE, .count = 4,
      .help = "render only this part of the picture, pixels"},
-    {OPTION(OPTION_CHOICE, "--view", "WHAT", struct settings, view), .choice = view_name,
-     .summary = view_summary, .help = "write a picture of how it is made instead"},
+    {OPTION(OPTION_CHOICE, "--view", "WHAT", struct settings, view), .words = view_words,
+     .help = "write a picture of how it is made instead"},
     {OPTION(OPTION_NUMBER, "--parallax", "PIXELS", struct settings, parallax), .least = 0,
      .greatest = STEREO_MOST,
      .help = "anaglyph: between the eyes at disparity 1 when 0 is in focus; default "

@@ -32,8 +32,7 @@ static const struct option options[] = {
     LIGHT_OPTIONS(struct settings, shot.depth),
     {.kind = OPTION_HEADING, .help = "The sheet"},
     {OPTION(OPTION_CHOICE, "--kind", "WHAT", struct settings, sheet.kind),
-     .choice = sheet_kind_name, .summary = sheet_kind_summary,
-     .brief = "what differs from cell to cell",
+     .words = sheet_kind_words, .brief = "what differs from cell to cell",
      .help = "what differs from cell to cell; default focus"},
     LIST("--focuses", "D,D...", focuses, "disparities in focus",
          "disparities in focus; default 0,0.25,0.5,0.75,1"),
@@ -238,7 +237,7 @@ static int print_report(const struct settings *settings, const struct shot *shot
         "{s:o, s:o, s:i, s:i, s:s, s:i, s:o, s:s}", "photo",
         report_text_json(shot->input.photo_name), "output", report_text_json(settings->output),
         "width", (int)picture->width, "height", (int)picture->height, "kind",
-        sheet_kind_name((uint32_t)settings->sheet.kind), "columns", sheet->columns, "cells", cells,
+        sheet_kind_words[settings->sheet.kind].name, "columns", sheet->columns, "cells", cells,
         "method", refocus_method_name(shot->engine.params.render.method)));
 }
 

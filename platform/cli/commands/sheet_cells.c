@@ -3,20 +3,13 @@
 #include <string.h>
 #include "commands/sheet_cells.h"
 
-const char *sheet_kind_name(uint32_t index)
-{
-    static const char *const names[] = {"focus", "aperture", "sigma", "before-after", "bokeh"};
-    return index < 5 ? names[index] : NULL;
-}
-
-const char *sheet_kind_summary(uint32_t index)
-{
-    static const char *const summaries[] = {
-        "columns of --focuses, rows of --blurs or --f-numbers", "--apertures",
-        "columns of --sigmas, a row for each --blend", "the photo, and what render makes of it",
-        "the presets of --bokeh"};
-    return index < 5 ? summaries[index] : NULL;
-}
+const struct option_word sheet_kind_words[] = {
+    {"focus", "columns of --focuses, rows of --blurs or --f-numbers"},
+    {"aperture", "--apertures"},
+    {"sigma", "columns of --sigmas, a row for each --blend"},
+    {"before-after", "the photo, and what render makes of it"},
+    {"bokeh", "the presets of --bokeh"},
+    {0}};
 
 /* The next item of a list into text; where the list goes on, or NULL after an error. */
 static const char *next(const char *at, char *text, size_t size, const char *name)
@@ -178,7 +171,7 @@ static int check_lists(const struct sheet_settings *s)
         if (lists[i].list && lists[i].kind != s->kind)
             return report_failure(EXIT_WRONG, lists[i].name,
                                   "goes with --kind %s alone; leave one of them out",
-                                  sheet_kind_name((uint32_t)lists[i].kind));
+                                  sheet_kind_words[lists[i].kind].name);
     if (s->blurs && s->f_numbers)
         return report_failure(EXIT_WRONG, "--f-numbers",
                               "is in place of --blurs; leave one of them out");
@@ -272,17 +265,17 @@ static int fill_sigma(struct sheet *sheet, const char *list)
     double sigmas[SHEET_LIST];
     const int status = read_sigmas(list ? list : "off,400,100,30", sigmas, &sheet->columns);
 
-    for (int i = 0; status == EXIT_DONE && engine_blend_name((uint32_t)(i / sheet->columns)); i++) {
+    for (int i = 0; status == EXIT_DONE && engine_blend_words[i / sheet->columns].name; i++) {
         struct sheet_cell *cell = add(sheet);
 
         cell->blend = i / sheet->columns;
         cell->sigma = sigmas[i % sheet->columns];
         if (isinf(cell->sigma))
             snprintf(cell->caption, sizeof cell->caption, "%s  sigma off",
-                     engine_blend_name((uint32_t)cell->blend));
+                     engine_blend_words[cell->blend].name);
         else
             snprintf(cell->caption, sizeof cell->caption, "%s  sigma %.4g",
-                     engine_blend_name((uint32_t)cell->blend), cell->sigma);
+                     engine_blend_words[cell->blend].name, cell->sigma);
     }
     return status;
 }

@@ -10,8 +10,8 @@
 enum sheet_kind { SHEET_FOCUS, SHEET_APERTURE, SHEET_SIGMA, SHEET_BEFORE_AFTER, SHEET_BOKEH };
 enum { SHEET_LIST = 16, SHEET_MOST = SHEET_LIST * SHEET_LIST };
 
-const char *sheet_kind_name(uint32_t index);
-const char *sheet_kind_summary(uint32_t index);
+/* Words of --kind. */
+extern const struct option_word sheet_kind_words[];
 
 /* Values with commas between them, as the command line has them; NULL: not given. */
 struct sheet_settings {

@@ -3,21 +3,10 @@
 #include "inputs/edges.h"
 #include "line/report.h"
 
-const char *edges_name(uint32_t index)
-{
-    static const char *const names[] = {"auto", "as-given"};
-
-    return index < sizeof names / sizeof *names ? names[index] : NULL;
-}
-
-const char *edges_summary(uint32_t index)
-{
-    static const char *const words[] = {
-        "where the map is soft, coarse or beside the photo, its edges go to the photo's",
-        "every disparity as the map has it"};
-
-    return index < sizeof words / sizeof *words ? words[index] : NULL;
-}
+const struct option_word edges_words[] = {
+    {"auto", "where the map is soft, coarse or beside the photo, its edges go to the photo's"},
+    {"as-given", "every disparity as the map has it"},
+    {0}};
 
 int edges_place(const struct refocus_image *photo, const struct refocus_disparity *map,
                 uint16_t **placed, struct refocus_depth_edges_report *report, const char *name)

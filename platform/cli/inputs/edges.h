@@ -5,12 +5,12 @@
 #include <stdint.h>
 #include <jansson.h>
 #include <refocus/refocus.h>
+#include "line/option.h"
 
 enum edges { EDGES_AUTO, EDGES_AS_GIVEN };
 
-/* Words of --depth-edges, and a line on each; NULL ends them. */
-const char *edges_name(uint32_t index);
-const char *edges_summary(uint32_t index);
+/* Words of --depth-edges. */
+extern const struct option_word edges_words[];
 
 /* Make packed disparities of the photo's size, which the caller frees, of a map; an exit code, and
  * prints why. */

@@ -39,7 +39,7 @@ struct depth_settings {
     int edges;            /* enum edges */
     int orient;           /* enum orient */
     int upsample;         /* the filter that brings maps of another size to the photo's: an index
-                             of upsample_name() */
+                             of upsample_words */
     struct limit_settings limits;
     const char *model, *right; /* depth is made by a network, or of this and the photo; or NULL */
     struct network_settings network;

@@ -158,22 +158,10 @@ int input_read_photo(struct input *input, const char *photo, const char *instead
     return status;
 }
 
-static const struct {
-    const char *name, *summary;
-} gain_maps[] = {
+const struct option_word gain_map_words[] = {
     [GAIN_MAP_USE] = {"use", "highlights have the light that it says they have; tones stay"},
     [GAIN_MAP_IGNORE] = {"ignore", "the photo is taken for what its 8 bits show"},
-};
-
-const char *gain_map_name(uint32_t index)
-{
-    return index < sizeof gain_maps / sizeof *gain_maps ? gain_maps[index].name : NULL;
-}
-
-const char *gain_map_summary(uint32_t index)
-{
-    return index < sizeof gain_maps / sizeof *gain_maps ? gain_maps[index].summary : NULL;
-}
+    {0}};
 
 static int take_light(struct input *input)
 {

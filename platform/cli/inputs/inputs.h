@@ -6,8 +6,8 @@
 #include "inputs/input.h"
 #include "line/option.h"
 
-const char *gain_map_name(uint32_t index);
-const char *gain_map_summary(uint32_t index);
+/* Words of --gain-map. */
+extern const struct option_word gain_map_words[];
 
 /* Rows for tables of options, where the settings have a member of struct depth_settings. */
 #define DEPTH_FILE_OPTION(type, member)                                                            \
@@ -48,25 +48,23 @@ const char *gain_map_summary(uint32_t index);
 #define DEPTH_EDGES_OPTION(type, member)                                                           \
     {                                                                                              \
         OPTION(OPTION_CHOICE, "--depth-edges", "HOW", type, member.edges),                         \
-            .choice = edges_name, .summary = edges_summary, .help = "the edges of the depth map"   \
+            .words = edges_words, .help = "the edges of the depth map"                             \
     }
 #define ORIENT_DEPTH_OPTION(type, member)                                                          \
     {                                                                                              \
         OPTION(OPTION_CHOICE, "--orient-depth", "DEGREES", type, member.orient),                   \
-            .choice = orient_name, .summary = orient_summary,                                      \
-            .help = "turn the depth map clockwise; default auto"                                   \
+            .words = orient_words, .help = "turn the depth map clockwise; default auto"            \
     }
 #define UPSAMPLE_OPTION(type, member)                                                              \
     {                                                                                              \
         OPTION(OPTION_CHOICE, "--upsample", "HOW", type, member.upsample),                         \
-            .choice = upsample_name,                                                               \
+            .words = upsample_words,                                                               \
             .help = "how a map of another size gets the photo's, before --depth-edges: by the "    \
                     "library (default), or by filters of OpenCV, the last three by its module "    \
                     "refocus-ximgproc"                                                             \
     }
 #define LIGHT_OPTIONS(type, member)                                                                \
-    {OPTION(OPTION_CHOICE, "--gain-map", "HOW", type, member.gain_map), .choice = gain_map_name,   \
-     .summary = gain_map_summary,                                                                  \
+    {OPTION(OPTION_CHOICE, "--gain-map", "HOW", type, member.gain_map), .words = gain_map_words,   \
      .help = "the gain map of a photo (Ultra HDR, ISO 21496-1, Apple); default use"},              \
     {                                                                                              \
         OPTION(OPTION_FLAG, "--no-dither", NULL, type, member.no_dither),                          \

@@ -61,27 +61,15 @@ static int load(const struct opencv **cv, const char *what)
     return *cv ? EXIT_DONE : report_failure(EXIT_FAILED, what, "%s", why);
 }
 
-/* Words of --pair-order. */
-static const struct {
-    const char *name, *summary;
-    uint32_t order; /* enum refocus_stereo_order */
-} orders[] = {
-    {"auto", "what only one picture shows tells, else it is the left one",
-     REFOCUS_STEREO_ORDER_SEEN},
-    {"left-first", "the left one", REFOCUS_STEREO_LEFT_FIRST},
-    {"right-first", "the right one, as where eyes are crossed to see depth",
-     REFOCUS_STEREO_RIGHT_FIRST},
-};
+const struct option_word ways_order_words[] = {
+    {"auto", "what only one picture shows tells, else it is the left one"},
+    {"left-first", "the left one"},
+    {"right-first", "the right one, as where eyes are crossed to see depth"},
+    {0}};
 
-const char *ways_order(uint32_t index)
-{
-    return index < sizeof orders / sizeof *orders ? orders[index].name : NULL;
-}
-
-const char *ways_order_summary(uint32_t index)
-{
-    return index < sizeof orders / sizeof *orders ? orders[index].summary : NULL;
-}
+/* enum refocus_stereo_order of these words. */
+static const uint32_t orders[] = {REFOCUS_STEREO_ORDER_SEEN, REFOCUS_STEREO_LEFT_FIRST,
+                                  REFOCUS_STEREO_RIGHT_FIRST};
 
 static const char *order_evidence(const struct refocus_stereo_params *params,
                                   const struct refocus_stereo_report *report)
@@ -121,7 +109,7 @@ static int match(struct input *input, const char *right, const struct stereo_set
     int status = load(&cv, right ? right : left);
 
     params.method = (uint32_t)how->method;
-    params.order = orders[how->order].order;
+    params.order = orders[how->order];
     if (status == EXIT_DONE && (right || how->within))
         status = read_right(&input->side, right ? right : left, right == NULL);
     if (status != EXIT_DONE)
@@ -279,23 +267,8 @@ int made_depth(struct input *input, const struct depth_settings *settings)
                            : match(input, settings->right, &settings->stereo, settings);
 }
 
-const char *ways_network(uint32_t index)
-{
-    return opencv_network_name(index);
-}
-
-const char *ways_match(uint32_t index)
-{
-    static const char *const names[] = {"checked", "plain", "wls"};
-
-    return index < sizeof names / sizeof *names ? names[index] : NULL;
-}
-
-const char *ways_match_summary(uint32_t index)
-{
-    static const char *const words[] = {
-        "both ways; what disagrees is filled", "OpenCV's semi-global matching as it is",
-        "filled by weighted least squares; needs the module refocus-ximgproc"};
-
-    return index < sizeof words / sizeof *words ? words[index] : NULL;
-}
+const struct option_word ways_match_words[] = {
+    {"checked", "both ways; what disagrees is filled"},
+    {"plain", "OpenCV's semi-global matching as it is"},
+    {"wls", "filled by weighted least squares; needs the module refocus-ximgproc"},
+    {0}};

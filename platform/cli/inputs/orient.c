@@ -3,21 +3,13 @@
 #include <string.h>
 #include "inputs/orient.h"
 
-const char *orient_name(uint32_t index)
-{
-    static const char *const names[] = {"auto", "0", "90", "180", "270"};
-
-    return index < sizeof names / sizeof *names ? names[index] : NULL;
-}
-
-const char *orient_summary(uint32_t index)
-{
-    static const char *const words[] = {
-        "a map on its side beside a photo that EXIF has turned is turned with it", "as it is",
-        "a quarter turn", "upside down", "a quarter turn anticlockwise"};
-
-    return index < sizeof words / sizeof *words ? words[index] : NULL;
-}
+const struct option_word orient_words[] = {
+    {"auto", "a map on its side beside a photo that EXIF has turned is turned with it"},
+    {"0", "as it is"},
+    {"90", "a quarter turn"},
+    {"180", "upside down"},
+    {"270", "a quarter turn anticlockwise"},
+    {0}};
 
 int orient_choose(enum orient orient, bool on_its_side, int photo_orientation, bool turned_already)
 {

@@ -5,12 +5,12 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include "line/option.h"
 
 enum orient { ORIENT_AUTO, ORIENT_0, ORIENT_90, ORIENT_180, ORIENT_270 };
 
-/* Words of --orient-depth, and a line on each; NULL ends them. */
-const char *orient_name(uint32_t index);
-const char *orient_summary(uint32_t index);
+/* Words of --orient-depth. */
+extern const struct option_word orient_words[];
 
 /* The EXIF orientation, 1 to 8, that turns a map as asked for. AUTO turns one that lies on its side
  * beside a photo by what has turned the photo, or back, where the reader has turned the map with

@@ -3,9 +3,7 @@
 
 #include <refocus/image.h>
 
-static const struct {
-    const char *name, *summary;
-} transfers[] = {
+const struct option_word transfer_words[] = {
     [REFOCUS_TRANSFER_DEFAULT] = {"auto", "sRGB of 16 bits, linear of floats"},
     [REFOCUS_TRANSFER_SRGB] = {"srgb", "sRGB"},
     [REFOCUS_TRANSFER_LINEAR] = {"linear", "light itself"},
@@ -13,14 +11,4 @@ static const struct {
     [REFOCUS_TRANSFER_PQ] = {"pq", "SMPTE ST 2084, 1 is 10,000 cd/m2"},
     [REFOCUS_TRANSFER_HLG] = {"hlg", "hybrid log-gamma, light of the scene"},
     [REFOCUS_TRANSFER_GAMMA] = {"gamma", "gamma 2.2"},
-};
-
-const char *transfer_name(uint32_t index)
-{
-    return index < sizeof transfers / sizeof *transfers ? transfers[index].name : NULL;
-}
-
-const char *transfer_summary(uint32_t index)
-{
-    return index < sizeof transfers / sizeof *transfers ? transfers[index].summary : NULL;
-}
+    {0}};

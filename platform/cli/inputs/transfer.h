@@ -5,13 +5,12 @@
 #include <stdint.h>
 #include "line/option.h"
 
-const char *transfer_name(uint32_t index);
-const char *transfer_summary(uint32_t index);
+/* Words of --transfer. */
+extern const struct option_word transfer_words[];
 
 /* Rows of a table of options; `member` is a struct depth_settings. */
 #define TRANSFER_OPTIONS(type, member)                                                             \
-    {OPTION(OPTION_CHOICE, "--transfer", "CURVE", type, member.transfer), .choice = transfer_name, \
-     .summary = transfer_summary,                                                                  \
+    {OPTION(OPTION_CHOICE, "--transfer", "CURVE", type, member.transfer), .words = transfer_words, \
      .help = "how a photo of more than 8 bits stores light; default auto"},                        \
     {                                                                                              \
         OPTION(OPTION_NUMBER, "--white", "LIGHT", type, member.white),                             \

@@ -4,14 +4,14 @@
 #include "inputs/upsample.h"
 #include "line/report.h"
 
-const char *upsample_name(uint32_t index)
-{
-    /* After "core" in the order of enum refocus_cv_filter, in builds without OpenCV as well. */
-    static const char *const names[] = {"core",   "bilinear",    "joint-bilateral",
-                                        "guided", "fast-global", "joint-bilateral-full"};
-
-    return index < sizeof names / sizeof *names ? names[index] : NULL;
-}
+/* After "core" in the order of enum refocus_cv_filter, in builds without OpenCV as well. */
+const struct option_word upsample_words[] = {{"core", NULL},
+                                             {"bilinear", NULL},
+                                             {"joint-bilateral", NULL},
+                                             {"guided", NULL},
+                                             {"fast-global", NULL},
+                                             {"joint-bilateral-full", NULL},
+                                             {0}};
 
 int upsample_check(int way)
 {
@@ -23,7 +23,7 @@ int upsample_check(int way)
         return EXIT_DONE;
     return report_failure(EXIT_WRONG, "--upsample",
                           "this build has no OpenCV, which '%s' is of; give core",
-                          upsample_name((uint32_t)way));
+                          upsample_words[way].name);
 #endif
 }
 

@@ -5,9 +5,10 @@
 #include <stdint.h>
 #include <refocus/refocus.h>
 #include <refocus/platform/file.h>
+#include "line/option.h"
 
-/* Words of --upsample: "core" and the filters of OpenCV; NULL ends them. */
-const char *upsample_name(uint32_t index);
+/* Words of --upsample: "core" and the filters of OpenCV. */
+extern const struct option_word upsample_words[];
 
 /* Whether this build has that way; an exit code, and prints why not. */
 int upsample_check(int way);

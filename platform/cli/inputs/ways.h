@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include "inputs/opencv.h"
 #include "line/option.h"
 
 /* How --estimate feeds its network; NAN: as the preset and the file say. */
@@ -22,23 +23,19 @@ struct network_settings {
 struct stereo_settings {
     bool within; /* both pictures are in the one file */
     int method;  /* enum refocus_stereo_method */
-    int order;   /* ways_order() */
+    int order;   /* index of ways_order_words */
 };
 
-/* Words of --network and --match; NULL ends them. */
-const char *ways_network(uint32_t index);
-const char *ways_match(uint32_t index);
-const char *ways_match_summary(uint32_t index);
-/* Likewise of --pair-order. */
-const char *ways_order(uint32_t index);
-const char *ways_order_summary(uint32_t index);
+/* Words of --match and --pair-order. */
+extern const struct option_word ways_match_words[], ways_order_words[];
 
 /* Rows for tables of options: `model` is a text, `network` and `stereo` are the settings above,
  * short_help is a line of --help or NULL. */
 #define ESTIMATE_OPTIONS(type, model, network, short_help)                                         \
     {OPTION(OPTION_TEXT, "--estimate", "MODEL.onnx", type, model), .brief = short_help,            \
      .help = "depth of the one photo, by a network"},                                              \
-        {OPTION(OPTION_CHOICE, "--network", "NAME", type, network.preset), .choice = ways_network, \
+        {OPTION(OPTION_CHOICE, "--network", "NAME", type, network.preset),                         \
+         .choice = opencv_network_name,                                                            \
          .help = "which network it is: range of its input, and its size where the file "           \
                  "leaves it open",                                                                 \
          .needs = "--estimate"},                                                                   \
@@ -74,11 +71,9 @@ const char *ways_order_summary(uint32_t index);
     }
 #define MATCH_OPTION(type, stereo, short_help)                                                     \
     OPTION(OPTION_CHOICE, "--match", "HOW", type, stereo.method),                                  \
-        .brief = short_help, .choice = ways_match, .summary = ways_match_summary,                  \
-        .help = "how a stereo pair is matched"
+        .brief = short_help, .words = ways_match_words, .help = "how a stereo pair is matched"
 #define PAIR_ORDER_OPTION(type, stereo)                                                            \
     OPTION(OPTION_CHOICE, "--pair-order", "HOW", type, stereo.order),                              \
-        .choice = ways_order, .summary = ways_order_summary,                                       \
-        .help = "which picture of a stereo pair is the first one"
+        .words = ways_order_words, .help = "which picture of a stereo pair is the first one"
 
 #endif

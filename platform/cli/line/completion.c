@@ -34,7 +34,7 @@ static bool is_number(const struct option *option)
 
 static bool has_words(const struct option *option)
 {
-    return option->choice || option->word;
+    return options_word(option, 0) || option->word;
 }
 
 /* "sweep search ..." */
@@ -42,8 +42,8 @@ static void print_words(const struct option *option)
 {
     const char *before = "";
 
-    for (uint32_t i = 0; option->choice && option->choice(i); i++, before = " ")
-        printf("%s%s", before, option->choice(i));
+    for (uint32_t i = 0; options_word(option, i); i++, before = " ")
+        printf("%s%s", before, options_word(option, i));
     if (option->word)
         printf("%s%s", before, option->word);
     if (option->other_word)

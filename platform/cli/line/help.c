@@ -33,9 +33,9 @@ static void print_wrapped(const char *text, int column, int indent)
 /* Add ": a, b, c" with the words of a choice. */
 static void add_words(const struct option *option, char *text, size_t size)
 {
-    for (uint32_t i = 0; option->choice(i); i++)
+    for (uint32_t i = 0; options_word(option, i); i++)
         snprintf(text + strlen(text), size - strlen(text), "%s%s", i == 0 ? ": " : ", ",
-                 option->choice(i));
+                 options_word(option, i));
 }
 
 void help_text(const struct option *option, char *text, size_t size)
@@ -46,7 +46,7 @@ void help_text(const struct option *option, char *text, size_t size)
         snprintf(text, size, "%s (%s)", option->help, options_range(option, range));
     else
         snprintf(text, size, "%s", option->help);
-    if (option->kind == OPTION_CHOICE && !option->summary)
+    if (option->kind == OPTION_CHOICE && !options_summary(option, 0))
         add_words(option, text, size);
 }
 
@@ -76,10 +76,10 @@ static void print_option(const struct option *option)
     print_name(option);
     help_text(option, text, sizeof text);
     print_wrapped(text, HELP_COLUMN, HELP_COLUMN);
-    if (option->summary)
-        for (uint32_t i = 0; option->choice(i); i++) {
-            printf("%*s%-13s", HELP_COLUMN + 2, "", option->choice(i));
-            print_wrapped(option->summary(i), HELP_COLUMN + 15, HELP_COLUMN + 15);
+    if (options_summary(option, 0))
+        for (uint32_t i = 0; options_word(option, i); i++) {
+            printf("%*s%-13s", HELP_COLUMN + 2, "", options_word(option, i));
+            print_wrapped(options_summary(option, i), HELP_COLUMN + 15, HELP_COLUMN + 15);
         }
 }
 

@@ -12,7 +12,7 @@ void options_print_all_help(const struct command *command);
 #define HELP_EXIT_STATUS "0 done, 1 it could not be done, 2 the command line is wrong"
 
 /* The text behind the name of an option: its help, range and words; those that have a line
- * of their own by option->summary are not in it. Room for `size` bytes. */
+ * of their own by options_summary() are not in it. Room for `size` bytes. */
 enum { HELP_LENGTH = 1024 };
 void help_text(const struct option *option, char *text, size_t size);
 

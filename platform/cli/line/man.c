@@ -88,11 +88,11 @@ void man_print_item(const char *word, const char *usage, const char *text)
 static void print_words(const struct option *option)
 {
     puts(".RS");
-    for (uint32_t i = 0; option->choice(i); i++) {
+    for (uint32_t i = 0; options_word(option, i); i++) {
         puts(".TP");
-        print_bold(option->choice(i));
+        print_bold(options_word(option, i));
         putchar('\n');
-        print_line(option->summary(i));
+        print_line(options_summary(option, i));
     }
     puts(".RE");
 }
@@ -119,7 +119,7 @@ static void print_option(const struct option *option)
     putchar('\n');
     help_text(option, text, sizeof text);
     print_line(text);
-    if (option->summary)
+    if (options_summary(option, 0))
         print_words(option);
 }
 

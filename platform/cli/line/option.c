@@ -66,9 +66,23 @@ static const char *option_name(const void *list, int i)
     return i == 0 ? "--help" : NULL;
 }
 
+const char *options_word(const struct option *option, uint32_t index)
+{
+    return option->words    ? option->words[index].name
+           : option->choice ? option->choice(index)
+                            : NULL;
+}
+
+const char *options_summary(const struct option *option, uint32_t index)
+{
+    return option->summary ? option->summary(index)
+           : option->words ? option->words[index].summary
+                           : NULL;
+}
+
 static const char *choice_word(const void *list, int i)
 {
-    return ((const struct option *)list)->choice((uint32_t)i);
+    return options_word(list, (uint32_t)i);
 }
 
 /* "from 0 to 1", "above 0", ..., and the word that may stand for a number. */
@@ -186,13 +200,13 @@ static int parse_choice(const struct option *option, const char *name, const cha
     char words[256] = "";
     const char *nearest;
 
-    for (uint32_t i = 0; option->choice(i); i++) {
-        if (strcmp(option->choice(i), text) == 0) {
+    for (uint32_t i = 0; options_word(option, i); i++) {
+        if (strcmp(options_word(option, i), text) == 0) {
             *chosen = (int)i;
             return OPTIONS_PARSED;
         }
         snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s", i > 0 ? ", " : "",
-                 option->choice(i));
+                 options_word(option, i));
     }
     nearest = options_nearest(text, choice_word, option);
     if (nearest)

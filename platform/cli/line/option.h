@@ -8,6 +8,11 @@
 
 struct command;
 
+/* A word of a choice, and a line on it or NULL. One without a name ends a list. */
+struct option_word {
+    const char *name, *summary;
+};
+
 enum option_kind {
     OPTION_HEADING, /* a line of the help */
     OPTION_FLAG,    /* bool */
@@ -35,9 +40,9 @@ struct option {
     double word_value;      /* the number it stands for */
     const char *other_word; /* another one, or NULL */
     double other_value;
-    const char *(*choice)(uint32_t index);  /* words of OPTION_CHOICE, some of OPTION_TEXT;
-                                               NULL ends them */
-    const char *(*summary)(uint32_t index); /* a line on each word, or NULL */
+    const struct option_word *words;        /* words of OPTION_CHOICE, some of OPTION_TEXT, */
+    const char *(*choice)(uint32_t index);  /* or a function, whose NULL ends them */
+    const char *(*summary)(uint32_t index); /* a line on each word, in place of its own, or NULL */
     const char *brief; /* A line of --help, to which the words of a choice are added; NULL: it is
                           in --help-all alone */
     const char *help;
@@ -101,6 +106,10 @@ const char *options_nearest_name(const struct command *command, const char *name
 /* The one of the words that is most like text, or NULL when none is. */
 const char *options_nearest(const char *text, const char *(*word)(const void *list, int i),
                             const void *list);
+
+/* Word `index` of an option, NULL behind the last, and the line on it or NULL. */
+const char *options_word(const struct option *option, uint32_t index);
+const char *options_summary(const struct option *option, uint32_t index);
 
 /* "a number from 0 to 1", ..., and the word that may stand for a number. */
 enum { OPTION_RANGE_LENGTH = 120 };

@@ -16,8 +16,8 @@ bool live_estimate_is_meant(const char *depth)
 
 static int find_preset(const char *name)
 {
-    for (uint32_t i = 0; ways_network(i); i++)
-        if (strcmp(ways_network(i), name) == 0)
+    for (uint32_t i = 0; opencv_network_name(i); i++)
+        if (strcmp(opencv_network_name(i), name) == 0)
             return (int)i;
     return -1;
 }

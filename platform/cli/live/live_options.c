@@ -7,18 +7,10 @@
 #include "live/live_options.h"
 #include "live/live_stack.h"
 
-static const char *policy_name(uint32_t index)
-{
-    static const char *const names[] = {"newest", "every"};
-    return index < 2 ? names[index] : NULL;
-}
-
-static const char *policy_summary(uint32_t index)
-{
-    static const char *const summaries[] = {"a new frame replaces one that waits: least delay",
-                                            "each frame is rendered; the source waits or drops"};
-    return index < 2 ? summaries[index] : NULL;
-}
+static const struct option_word policy_words[] = {
+    {"newest", "a new frame replaces one that waits: least delay"},
+    {"every", "each frame is rendered; the source waits or drops"},
+    {0}};
 
 static const char *format_name(uint32_t index)
 {
@@ -29,16 +21,11 @@ static const char *format_name(uint32_t index)
 static const char *quality_summary(uint32_t index)
 {
     static const char *const rays[] = {"32 rays", "64 rays", "128 rays"};
-    return index < sizeof rays / sizeof *rays ? rays[index] : engine_quality_summary(index);
+    return index < sizeof rays / sizeof *rays ? rays[index] : engine_quality_words[index].summary;
 }
 
-static const char *matrix_name(uint32_t index)
-{
-    static const char *const names[] = {
-        [REFOCUS_MATRIX_BT601] = "bt601", [REFOCUS_MATRIX_BT709] = "bt709"};
-
-    return index < 2 ? names[index] : NULL;
-}
+static const struct option_word matrix_words[] = {
+    [REFOCUS_MATRIX_BT601] = {"bt601", NULL}, [REFOCUS_MATRIX_BT709] = {"bt709", NULL}, {0}};
 
 const struct option live_options[] = {
     {.kind = OPTION_HEADING, .help = "In and out"},
@@ -61,7 +48,7 @@ const struct option live_options[] = {
              "to 0.95"},
     UPSAMPLE_OPTION(struct live_settings, depth),
     {OPTION(OPTION_CHOICE, "--depth-edges", "HOW", struct live_settings, depth.edges),
-     .choice = edges_name, .summary = edges_summary,
+     .words = edges_words,
      .help = "the edges of the depth, steady from frame to frame; default as-given, which takes no "
              "time"},
     {OPTION(OPTION_TEXT, "--calibration", "FILE", struct live_settings, calibration),
@@ -85,7 +72,7 @@ const struct option live_options[] = {
      .help = "frames a second, also as 30000/1001; default as the source has them, and where it "
              "does not say, as "
              "file: and raw: without a rate, as the other of camera and depth has them, else 30"},
-    {OPTION(OPTION_CHOICE, "--matrix", "NAME", struct live_settings, matrix), .choice = matrix_name,
+    {OPTION(OPTION_CHOICE, "--matrix", "NAME", struct live_settings, matrix), .words = matrix_words,
      .help = "how Y, U and V of its frames become R, G and B; default as the source says, and of "
              "y4m: and raw:, which cannot, bt709 from 1280 columns or 577 rows on, else bt601"},
     {OPTION(OPTION_TEXT, "--autofocus", "HOW", struct live_settings, focus_way),
@@ -142,7 +129,7 @@ const struct option live_options[] = {
      .choice = refocus_cpu_name, .help = "instruction set"},
     {.kind = OPTION_HEADING, .help = "Running"},
     {OPTION(OPTION_CHOICE, "--frames-policy", "NAME", struct live_settings, policy),
-     .choice = policy_name, .summary = policy_summary,
+     .words = policy_words,
      .help = "what becomes of frames that cannot be kept up with; default newest, and every "
              "from files (file:, y4m:, raw:) to files"},
     {OPTION(OPTION_INTEGER, "--frames", "N", struct live_settings, frames), .least = 1,

@@ -7,7 +7,7 @@
 #include "live/live_depth.h"
 
 /* Put a map of the photo's size in place of a map of another, in memory that `full` owns, by a way
- * of upsample_name(); the core's is left to the renderer. Returns what upsample_by_filter()
+ * of upsample_words; the core's is left to the renderer. Returns what upsample_by_filter()
  * returns. */
 int live_upsample(struct live_depth_map *full, const struct live_depth_map **map,
                   const struct refocus_image *photo, int way, struct refocus_reason *reason);

@@ -23,7 +23,7 @@ static bool write_value(const struct option *option, const void *settings, char 
 
     switch (option->kind) {
     case OPTION_CHOICE:
-        word = option->choice((uint32_t) * (const int *)at);
+        word = options_word(option, (uint32_t) * (const int *)at);
         break;
     case OPTION_TEXT:
         word = *(const char *const *)at;

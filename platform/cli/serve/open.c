@@ -135,7 +135,7 @@ static json_t *settings_json(const struct serving *s, const struct engine *engin
                      (double)engine->params.render.focus_disparity,
                      isnan(number) ? "blur" : "f-number", isnan(number) ? blur : number,
                      "highlights", "auto", "focus-width", 0, "bokeh", bokeh_preset_name(0),
-                     "quality", engine_quality_name(QUALITY_AUTO), "method",
+                     "quality", engine_quality_words[QUALITY_AUTO].name, "method",
                      refocus_method_name((uint32_t)s->base.engine.method));
 }
 

@@ -47,12 +47,8 @@ struct keys {
     struct key key[];
 };
 
-const char *ease_name(uint32_t index)
-{
-    static const char *const names[] = {"smooth", "linear", "in", "out"};
-
-    return index < 4 ? names[index] : NULL;
-}
+const struct option_word ease_words[] = {
+    {"smooth", NULL}, {"linear", NULL}, {"in", NULL}, {"out", NULL}, {0}};
 
 double ease_at(enum ease ease, double part)
 {
@@ -125,8 +121,8 @@ static int damaged(const char *file, int i, const char *name, const char *why)
 
 static int read_ease(const char *file, int i, const json_t *value, struct key *key)
 {
-    for (uint32_t e = 0; ease_name(e); e++) {
-        if (json_is_string(value) && strcmp(json_string_value(value), ease_name(e)) == 0) {
+    for (uint32_t e = 0; ease_words[e].name; e++) {
+        if (json_is_string(value) && strcmp(json_string_value(value), ease_words[e].name) == 0) {
             key->ease = (enum ease)e;
             return EXIT_DONE;
         }

@@ -20,9 +20,10 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <refocus/settings.h>
+#include "line/option.h"
 
 enum ease { EASE_SMOOTH, EASE_LINEAR, EASE_IN, EASE_OUT };
-const char *ease_name(uint32_t index);
+extern const struct option_word ease_words[];
 
 /* Part of the way, 0 to 1, at a part of the time. */
 double ease_at(enum ease ease, double part);

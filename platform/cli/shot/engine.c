@@ -8,63 +8,32 @@
 #include "line/interrupt.h"
 #include "shot/spool.h"
 
+const struct option_word engine_quality_words[] = {
+    {"preview", "32 rays, thin structures gathered by them"},
+    {"standard", "64 rays, thin structures splatted"},
+    {"best", "128 rays, thin structures splatted, texture continued behind them"},
+    [QUALITY_AUTO] = {"auto",
+                      "standard, but more rays, up to 256, where they would lie farther apart than "
+                      "at a blur of 20 pixels"},
+    {0}};
+
 static const struct {
-    const char *name, *summary;
     int rays;
     bool thin, textured;
 } qualities[] = {
-    {"preview", "32 rays, thin structures gathered by them", 32, false, false},
-    {"standard", "64 rays, thin structures splatted", 64, true, false},
-    {"best", "128 rays, thin structures splatted, texture continued behind them", 128, true, true},
-    [QUALITY_AUTO] = {"auto",
-                      "standard, but more rays, up to 256, where they would lie farther apart than "
-                      "at a blur of 20 pixels",
-                      64, true, false}};
+    {32, false, false}, {64, true, false}, {128, true, true}, [QUALITY_AUTO] = {64, true, false}};
 
-static const struct {
-    const char *name, *summary;
-} fills[] = {
+const struct option_word engine_fill_words[] = {
     {"auto", "textured with --quality best, else smooth"},
     {"smooth", "from the colours around"},
-    {"textured", "texture and edges around are continued; takes a second or two a megapixel"}};
+    {"textured", "texture and edges around are continued; takes a second or two a megapixel"},
+    {0}};
 
-static const struct {
-    const char *name, *summary;
-} blends[] = {
+const struct option_word engine_blend_words[] = {
     [REFOCUS_BLEND_LINEAR] = {"linear", "linear light by the sRGB curve"},
     [REFOCUS_BLEND_STORED] = {"stored", "stored values, as in the paper"},
     [REFOCUS_BLEND_GAMMA] = {"gamma", "gamma 2.2"},
-};
-
-const char *engine_quality_name(uint32_t index)
-{
-    return index < sizeof qualities / sizeof *qualities ? qualities[index].name : NULL;
-}
-
-const char *engine_quality_summary(uint32_t index)
-{
-    return index < sizeof qualities / sizeof *qualities ? qualities[index].summary : NULL;
-}
-
-const char *engine_fill_name(uint32_t index)
-{
-    return index < sizeof fills / sizeof *fills ? fills[index].name : NULL;
-}
-
-const char *engine_fill_summary(uint32_t index)
-{
-    return index < sizeof fills / sizeof *fills ? fills[index].summary : NULL;
-}
-
-const char *engine_blend_name(uint32_t index)
-{
-    return index < sizeof blends / sizeof *blends ? blends[index].name : NULL;
-}
-
-const char *engine_blend_summary(uint32_t index)
-{
-    return index < sizeof blends / sizeof *blends ? blends[index].summary : NULL;
-}
+    {0}};
 
 static int check_aperture(uint32_t method, const struct engine_settings *settings)
 {
@@ -355,7 +324,7 @@ json_t *engine_json(const struct engine *engine)
         "{s:s, s:o, s:s, s:o, s:o, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:o, s:I, "
         "s:I}",
         "method", refocus_method_name(params->render.method), "rays", rays, "blend",
-        engine_blend_name(params->render.blend), "sigma",
+        engine_blend_words[params->render.blend].name, "sigma",
         params->render.sigma < 1e30f ? json_real(params->render.sigma) : json_string("off"),
         "highlights",
         params->highlights.estimate > 0 ? json_string("auto")

@@ -35,13 +35,10 @@ enum { HIGHLIGHTS_ESTIMATED = 0 }; /* `highlights`: no gain, which is 1 or more 
         .controls = CONTROL_SETTINGS_NONE, .bokeh = BOKEH_SETTINGS_NONE                            \
     }
 
-const char *engine_quality_name(uint32_t index);
-const char *engine_quality_summary(uint32_t index);
 enum engine_fill { FILL_AUTO, FILL_SMOOTH, FILL_TEXTURED };
-const char *engine_fill_name(uint32_t index);
-const char *engine_fill_summary(uint32_t index);
-const char *engine_blend_name(uint32_t index);
-const char *engine_blend_summary(uint32_t index);
+
+/* Words of --quality, --fill and --blend. */
+extern const struct option_word engine_quality_words[], engine_fill_words[], engine_blend_words[];
 
 /* Rows of tables of options, for settings with a member of the type above. */
 #define METHOD_OPTION(type, member)                                                                \
@@ -50,7 +47,7 @@ const char *engine_blend_summary(uint32_t index);
             .choice = refocus_method_name, .summary = refocus_method_summary,                      \
             .brief = "how it is rendered", .help = "how it is rendered; default sweep"             \
     }
-/* usual: the quality that is the default; summaries: what each of them is. */
+/* usual: the quality that is the default; summaries: what each of them is, or NULL. */
 #define RAY_OPTIONS(type, member, usual, summaries)                                                \
     {OPTION(OPTION_INTEGER, "--rays", "N", type, member.rays),                                     \
      .least = 1,                                                                                   \
@@ -61,7 +58,7 @@ const char *engine_blend_summary(uint32_t index);
              "aperture mask; default: by --quality",                                               \
      OF_METHODS_THAT(type, member.method, method_takes_rays)},                                     \
         {OPTION(OPTION_CHOICE, "--quality", "NAME", type, member.quality),                         \
-         .choice = engine_quality_name, .summary = summaries, .brief = "time against smoothness",  \
+         .words = engine_quality_words, .summary = summaries, .brief = "time against smoothness",  \
          .help = "presets; default " usual "; --rays overrules"},                                  \
         {OPTION(OPTION_INTEGER, "--iterations", "T", type, member.iterations), .least = 1,         \
          .greatest = 64,                                                                           \
@@ -83,7 +80,7 @@ const char *engine_blend_summary(uint32_t index);
      OF_METHODS(type, member.method, OF_SWEEP)},                                                   \
     {                                                                                              \
         OPTION(OPTION_CHOICE, "--fill", "HOW", type, member.fill),                                 \
-            .choice = engine_fill_name, .summary = engine_fill_summary,                            \
+            .words = engine_fill_words,                                                            \
             .help = "sweep: how the background is made up that a blurred foreground uncovers",     \
             OF_METHODS(type, member.method, OF_SWEEP)                                              \
     }
@@ -94,8 +91,7 @@ const char *engine_blend_summary(uint32_t index);
      .help = "disc (default), polygon:BLADES or polygon:BLADES:DEGREES with 3 to 16 "              \
              "blades, a mask picture of at most 255x255, white = open, or a figure:"},             \
         {OPTION(OPTION_CHOICE, "--blend", "NAME", type, member.blend),                             \
-         .choice = engine_blend_name, .summary = engine_blend_summary,                             \
-         .help = "the values that are averaged; default linear"},                                  \
+         .words = engine_blend_words, .help = "the values that are averaged; default linear"},     \
         {OPTION(OPTION_NUMBER, "--sigma", "S", type, member.sigma),                                \
          .least = 1,                                                                               \
          .greatest = 1e30,                                                                         \
@@ -113,8 +109,7 @@ const char *engine_blend_summary(uint32_t index);
             OF_METHODS(type, member.method, OF_SWEEP | OF_SEARCH)                                  \
     }
 #define METHOD_OPTIONS(type, member, usual)                                                        \
-    RAY_OPTIONS(type, member, usual, engine_quality_summary), LAYER_OPTIONS(type, member),         \
-        BLEND_OPTIONS(type, member)
+    RAY_OPTIONS(type, member, usual, NULL), LAYER_OPTIONS(type, member), BLEND_OPTIONS(type, member)
 #define RUN_OPTIONS(type, member)                                                                  \
     {OPTION(OPTION_INTEGER, "--threads", "N", type, member.threads), .elsewhere = true,            \
      .greatest = 64, .help = "0 = one for each processor, the default; never changes the result"}, \

@@ -6,26 +6,15 @@
 #include "inputs/limits.h"
 #include "line/report.h"
 
-const char *papers_spread_name(uint32_t index)
-{
-    static const char *const names[] = {"uniform", "lommel"};
-
-    return index < 2 ? names[index] : NULL;
-}
-
-const char *papers_field_name(uint32_t index)
-{
-    static const char *const names[] = {"lens", "cylinder", "plus", "plane", "sphere", "picture"};
-
-    return index < sizeof names / sizeof *names ? names[index] : NULL;
-}
-
-const char *papers_solver_name(uint32_t index)
-{
-    static const char *const names[] = {"series", "steps"};
-
-    return index < 2 ? names[index] : NULL;
-}
+const struct option_word papers_spread_words[] = {{"uniform", NULL}, {"lommel", NULL}, {0}};
+const struct option_word papers_field_words[] = {{"lens", NULL},
+                                                 {"cylinder", NULL},
+                                                 {"plus", NULL},
+                                                 {"plane", NULL},
+                                                 {"sphere", NULL},
+                                                 {"picture", NULL},
+                                                 {0}};
+const struct option_word papers_solver_words[] = {{"series", NULL}, {"steps", NULL}, {0}};
 
 uint8_t *papers_read_grey(const char *file, int *width, int *height)
 {

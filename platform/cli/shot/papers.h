@@ -28,9 +28,8 @@ struct paper_settings {
         .layers = NAN, .conductivity = NAN                                                         \
     }
 
-const char *papers_spread_name(uint32_t index);
-const char *papers_field_name(uint32_t index);
-const char *papers_solver_name(uint32_t index);
+/* Words of --spread, --field and --solver. */
+extern const struct option_word papers_spread_words[], papers_field_words[], papers_solver_words[];
 
 #define PAPER_NUMBER(type, member, kind_, name_, argument_, field_, least_, greatest_, help_, ...) \
     {                                                                                              \
@@ -38,10 +37,10 @@ const char *papers_solver_name(uint32_t index);
         .offset = offsetof(type, member.field_), .least = least_, .greatest = greatest_,           \
         .count = 2, .help = help_, __VA_ARGS__                                                     \
     }
-#define PAPER_CHOICE(type, member, name_, field_, choice_, help_, ...)                             \
+#define PAPER_CHOICE(type, member, name_, field_, words_, help_, ...)                              \
     {                                                                                              \
-        .choice = choice_, .help = help_,                                                          \
-        OPTION(OPTION_CHOICE, name_, "NAME", type, member.field_), __VA_ARGS__                     \
+        .words = words_, .help = help_, OPTION(OPTION_CHOICE, name_, "NAME", type, member.field_), \
+        __VA_ARGS__                                                                                \
     }
 #define PAPER_STAR_NEEDS  .needs = "--star,--bokeh"
 #define PAPER_FIELD_NEEDS .needs = "--field"
@@ -55,7 +54,7 @@ const char *papers_solver_name(uint32_t index);
         PAPER_NUMBER(type, member, OPTION_INTEGER, "--seed", "N", seed, 0, 999999999,              \
                      "jittered: which ones; of --grain: which; default 0",                         \
                      OF_METHODS(type, method, OF_JITTERED), .needs = "--grain"),                   \
-        PAPER_CHOICE(type, member, "--spread", spread, papers_spread_name,                         \
+        PAPER_CHOICE(type, member, "--spread", spread, papers_spread_words,                        \
                      "scatter: light in a circle of confusion; default uniform",                   \
                      OF_METHODS(type, method, OF_SCATTER)),                                        \
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--airy-radius", "R", airy_radius, 0.25, 16,     \
@@ -103,7 +102,7 @@ const char *papers_solver_name(uint32_t index);
                      "foveated: disparity about the focus of the exact part; default 1, "          \
                      "all",                                                                        \
                      OF_METHODS(type, method, OF_FOVEATED)),                                       \
-        PAPER_CHOICE(type, member, "--field", field, papers_field_name,                            \
+        PAPER_CHOICE(type, member, "--field", field, papers_field_words,                           \
                      "sweep, search, blur, diffusion: where it is blurred; default lens",          \
                      .needs = NULL),                                                               \
         PAPER_NUMBER(type, member, OPTION_NUMBERS, "--field-at", "X,Y", field_at, 0, 65535,        \
@@ -124,7 +123,7 @@ const char *papers_solver_name(uint32_t index);
         PAPER_NUMBER(type, member, OPTION_INTEGER, "--layers", "N", layers, 1, 8,                  \
                      "diffusion: that the picture is split into by depth; default 4",              \
                      OF_METHODS(type, method, OF_DIFFUSION)),                                      \
-        PAPER_CHOICE(type, member, "--solver", solver, papers_solver_name,                         \
+        PAPER_CHOICE(type, member, "--solver", solver, papers_solver_words,                        \
                      "diffusion: series (default), or the paper's single steps",                   \
                      OF_METHODS(type, method, OF_DIFFUSION)),                                      \
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--conductivity", "W", conductivity, 0.01, 1,    \

@@ -6,25 +6,16 @@
 #include "views/stereo_views.h"
 #include "views/views.h"
 
-const char *view_name(uint32_t index)
-{
-    static const char *const names[] = {"none",    "depth",    "blur", "overlay",
-                                        "peaking", "anaglyph", "edges"};
-    return index < sizeof names / sizeof *names ? names[index] : NULL;
-}
-
-const char *view_summary(uint32_t index)
-{
-    static const char *const summaries[] = {
-        "the refocused photo",
-        "the disparities, with metres where they are known",
-        "the blur radii, with lines where they are half a pixel",
-        "the disparities over the photo",
-        "the photo in grey, its edges in focus in green",
-        "what two eyes see, for glasses of red and cyan",
-        "the photo in grey; orange and blue where edges of the depth went nearer and farther"};
-    return index < sizeof summaries / sizeof *summaries ? summaries[index] : NULL;
-}
+const struct option_word view_words[] = {
+    {"none", "the refocused photo"},
+    {"depth", "the disparities, with metres where they are known"},
+    {"blur", "the blur radii, with lines where they are half a pixel"},
+    {"overlay", "the disparities over the photo"},
+    {"peaking", "the photo in grey, its edges in focus in green"},
+    {"anaglyph", "what two eyes see, for glasses of red and cyan"},
+    {"edges",
+     "the photo in grey; orange and blue where edges of the depth went nearer and farther"},
+    {0}};
 
 static int lost(int status)
 {

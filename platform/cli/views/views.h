@@ -14,8 +14,8 @@ enum view {
     VIEW_EDGES
 };
 
-const char *view_name(uint32_t index);
-const char *view_summary(uint32_t index);
+/* Words of --view. */
+extern const struct option_word view_words[];
 
 /* Render an open shot into `out`, or replace that by a view of it. parallax: pixels
  * between the eyes of an anaglyph at disparity 1 when 0 is in focus; NAN: 1/50 of the
