@@ -5,89 +5,20 @@
 #include <smmintrin.h>
 #include <stdint.h>
 
+enum { VEC_U16 = 8, VEC_U8 = 16, VEC_BITS = 2 };
+typedef __m128i vec_u16, vec_u8;
+
+typedef struct {
+    __m128i low, high;
+} vec_u32;
+
+#define VEC_LANES(name) _mm_##name
+#define VEC_WHOLE(name) _mm_##name##_si128
 #include "simd/vec_x86.h"
-
-enum { VEC_U16 = 8, VEC_BITS = 2 };
-typedef __m128i vec_u16;
-
-static inline vec_u16 vec_u16_load(const void *p)
-{
-    return _mm_loadu_si128((const __m128i *)p);
-}
 
 static inline vec_u16 vec_u16_from_bytes(const uint8_t *p)
 {
     return _mm_cvtepu8_epi16(_mm_loadl_epi64((const __m128i *)p));
-}
-
-static inline void vec_u16_store(void *p, vec_u16 v)
-{
-    _mm_storeu_si128((__m128i *)p, v);
-}
-
-static inline vec_u16 vec_u16_set(uint16_t x)
-{
-    return _mm_set1_epi16((int16_t)x);
-}
-
-static inline vec_u16 vec_u16_add(vec_u16 a, vec_u16 b)
-{
-    return _mm_add_epi16(a, b);
-}
-
-static inline vec_u16 vec_u16_sub(vec_u16 a, vec_u16 b)
-{
-    return _mm_sub_epi16(a, b);
-}
-
-static inline vec_u16 vec_u16_and(vec_u16 a, vec_u16 b)
-{
-    return _mm_and_si128(a, b);
-}
-
-static inline vec_u16 vec_u16_or(vec_u16 a, vec_u16 b)
-{
-    return _mm_or_si128(a, b);
-}
-
-static inline vec_u16 vec_u16_without(vec_u16 a, vec_u16 b)
-{
-    return _mm_andnot_si128(b, a);
-}
-
-static inline vec_u16 vec_u16_at_most(vec_u16 a, vec_u16 b)
-{
-    return _mm_cmpeq_epi16(_mm_min_epu16(a, b), a);
-}
-
-static inline vec_u16 vec_u16_xor(vec_u16 a, vec_u16 b)
-{
-    return _mm_xor_si128(a, b);
-}
-
-static inline vec_u16 vec_u16_mul_high(vec_u16 a, vec_u16 b)
-{
-    return _mm_mulhi_epu16(a, b);
-}
-
-static inline vec_u16 vec_u16_half(vec_u16 a)
-{
-    return _mm_srli_epi16(a, 1);
-}
-
-static inline vec_u16 vec_u16_min(vec_u16 a, vec_u16 b)
-{
-    return _mm_min_epu16(a, b);
-}
-
-static inline vec_u16 vec_u16_equal(vec_u16 a, vec_u16 b)
-{
-    return _mm_cmpeq_epi16(a, b);
-}
-
-static inline uint64_t vec_u16_bits(vec_u16 mask)
-{
-    return (uint32_t)_mm_movemask_epi8(mask);
 }
 
 static inline uint16_t vec_u16_lane0(vec_u16 a)
@@ -98,26 +29,6 @@ static inline uint16_t vec_u16_lane0(vec_u16 a)
 static inline vec_u16 vec_u16_spread(vec_u16 a)
 {
     return _mm_shuffle_epi8(a, _mm_set1_epi16(0x0100));
-}
-
-static inline vec_u16 vec_u16_offset(vec_u16 s, vec_u16 u)
-{
-    return _mm_srai_epi16(_mm_add_epi16(_mm_mulhi_epi16(s, u), _mm_set1_epi16(64)), 7);
-}
-
-static inline vec_u16 vec_u16_bytes(vec_u16 a, vec_u16 b)
-{
-    return _mm_or_si128(_mm_and_si128(a, _mm_set1_epi16(0xff)), _mm_slli_epi16(b, 8));
-}
-
-static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)
-{
-    return _mm_max_epu16(a, b);
-}
-
-static inline int vec_u16_any(vec_u16 a)
-{
-    return !_mm_testz_si128(a, a);
 }
 
 static inline uint16_t vec_u16_greatest(vec_u16 a)
@@ -147,11 +58,6 @@ static inline vec_u16 vec_u16_zip_high(vec_u16 a, vec_u16 b)
     return _mm_unpackhi_epi16(a, b);
 }
 
-static inline vec_u16 vec_u16_twice(vec_u16 a)
-{
-    return _mm_blend_epi16(a, _mm_slli_epi32(a, 16), 0xaa);
-}
-
 static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
 {
     const __m128i zero = _mm_setzero_si128();
@@ -161,26 +67,6 @@ static inline void vec_u16_add_to(uint32_t *sum, vec_u16 v)
     _mm_storeu_si128(high, _mm_add_epi32(_mm_loadu_si128(high), _mm_unpackhi_epi16(v, zero)));
 }
 
-static inline vec_u16 vec_s16_less(vec_u16 a, vec_u16 b)
-{
-    return _mm_cmpgt_epi16(b, a);
-}
-
-static inline vec_u16 vec_s16_apart(vec_u16 a, vec_u16 b)
-{
-    return _mm_max_epi16(_mm_subs_epi16(a, b), _mm_subs_epi16(b, a));
-}
-
-static inline vec_u16 vec_s16_scale(vec_u16 a, vec_u16 b)
-{
-    return _mm_mulhrs_epi16(a, b);
-}
-
-static inline vec_u16 vec_s16_max(vec_u16 a, vec_u16 b)
-{
-    return _mm_max_epi16(a, b);
-}
-
 static inline int32_t vec_dot16(const int16_t *p, const int16_t *q)
 {
     __m128i s = _mm_add_epi32(_mm_madd_epi16(vec_u16_load(p), vec_u16_load(q)),
@@ -188,27 +74,6 @@ static inline int32_t vec_dot16(const int16_t *p, const int16_t *q)
 
     s = _mm_add_epi32(s, _mm_shuffle_epi32(s, 0x4e));
     return _mm_cvtsi128_si32(_mm_add_epi32(s, _mm_shuffle_epi32(s, 0xb1)));
-}
-
-static inline vec_u16 vec_weigh4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d, const int16_t share[4],
-                                 const int shift)
-{
-    const __m128i sign = _mm_set1_epi16(-32768), half = _mm_set1_epi32(1 << (shift - 1));
-    const __m128i ab = _mm_set1_epi32(vec_pair(share[0], share[1]));
-    const __m128i cd = _mm_set1_epi32(vec_pair(share[2], share[3]));
-    __m128i low, high;
-
-    a = _mm_xor_si128(a, sign);
-    b = _mm_xor_si128(b, sign);
-    c = _mm_xor_si128(c, sign);
-    d = _mm_xor_si128(d, sign);
-    low = _mm_add_epi32(_mm_madd_epi16(_mm_unpacklo_epi16(a, b), ab),
-                        _mm_madd_epi16(_mm_unpacklo_epi16(c, d), cd));
-    high = _mm_add_epi32(_mm_madd_epi16(_mm_unpackhi_epi16(a, b), ab),
-                         _mm_madd_epi16(_mm_unpackhi_epi16(c, d), cd));
-    low = _mm_srai_epi32(_mm_add_epi32(low, half), shift);
-    high = _mm_srai_epi32(_mm_add_epi32(high, half), shift);
-    return _mm_xor_si128(_mm_packs_epi32(low, high), sign);
 }
 
 static inline uint32_t vec_within16(const uint16_t *p, uint16_t low, uint16_t width)
@@ -231,80 +96,9 @@ static inline uint64_t vec_within64(const uint16_t *p, uint16_t low, uint16_t wi
     return bits;
 }
 
-static inline vec_u16 vec_u16_select(vec_u16 m, vec_u16 a, vec_u16 b)
-{
-    return _mm_blendv_epi8(b, a, m);
-}
-
-static inline vec_u16 vec_u16_mul(vec_u16 a, vec_u16 b)
-{
-    return _mm_mullo_epi16(a, b);
-}
-
-enum { VEC_U8 = 16 };
-typedef __m128i vec_u8;
-
-static inline vec_u8 vec_u8_load(const void *p)
-{
-    return _mm_loadu_si128((const __m128i *)p);
-}
-
-static inline vec_u8 vec_u8_set(uint8_t x)
-{
-    return _mm_set1_epi8((char)x);
-}
-
-static inline vec_u8 vec_u8_absdiff(vec_u8 a, vec_u8 b)
-{
-    return _mm_or_si128(_mm_subs_epu8(a, b), _mm_subs_epu8(b, a));
-}
-
-static inline vec_u8 vec_u8_apart(vec_u8 a, vec_u8 b)
-{
-    return _mm_abs_epi8(_mm_sub_epi8(a, b));
-}
-
-static inline vec_u8 vec_u8_adds(vec_u8 a, vec_u8 b)
-{
-    return _mm_adds_epu8(a, b);
-}
-
-static inline vec_u8 vec_u8_subs(vec_u8 a, vec_u8 b)
-{
-    return _mm_subs_epu8(a, b);
-}
-
-static inline vec_u8 vec_u8_half(vec_u8 v)
-{
-    return _mm_and_si128(_mm_srli_epi16(v, 1), _mm_set1_epi8(127));
-}
-
 static inline vec_u8 vec_u8_table(const uint8_t *p)
 {
     return _mm_loadu_si128((const __m128i *)p);
-}
-
-static inline vec_u8 vec_u8_lookup(vec_u8 table, vec_u8 v)
-{
-    return _mm_shuffle_epi8(table, v);
-}
-
-/* A lane whose highest bit is set is shuffled to 0. */
-static inline vec_u8 vec_u8_lookup_or_0(vec_u8 table, vec_u8 v)
-{
-    return _mm_shuffle_epi8(table, _mm_adds_epu8(v, _mm_set1_epi8(112)));
-}
-
-/* Sums of even lanes + 2^8 odd ones, and of odd ones. */
-static inline void vec_u8_add_wide(vec_u16 sum[2], vec_u8 v)
-{
-    sum[0] = _mm_add_epi16(sum[0], v);
-    sum[1] = _mm_add_epi16(sum[1], _mm_srli_epi16(v, 8));
-}
-
-static inline void vec_u8_store(void *p, vec_u8 v)
-{
-    _mm_storeu_si128((__m128i *)p, v);
 }
 
 static inline void vec_u8_store_wide(uint16_t *p, const vec_u16 sum[2])
@@ -328,20 +122,6 @@ static inline uint8_t vec_u8_least(vec_u8 v)
 static inline uint8_t vec_u8_most(vec_u8 v)
 {
     return (uint8_t)~vec_u8_least(_mm_xor_si128(v, _mm_set1_epi8(-1)));
-}
-
-static inline uint64_t vec_u8_bits_at_most(vec_u8 a, vec_u8 b)
-{
-    return (uint32_t)_mm_movemask_epi8(_mm_cmpeq_epi8(_mm_min_epu8(a, b), a));
-}
-
-typedef struct {
-    __m128i low, high;
-} vec_u32;
-
-static inline vec_u32 vec_u32_zero(void)
-{
-    return (vec_u32){_mm_setzero_si128(), _mm_setzero_si128()};
 }
 
 static inline vec_u32 vec_u32_add_products(vec_u32 sum, vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d)
@@ -369,6 +149,5 @@ static inline void vec_u32_add_to(uint64_t *to, vec_u32 v)
 }
 
 #include "simd/vec_mask.h"
-#include "simd/vec_weigh4.h"
 
 #endif
