@@ -34,6 +34,18 @@
 
 enum { LANES = RF_TILE * RF_TILE };
 
+/* A tile, what its rays may hit, and what is computed of it. */
+struct tile {
+    const struct rf_frame *f;
+    int tx, ty;
+    struct rf_tile_plan plan;
+    struct rf_tile_rays rays;
+    int background_blur;        /* It is that of a corner of the tile, as it is stored. */
+    int from, to;               /* channels `from` to `to` - 1 */
+    struct rf_fine_means *fine; /* finer means of it, or NULL */
+    struct share *share;
+};
+
 /* Where at most RF_RAY_CHUNK rays look for the slabs of a tile and, last, for the hidden
  * background. */
 struct lookups {
@@ -66,10 +78,11 @@ static void set_aims(struct aims *aims, const struct rf_ray_set *set, int first,
     aims->v = aims->memory[1];
 }
 
-static void set_lookups(struct lookups *lookups, const struct rf_frame *f,
-                        const struct rf_tile_plan *plan, const struct rf_tile_rays *rays, int first,
-                        int background_blur)
+static void set_lookups(struct lookups *lookups, const struct tile *tile, int first)
 {
+    const struct rf_frame *const f = tile->f;
+    const struct rf_tile_plan *const plan = &tile->plan;
+    const struct rf_tile_rays *const rays = &tile->rays;
     struct rf_ray_sides sides;
     struct aims own[2];
 
@@ -78,7 +91,7 @@ static void set_lookups(struct lookups *lookups, const struct rf_frame *f,
     if (sides.before != sides.behind)
         set_aims(&own[1], rays->set, first, sides.before, lookups->rays);
     for (int k = 0; k <= plan->slabs; k++) {
-        const int blur = k < plan->slabs ? plan->slab[k].centre : background_blur;
+        const int blur = k < plan->slabs ? plan->slab[k].centre : tile->background_blur;
         const int scaled = rf_scaled_blur(rays, blur);
         const struct aims *aims = &own[blur < 0 && sides.before != sides.behind];
 
@@ -131,16 +144,18 @@ struct strip {
     int first;         /* lane of the tally */
 };
 
-static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                        struct share *share, int tx, int ty, struct strip strip)
+static void sweep_strip(const struct tile *tile, struct strip strip)
 {
     enum { CELLS = RF_TILE / RF_CELL, STRIP_CELLS = RF_STRIP / RF_CELL };
+    const struct rf_frame *const f = tile->f;
+    const struct rf_tile_plan *const plan = &tile->plan;
+    struct share *const share = tile->share;
     const struct lookups *lookups = &share->lookups;
     union tally *const run = &share->run;
-    const int first = strip.first, y = ty * RF_TILE + strip.y, x = tx * RF_TILE;
+    const int first = strip.first, y = tile->ty * RF_TILE + strip.y, x = tile->tx * RF_TILE;
     const ptrdiff_t at = y * f->view->stride + x, weight_at = y * f->weight.stride + x;
     const uint32_t *range =
-        f->range.at + (ty * CELLS + strip.y / RF_CELL) * f->range.stride + tx * CELLS;
+        f->range.at + (tile->ty * CELLS + strip.y / RF_CELL) * f->range.stride + tile->tx * CELLS;
     /* The vectors of sweep_weighted hold 8 times white at the most. */
     rf_sweep_weighted_fn *const weighted =
         f->bright == RF_BRIGHTEST ? rf_sweep_weighted_c : f->exec->kernels->sweep_weighted;
@@ -186,14 +201,12 @@ static void sweep_strip(const struct rf_frame *f, const struct rf_tile_plan *pla
 }
 
 /* Sweeps the rows of a tile that are computed. */
-static void sweep_strips(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                         struct share *share, int tx, int ty, struct rf_tile_rows rows)
+static void sweep_strips(const struct tile *tile, struct rf_tile_rows rows)
 {
     const int count = rows.step <= 2 ? rows.count / 2 : rows.count;
 
     for (int i = 0; i < rows.count; i += count)
-        sweep_strip(f, plan, share, tx, ty,
-                    (struct strip){rf_row_at(rows, i), rows.step, count, i * RF_TILE});
+        sweep_strip(tile, (struct strip){rf_row_at(rows, i), rows.step, count, i * RF_TILE});
 }
 
 static void clear_run(const struct rf_frame *f, union tally *run, int lanes)
@@ -227,11 +240,11 @@ static_assert((uint64_t)RF_FULL_RAYS * RF_MOST_GAIN * RF_LIGHT_MAX <= UINT32_MAX
 static_assert((uint64_t)RF_FULL_RAYS * RF_MOST_GAIN * RF_LIGHT_MAX * RF_WEIGHT_MAX < UINT64_C(1)
                                                                                          << 51,
               "and of weighted light what kernels->weighted_means takes");
-static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                       const struct rf_tile_rays *tile_rays, int background_blur, int tx, int ty,
-                       struct rf_tile_rows rows, struct share *share)
+static void sweep_rays(const struct tile *tile, struct rf_tile_rows rows)
 {
-    const struct rf_ray_set *set = tile_rays->set;
+    const struct rf_frame *const f = tile->f;
+    const struct rf_ray_set *set = tile->rays.set;
+    struct share *const share = tile->share;
     struct lookups *const lookups = &share->lookups;
     const int lanes = rows.count * RF_TILE;
     int rays = 0; /* in this run */
@@ -244,8 +257,8 @@ static void sweep_rays(const struct rf_frame *f, const struct rf_tile_plan *plan
             return;
         lookups->rays = rf_rays_of_equal_weight(set, n);
         rays += lookups->rays;
-        set_lookups(lookups, f, plan, tile_rays, n, background_blur);
-        sweep_strips(f, plan, share, tx, ty, rows);
+        set_lookups(lookups, tile, n);
+        sweep_strips(tile, rows);
         if (!set->equal &&
             (n + lookups->rays == set->count || ray[lookups->rays].weight != ray->weight)) {
             add_run(f, &share->run, ray->weight, (uint64_t)rays, &share->sums);
@@ -269,25 +282,23 @@ static void clamp_run(union tally *run, int lanes, bool wide, uint32_t rays)
     }
 }
 
-/* Computes the means of channels `from` to `to` - 1 of a tile from rays of equal weight. */
-static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                        const struct rf_tile_rays *tile_rays, int background_blur, int tx, int ty,
-                        struct share *share, uint16_t mean[3][LANES], struct rf_fine_means *fine,
-                        int from, int to)
+/* Computes the means of a tile from rays of equal weight. */
+static void sweep_means(const struct tile *tile, uint16_t mean[3][LANES])
 {
-    const uint32_t count = (uint32_t)tile_rays->set->count;
-    const struct rf_tile_rows rows = rf_tile_rows(f, plan, background_blur);
-    const uint16_t softness = rf_softness(f, plan, background_blur);
+    const struct rf_frame *const f = tile->f;
+    const uint32_t count = (uint32_t)tile->rays.set->count;
+    const struct rf_tile_rows rows = rf_tile_rows(f, &tile->plan, tile->background_blur);
+    const uint16_t softness = rf_softness(f, &tile->plan, tile->background_blur);
     const int lanes = rows.count * RF_TILE;
     uint16_t computed[LANES];
-    union tally *const run = &share->run;
+    union tally *const run = &tile->share->run;
 
-    sweep_rays(f, plan, tile_rays, background_blur, tx, ty, rows, share);
+    sweep_rays(tile, rows);
     if (rf_cancelled(f->exec))
         return;
-    if (!f->premultiplied && rf_exceeds_means(plan))
+    if (!f->premultiplied && rf_exceeds_means(&tile->plan))
         clamp_run(run, lanes, f->weighted, count);
-    for (int c = from; c < to; c++) {
+    for (int c = tile->from; c < tile->to; c++) {
         uint16_t *out = rows.step > 1 ? computed : mean[c];
 
         if (f->premultiplied)
@@ -300,28 +311,27 @@ static void sweep_means(const struct rf_frame *f, const struct rf_tile_plan *pla
             f->exec->kernels->soften(out, rows.count, 1, rows.step == 1, softness);
         if (rows.step > 1)
             f->exec->kernels->between_rows(mean[c], computed, rows.step);
-        if (fine)
-            rf_fine_means(fine, c, f->exec->kernels, &(struct rf_mean_steps){rows, softness, count},
-                          run->sum[c], mean[c]);
+        if (tile->fine)
+            rf_fine_means(tile->fine, c, f->exec->kernels,
+                          &(struct rf_mean_steps){rows, softness, count}, run->sum[c], mean[c]);
     }
 }
 
 /* Computes these means from rays that do not weigh the same. */
-static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                       const struct rf_tile_rays *rays, int background_blur, int tx, int ty,
-                       struct share *share, uint16_t mean[3][LANES], int from, int to)
+static void sweep_sums(const struct tile *tile, uint16_t mean[3][LANES])
 {
+    const struct rf_frame *const f = tile->f;
     const uint64_t most = 4 * RF_MOST_MEAN;
     const uint64_t unit =
         f->premultiplied ? 8192 : 4; /* light is Q13 times weight Q12, or plain Q12 */
-    const uint16_t softness = rf_softness(f, plan, background_blur);
-    struct rf_sums *const sums = &share->sums;
+    const uint16_t softness = rf_softness(f, &tile->plan, tile->background_blur);
+    struct rf_sums *const sums = &tile->share->sums;
 
     memset(sums, 0, sizeof *sums);
-    sweep_rays(f, plan, rays, background_blur, tx, ty, (struct rf_tile_rows){1, RF_TILE}, share);
+    sweep_rays(tile, (struct rf_tile_rows){1, RF_TILE});
     if (rf_cancelled(f->exec)) /* a cancelled run has no weights to divide by */
         return;
-    for (int c = from; c < to; c++) {
+    for (int c = tile->from; c < tile->to; c++) {
         for (int i = 0; i < LANES; i++) {
             const uint64_t w = sums->weight[i], v = (unit * sums->light[c][i] + w / 2) / w;
 
@@ -333,74 +343,78 @@ static void sweep_sums(const struct rf_frame *f, const struct rf_tile_plan *plan
 }
 
 /* Computes means for the blur of the hidden background at each corner of the tile. */
-static void sweep_corners(const struct rf_frame *f, const struct rf_tile_plan *plan,
-                          const struct rf_tile_rays *rays, const struct rf_corners *corners, int tx,
-                          int ty, struct share *share, uint16_t mean[3][LANES],
-                          struct rf_fine_means *fine, int from, int to)
+static void sweep_corners(struct tile *tile, const struct rf_corners *corners,
+                          uint16_t mean[3][LANES])
 {
     static const struct rf_corner_layout pixels = {1, 1};
+    struct share *const share = tile->share;
 
     share->past_slabs = false;
-    for (int k = 0; k < corners->count && !rf_cancelled(f->exec); k++) {
-        const bool repeats = rf_corner_repeats(corners, k, f, plan, share->past_slabs);
+    for (int k = 0; k < corners->count && !rf_cancelled(tile->f->exec); k++) {
+        const bool repeats = rf_corner_repeats(corners, k, tile->f, &tile->plan, share->past_slabs);
 
-        if (!repeats && rays->set->equal)
-            sweep_means(f, plan, rays, corners->blur[k], tx, ty, share, mean, fine, from, to);
+        tile->background_blur = corners->blur[k];
+        if (!repeats && tile->rays.set->equal)
+            sweep_means(tile, mean);
         else if (!repeats)
-            sweep_sums(f, plan, rays, corners->blur[k], tx, ty, share, mean, from, to);
-        for (int c = from; c < to && corners->count > 1; c++)
+            sweep_sums(tile, mean);
+        for (int c = tile->from; c < tile->to && corners->count > 1; c++)
             rf_add_corner(share->corners[c], mean[c], corners, k, pixels);
     }
-    for (int c = from; c < to && corners->count > 1; c++)
+    for (int c = tile->from; c < tile->to && corners->count > 1; c++)
         rf_corner_means(mean[c], share->corners[c], pixels);
 }
 
 void rf_sweep_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect rect, int worker)
 {
-    struct rf_tile_plan plan;
-    struct rf_tile_rays rays;
+    struct tile tile;
     struct rf_corners corners;
     uint16_t mean[3][LANES];
-    struct rf_fine_means *fine = NULL;
     void *const share = rf_share(&f->exec->shares, worker);
 
-    rf_plan_tile(f->view, f->bins, &f->reach, tx, ty, &plan);
-    if (plan.sharp && f->thin.disc_scale && rf_has_coverage(&f->thin, tx, ty)) {
+    tile.f = f;
+    tile.tx = tx;
+    tile.ty = ty;
+    tile.share = share;
+    tile.fine = NULL;
+    rf_plan_tile(f->view, f->bins, &f->reach, tx, ty, &tile.plan);
+    if (tile.plan.sharp && f->thin.disc_scale && rf_has_coverage(&f->thin, tx, ty)) {
         rf_thin_sharp_means(&f->thin, tx, ty, mean);
         rf_coverage_over(&f->thin, tx, ty, mean);
         rf_encode_means(f, rect, mean);
         return;
     }
-    if (plan.sharp) {
+    if (tile.plan.sharp) {
         rf_copy_tile(f, rect);
         return;
     }
     rf_expect_tile(f, rect);
-    rf_tile_rays_make(&rays, f, rf_choose_ray_set(f->ray_sets, plan.reach, plan.undersampled), tx,
+    rf_tile_rays_make(&tile.rays, f,
+                      rf_choose_ray_set(f->ray_sets, tile.plan.reach, tile.plan.undersampled), tx,
                       ty);
     rf_find_corners(&corners, f, tx, ty);
-    if (f->deep_out->on && rays.set->equal && !f->weighted && corners.count == 1)
-        fine = (void *)((uint8_t *)share + fine_at());
+    if (f->deep_out->on && tile.rays.set->equal && !f->weighted && corners.count == 1)
+        tile.fine = (void *)((uint8_t *)share + fine_at());
     for (int pass = 0; pass < (f->params->fringe != 0 ? 2 : 1); pass++) {
-        const int from = pass, to = pass ? 2 : 3; /* all channels, and green again */
-
+        tile.from = pass; /* all channels, and green again */
+        tile.to = pass ? 2 : 3;
         if (pass)
-            rf_use_green_rays(&rays, f->params->fringe);
-        sweep_corners(f, &plan, &rays, &corners, tx, ty, share, mean, fine, from, to);
+            rf_use_green_rays(&tile.rays, f->params->fringe);
+        sweep_corners(&tile, &corners, mean);
     }
     if (f->splats)
-        rf_splat_highlights(&f->splat, &plan, tx, ty, share,
+        rf_splat_highlights(&f->splat, &tile.plan, tx, ty, share,
                             (uint16_t *const[3]){mean[0], mean[1], mean[2]});
     if (f->thin.mattes)
         rf_matte_over(&f->thin, tx, ty, mean);
     if (f->thin.disc_scale)
         rf_coverage_over(&f->thin, tx, ty, mean);
-    if (f->splats && plan.highlight && !f->deep_out->on)
+    if (f->splats && tile.plan.highlight && !f->deep_out->on)
         f->exec->kernels->clamp_row(mean[0], RF_MEAN_MAX, 3 * LANES);
     if (rf_cancelled(f->exec))
         return;
-    if (fine)
-        rf_encode_fine(f, rect, mean, fine);
+    if (tile.fine)
+        rf_encode_fine(f, rect, mean, tile.fine);
     else
         rf_encode_means(f, rect, mean);
 }
