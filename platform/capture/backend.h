@@ -47,7 +47,7 @@ struct rf_source_ops {
                 struct refocus_reason *reason);
     void (*release)(struct refocus_source *source, struct refocus_frame *frame);
     void (*stop)(struct refocus_source *source); /* only while it streams */
-    /* Stopped: close the device and open it again. */
+    /* Stopped: close the device and open it again; NULL: there is no device. */
     int (*reopen)(struct refocus_source *source, struct refocus_reason *reason);
     int (*set_control)(struct refocus_source *source, const char *name, double value,
                        struct refocus_reason *reason); /* or NULL */

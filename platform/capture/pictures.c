@@ -275,13 +275,6 @@ static void stop(struct refocus_source *source)
     refocus_photo_free(&pictures->still);
 }
 
-static int reopen(struct refocus_source *source, struct refocus_reason *reason)
-{
-    (void)source;
-    (void)reason;
-    return REFOCUS_OK;
-}
-
 static void close_pictures(struct refocus_source *source)
 {
     struct pictures *pictures = source->state;
@@ -300,6 +293,5 @@ const struct rf_source_ops rf_source_file = {
     .wait = wait_frame,
     .release = release,
     .stop = stop,
-    .reopen = reopen,
     .close = close_pictures,
 };

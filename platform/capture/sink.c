@@ -16,37 +16,11 @@ static const struct rf_sink_ops *const kinds[] = {
     &rf_sink_raw,
 };
 
-static int open_null(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason)
-{
-    (void)sink;
-    (void)rest;
-    (void)reason;
-    return REFOCUS_OK;
-}
-
-static int start_null(struct refocus_sink *sink, int width, int height, double fps,
-                      struct refocus_reason *reason)
-{
-    (void)sink;
-    (void)width;
-    (void)height;
-    (void)fps;
-    (void)reason;
-    return REFOCUS_OK;
-}
-
 static int write_null(struct refocus_sink *sink, const struct refocus_image *image,
                       struct refocus_reason *reason)
 {
     (void)sink;
     (void)image;
-    (void)reason;
-    return REFOCUS_OK;
-}
-
-static int close_null(struct refocus_sink *sink, struct refocus_reason *reason)
-{
-    (void)sink;
     (void)reason;
     return REFOCUS_OK;
 }
@@ -58,12 +32,7 @@ static bool take_all(const struct refocus_sink *sink, uint32_t format)
     return true;
 }
 
-const struct rf_sink_ops rf_sink_null = {.scheme = "null",
-                                         .open = open_null,
-                                         .takes = take_all,
-                                         .start = start_null,
-                                         .write = write_null,
-                                         .close = close_null};
+const struct rf_sink_ops rf_sink_null = {.scheme = "null", .takes = take_all, .write = write_null};
 
 static const struct rf_sink_ops *find_window(struct refocus_reason *reason)
 {
@@ -140,7 +109,7 @@ int refocus_sink_open(struct refocus_sink **result, const char *name, struct ref
     if (!sink)
         return rf_capture_fail_memory(reason);
     sink->ops = ops;
-    status = ops->open(sink, rest, reason);
+    status = ops->open ? ops->open(sink, rest, reason) : REFOCUS_OK;
     if (status != REFOCUS_OK)
         free(sink);
     else
@@ -198,7 +167,8 @@ int refocus_sink_start_image(struct refocus_sink *sink, const struct refocus_ima
     sink->matrix = like->matrix;
     sink->range = like->range;
     sink->fps = !(fps > 0) ? 30 : fps < most_fps ? fps : most_fps;
-    status = sink->ops->start(sink, like->width, like->height, sink->fps, reason);
+    status = sink->ops->start ? sink->ops->start(sink, like->width, like->height, sink->fps, reason)
+                              : REFOCUS_OK;
     sink->started = status == REFOCUS_OK;
     return status;
 }
@@ -260,7 +230,7 @@ int refocus_sink_close(struct refocus_sink **handle, struct refocus_reason *reas
         return REFOCUS_OK;
     reason = reason ? reason : &unheard;
     reason->text[0] = '\0';
-    status = (*handle)->ops->close(*handle, reason);
+    status = (*handle)->ops->close ? (*handle)->ops->close(*handle, reason) : REFOCUS_OK;
     free(*handle);
     *handle = NULL;
     return status;

@@ -18,6 +18,7 @@ struct refocus_sink {
     uint32_t chroma_place;          /* enum refocus_chroma_place */
 };
 
+/* Reasons are never NULL here; open, start and close may be, where there is nothing to do. */
 struct rf_sink_ops {
     const char *scheme; /* word before the colon, or NULL for a pattern of pictures */
     int (*open)(struct refocus_sink *sink, const char *rest, struct refocus_reason *reason);

@@ -346,17 +346,6 @@ static int open_pictures(struct refocus_sink *sink, const char *rest, struct ref
     return REFOCUS_OK;
 }
 
-static int start_pictures(struct refocus_sink *sink, int width, int height, double fps,
-                          struct refocus_reason *reason)
-{
-    (void)sink;
-    (void)width;
-    (void)height;
-    (void)fps;
-    (void)reason;
-    return REFOCUS_OK;
-}
-
 static int write_picture(struct refocus_sink *sink, const struct refocus_image *image,
                          struct refocus_reason *reason)
 {
@@ -381,8 +370,5 @@ static int close_pictures(struct refocus_sink *sink, struct refocus_reason *reas
     return REFOCUS_OK;
 }
 
-const struct rf_sink_ops rf_sink_pictures = {.scheme = NULL,
-                                             .open = open_pictures,
-                                             .start = start_pictures,
-                                             .write = write_picture,
-                                             .close = close_pictures};
+const struct rf_sink_ops rf_sink_pictures = {
+    .scheme = NULL, .open = open_pictures, .write = write_picture, .close = close_pictures};

@@ -296,7 +296,7 @@ int refocus_source_restart(struct refocus_source *source, struct refocus_source_
     refocus_source_stop(source);
     if (rf_source_poll(source, -1, 0, 0, NULL) == REFOCUS_ERR_CANCELLED)
         return rf_capture_fail(reason, REFOCUS_ERR_CANCELLED, "interrupted");
-    status = source->ops->reopen(source, reason);
+    status = source->ops->reopen ? source->ops->reopen(source, reason) : REFOCUS_OK;
     /* A device that lost its power forgets its focus. Pictures out of focus are better than none:
      * whether it obeys is not asked. */
     if (status == REFOCUS_OK && source->focused)
