@@ -45,3 +45,13 @@ int rf_source_poll(const struct refocus_source *source, int fd, short events, in
             return REFOCUS_ERR_TIMEOUT;
     }
 }
+
+int rf_source_sleep(const struct refocus_source *source, int64_t due, int64_t deadline_ns)
+{
+    int status;
+
+    if (due <= rf_now_ns())
+        return REFOCUS_OK;
+    status = rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
+    return status == REFOCUS_ERR_TIMEOUT && due <= deadline_ns ? REFOCUS_OK : status;
+}

@@ -85,6 +85,9 @@ double rf_source_fps(const struct refocus_source *source, double own);
 int rf_source_poll(const struct refocus_source *source, int fd, short events, int64_t deadline_ns,
                    short *revents);
 
+/* Wait until a moment, but not beyond the deadline: REFOCUS_OK, or as rf_source_poll() returns. */
+int rf_source_sleep(const struct refocus_source *source, int64_t due, int64_t deadline_ns);
+
 #ifdef __cplusplus
 }
 #endif

@@ -222,16 +222,12 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     struct refocus_frame *frame;
     int buffer, status;
 
-    if (!pictures->pace.fast && due > rf_now_ns()) {
-        status = rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
-        if (status == REFOCUS_ERR_CANCELLED || due > deadline_ns)
-            return status;
-    }
-    buffer = rf_ring_take(&pictures->ring);
+    status = pictures->pace.fast ? REFOCUS_OK : rf_source_sleep(source, due, deadline_ns);
+    if (status != REFOCUS_OK)
+        return status;
+    buffer = rf_ring_take(&pictures->ring, reason);
     if (buffer < 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE,
-                               "every buffer is out; "
-                               "release one");
+        return REFOCUS_ERR_STATE;
     frame = &pictures->ring.frame[buffer];
     *frame = refocus_frame_default();
     status = pictures->many ? read_next(source, buffer, reason) : REFOCUS_OK;

@@ -136,16 +136,6 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
     return REFOCUS_OK;
 }
 
-static int sleep_until(const struct refocus_source *source, int64_t due, int64_t deadline_ns)
-{
-    int status;
-
-    if (due <= rf_now_ns())
-        return REFOCUS_OK;
-    status = rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
-    return status == REFOCUS_ERR_TIMEOUT && due <= deadline_ns ? REFOCUS_OK : status;
-}
-
 static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
                       struct refocus_frame **result, struct refocus_reason *reason)
 {
@@ -156,16 +146,14 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     int64_t due;
 
     if (status == REFOCUS_OK)
-        status = sleep_until(source, replay->stalled_until_ns, deadline_ns);
+        status = rf_source_sleep(source, replay->stalled_until_ns, deadline_ns);
     if (status == REFOCUS_OK && !replay->pace.fast)
-        status = sleep_until(source, rf_replay_due(replay, replay->next), deadline_ns);
+        status = rf_source_sleep(source, rf_replay_due(replay, replay->next), deadline_ns);
     if (status != REFOCUS_OK)
         return status;
-    buffer = rf_ring_take(&replay->ring);
+    buffer = rf_ring_take(&replay->ring, reason);
     if (buffer < 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE,
-                               "every buffer is out; "
-                               "release one");
+        return REFOCUS_ERR_STATE;
     frame = &replay->ring.frame[buffer];
     *frame = refocus_frame_default();
     status = rf_replay_next(replay, &faults, reason);

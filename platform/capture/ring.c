@@ -3,13 +3,14 @@
 #include <string.h>
 #include "ring.h"
 
-int rf_ring_take(struct rf_ring *ring)
+int rf_ring_take(struct rf_ring *ring, struct refocus_reason *reason)
 {
     for (int i = 0; i < ring->count; i++)
         if (!(ring->taken >> i & 1)) {
             ring->taken |= (uint32_t)1 << i;
             return i;
         }
+    rf_capture_fail(reason, REFOCUS_ERR_STATE, "every buffer is out; release one");
     return -1;
 }
 

@@ -12,8 +12,8 @@ struct rf_ring {
     uint32_t taken;
 };
 
-/* A free buffer, or -1. */
-int rf_ring_take(struct rf_ring *ring);
+/* A free buffer; -1 and the reason where there is none. */
+int rf_ring_take(struct rf_ring *ring, struct refocus_reason *reason);
 void rf_ring_give(struct rf_ring *ring, uint32_t buffer);
 /* Memory of at least so many bytes for a taken buffer. */
 bool rf_ring_reserve(struct rf_ring *ring, int buffer, uint64_t bytes);

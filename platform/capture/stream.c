@@ -311,16 +311,12 @@ static int wait_frame(struct refocus_source *source, int64_t deadline_ns,
     struct refocus_frame *frame;
     int buffer, status;
 
-    if (!stream->pace.fast && due > rf_now_ns()) {
-        status = rf_source_poll(source, -1, 0, due < deadline_ns ? due : deadline_ns, NULL);
-        if (status == REFOCUS_ERR_CANCELLED || due > deadline_ns)
-            return status;
-    }
-    buffer = rf_ring_take(&stream->ring);
+    status = stream->pace.fast ? REFOCUS_OK : rf_source_sleep(source, due, deadline_ns);
+    if (status != REFOCUS_OK)
+        return status;
+    buffer = rf_ring_take(&stream->ring, reason);
     if (buffer < 0)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE,
-                               "every buffer is out; "
-                               "release one");
+        return REFOCUS_ERR_STATE;
     status = rf_ring_reserve(&stream->ring, buffer, bytes)
                  ? read_next(source, stream->ring.memory[buffer], (size_t)bytes, reason)
                  : rf_capture_fail_memory(reason);
