@@ -25,14 +25,9 @@ struct entry {
     size_t at;
 };
 
-static uint32_t number(const struct copy *copy, const uint8_t *from, int size)
+static uint32_t number(const struct copy *copy, const uint8_t *from, size_t size)
 {
-    uint32_t value = 0;
-
-    for (int i = 0; i < size; i++) {
-        value = value << 8 | from[copy->high_first ? i : size - 1 - i];
-    }
-    return value;
+    return copy->high_first ? rf_big_endian(from, size) : rf_little_endian(from, size);
 }
 
 static void put(const struct copy *copy, uint8_t *to, int size, uint32_t value)

@@ -102,7 +102,7 @@ static int read_exif(struct rf_heic *heic)
     }
     if (heif_image_handle_get_metadata(heic->primary, item, block).code == heif_error_Ok) {
         /* ISO/IEC 23008-12, A.2.1: the offset of the TIFF header, counted from behind this. */
-        skip = (size_t)block[0] << 24 | (size_t)block[1] << 16 | (size_t)block[2] << 8 | block[3];
+        skip = rf_big_endian(block, 4);
         if (skip < size - 4) {
             tiff = (struct rf_bytes){block + 4 + skip, size - 4 - skip};
         }

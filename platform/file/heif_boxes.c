@@ -3,16 +3,6 @@
 
 #include <string.h>
 
-uint32_t rf_heif_number(struct rf_bytes bytes, size_t at, size_t size)
-{
-    uint32_t value = 0;
-
-    for (size_t i = 0; i < size; i++) {
-        value = value << 8 | bytes.data[at + i];
-    }
-    return value;
-}
-
 void rf_heif_skip(struct rf_bytes *bytes, size_t size)
 {
     bytes->data += size;
@@ -26,7 +16,7 @@ bool rf_heif_next(struct rf_bytes *rest, struct rf_heif_box *box)
     if (rest->size < 8) {
         return false;
     }
-    size = rf_heif_number(*rest, 0, 4);
+    size = rf_big_endian(rest->data, 4);
     memcpy(box->type, rest->data + 4, 4);
     box->type[4] = '\0';
     if (size == 0) {
@@ -35,7 +25,7 @@ bool rf_heif_next(struct rf_bytes *rest, struct rf_heif_box *box)
         if (rest->size < 16) {
             return false;
         }
-        size = (uint64_t)rf_heif_number(*rest, 8, 4) << 32 | rf_heif_number(*rest, 12, 4);
+        size = (uint64_t)rf_big_endian(rest->data + 8, 4) << 32 | rf_big_endian(rest->data + 12, 4);
         head = 16;
     }
     if (size < head || size > rest->size) {

@@ -11,8 +11,6 @@ struct rf_heif_box {
     struct rf_bytes content;
 };
 
-/* A number of 0 to 4 bytes, which are there. */
-uint32_t rf_heif_number(struct rf_bytes bytes, size_t at, size_t size);
 /* Take bytes, which are there, off the front. */
 void rf_heif_skip(struct rf_bytes *bytes, size_t size);
 /* Take the next box off the front; false at the end and where no box begins. */

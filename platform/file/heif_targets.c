@@ -21,23 +21,6 @@ struct span {
     size_t begin, content, end;
 };
 
-static uint32_t get(const uint8_t *data, size_t size)
-{
-    uint32_t value = 0;
-
-    for (size_t i = 0; i < size; i++) {
-        value = value << 8 | data[i];
-    }
-    return value;
-}
-
-static void put(uint8_t *data, uint32_t value, size_t size)
-{
-    for (size_t i = 0; i < size; i++) {
-        data[i] = (uint8_t)(value >> 8 * (size - 1 - i));
-    }
-}
-
 /* The box at `at`, whose size is said in 32 bits, before `end`. */
 static bool box_at(const uint8_t *data, size_t at, size_t end, struct span *box)
 {
@@ -46,7 +29,7 @@ static bool box_at(const uint8_t *data, size_t at, size_t end, struct span *box)
     if (at > end || end - at < 8) {
         return false;
     }
-    size = get(data + at, 4);
+    size = rf_big_endian(data + at, 4);
     *box = (struct span){at, at + 8, at + size};
     return size >= 8 && size <= end - at;
 }
@@ -89,7 +72,7 @@ static size_t copy_references(const uint8_t *data, const struct boxes *boxes, ui
 {
     const size_t id = boxes->id_bytes, end = boxes->references.end;
     const uint8_t *const pitm = data + boxes->primary.content;
-    const uint32_t primary = get(pitm + 4, pitm[0] ? 4 : 2);
+    const uint32_t primary = rf_big_endian(pitm + 4, pitm[0] ? 4 : 2);
     size_t at = boxes->references.content + 4, length = 0;
     struct span box;
 
@@ -100,7 +83,7 @@ static size_t copy_references(const uint8_t *data, const struct boxes *boxes, ui
         if (box.end - box.begin < head) {
             return 0;
         }
-        count = get(data + box.begin + 8 + id, 2);
+        count = rf_big_endian(data + box.begin + 8 + id, 2);
         if (memcmp(data + box.begin + 4, "cdsc", 4) != 0 || count < 2) {
             memcpy(out + length, data + box.begin, box.end - box.begin);
             length += box.end - box.begin;
@@ -109,14 +92,15 @@ static size_t copy_references(const uint8_t *data, const struct boxes *boxes, ui
         if (box.end - box.begin != head + count * id) {
             return 0;
         }
-        target = get(data + box.begin + head, id);
+        target = rf_big_endian(data + box.begin + head, id);
         for (uint32_t i = 1; i < count; i++) {
-            target = get(data + box.begin + head + i * id, id) == primary ? primary : target;
+            target =
+                rf_big_endian(data + box.begin + head + i * id, id) == primary ? primary : target;
         }
         memcpy(out + length, data + box.begin, head);
-        put(out + length, (uint32_t)(head + id), 4);
-        put(out + length + 8 + id, 1, 2);
-        put(out + length + head, target, id);
+        rf_put_big_endian(out + length, 4, (uint32_t)(head + id));
+        rf_put_big_endian(out + length + 8 + id, 2, 1);
+        rf_put_big_endian(out + length + head, id, target);
         length += head + id;
     }
     return at == end ? length : 0;
@@ -133,9 +117,9 @@ static void lay_out(const uint8_t *data, const struct boxes *boxes, const uint8_
 
     memcpy(out + pitm->end + spare, data + pitm->end, iref->begin - pitm->end);
     memset(out + pitm->end, 0, spare);
-    put(out + pitm->begin, (uint32_t)(pitm->end - pitm->begin + spare), 4);
+    rf_put_big_endian(out + pitm->begin, 4, (uint32_t)(pitm->end - pitm->begin + spare));
     memcpy(to, data + iref->begin, 12);
-    put(to, (uint32_t)(12 + length), 4);
+    rf_put_big_endian(to, 4, (uint32_t)(12 + length));
     memcpy(to + 12, references, length);
 }
 

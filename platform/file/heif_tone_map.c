@@ -34,9 +34,9 @@ static uint64_t take(struct fields *fields, size_t size)
         fields->left.size = 0;
         return 0;
     }
-    value = size > 4 ? rf_heif_number(fields->left, 0, size - 4) : 0;
-    value =
-        value << 32 | rf_heif_number(fields->left, size > 4 ? size - 4 : 0, size > 4 ? 4 : size);
+    value = size > 4 ? rf_big_endian(fields->left.data, size - 4) : 0;
+    value = value << 32 |
+            rf_big_endian(fields->left.data + (size > 4 ? size - 4 : 0), size > 4 ? 4 : size);
     rf_heif_skip(&fields->left, size);
     return value;
 }
@@ -203,7 +203,7 @@ bool rf_heif_find_tone_map(struct rf_bytes file, struct rf_heif_tone_map *map)
 
     if (!rf_heif_meta(file, &meta) || !rf_heif_primary(meta, &primary) ||
         !find_item(meta, "tmap", 0, &item) || !find_sources(meta, item.number, source) ||
-        source[0] != rf_heif_number(primary, 0, primary.size) || source[1] == source[0]) {
+        source[0] != rf_big_endian(primary.data, primary.size) || source[1] == source[0]) {
         return false;
     }
     map->item = source[1];

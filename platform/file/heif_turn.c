@@ -52,17 +52,17 @@ static bool apply_associations(struct turn *turn, struct rf_bytes ipma, struct r
     }
     id_bytes = ipma.data[0] < 1 ? 2 : 4;
     index_bytes = ipma.data[3] & 1 ? 2 : 1;
-    entries = rf_heif_number(ipma, 4, 4);
+    entries = rf_big_endian(ipma.data + 4, 4);
     rf_heif_skip(&ipma, 8);
     for (; entries > 0 && ipma.size >= id_bytes + 1; entries--) {
-        const bool wanted = rf_heif_number(ipma, 0, id_bytes) == item;
+        const bool wanted = rf_big_endian(ipma.data, id_bytes) == item;
         uint32_t count = ipma.data[id_bytes];
 
         rf_heif_skip(&ipma, id_bytes + 1);
         for (; count > 0 && ipma.size >= index_bytes; count--) {
             if (wanted) {
                 apply_property(turn, properties,
-                               rf_heif_number(ipma, 0, index_bytes) &
+                               rf_big_endian(ipma.data, index_bytes) &
                                    (index_bytes == 2 ? 0x7fff : 0x7f));
             }
             rf_heif_skip(&ipma, index_bytes);
@@ -102,7 +102,7 @@ int rf_heif_orientation(struct rf_bytes file, uint32_t item)
         if (!rf_heif_primary(meta, &primary)) {
             return 1;
         }
-        item = rf_heif_number(primary, 0, primary.size);
+        item = rf_big_endian(primary.data, primary.size);
     }
     if (!rf_heif_find(meta, "iprp", &iprp) || !rf_heif_find(iprp, "ipco", &properties)) {
         return 1;

@@ -117,7 +117,7 @@ static int pull_header(struct rf_read *read, rf_npy_pull pull, void *from, char 
                        uint64_t *bytes)
 {
     uint8_t begin[12];
-    size_t length = 0, given;
+    size_t length, given;
     int status;
 
     if (!pull(from, begin, 8) || !rf_is_npy((struct rf_bytes){begin, 8})) {
@@ -131,9 +131,7 @@ static int pull_header(struct rf_read *read, rf_npy_pull pull, void *from, char 
     if (!pull(from, begin + 8, given)) {
         return fail_header(read);
     }
-    for (size_t i = given; i-- > 0;) {
-        length = length << 8 | begin[8 + i];
-    }
+    length = rf_little_endian(begin + 8, given);
     status = rf_check_metadata(read, length, "its header");
     if (status != REFOCUS_OK) {
         return status;

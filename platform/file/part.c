@@ -49,16 +49,6 @@ int rf_decode_part(const struct rf_read *read, struct rf_bytes part, const char 
                    what);
 }
 
-static uint64_t get(const uint8_t *from, int bytes)
-{
-    uint64_t value = 0;
-
-    for (int i = 0; i < bytes; i++) {
-        value = value << 8 | from[i];
-    }
-    return value;
-}
-
 /* All of FFC0 to FFCF begin a frame but those of tables and extensions. */
 static bool begins_frame(int marker)
 {
@@ -70,12 +60,13 @@ uint64_t rf_part_pixels(struct rf_bytes part)
     struct rf_jpeg_walk walk;
 
     if (rf_is_png(part) && part.size >= 24) {
-        return get(part.data + 16, 4) * get(part.data + 20, 4);
+        return (uint64_t)rf_big_endian(part.data + 16, 4) * rf_big_endian(part.data + 20, 4);
     }
     if (rf_jpeg_walk_begin(&walk, part)) {
         while (rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT) {
             if (begins_frame(walk.marker) && walk.segment.size >= 5) {
-                return get(walk.segment.data + 1, 2) * get(walk.segment.data + 3, 2);
+                return (uint64_t)rf_big_endian(walk.segment.data + 1, 2) *
+                       rf_big_endian(walk.segment.data + 3, 2);
             }
         }
     }

@@ -53,9 +53,7 @@ static bool scan_side(struct rf_bytes file, size_t *position, uint64_t *side)
 
 static float load_float(const uint8_t *b, bool little_endian)
 {
-    const uint32_t bits =
-        little_endian ? (uint32_t)b[3] << 24 | (uint32_t)b[2] << 16 | (uint32_t)b[1] << 8 | b[0]
-                      : (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
+    const uint32_t bits = little_endian ? rf_little_endian(b, 4) : rf_big_endian(b, 4);
     float value;
 
     memcpy(&value, &bits, 4);

@@ -20,7 +20,7 @@ bool rf_png_next_chunk(struct rf_bytes *rest, struct rf_png_chunk *chunk)
     if (rest->size < AROUND) {
         return false;
     }
-    size = (size_t)b[0] << 24 | (size_t)b[1] << 16 | (size_t)b[2] << 8 | b[3];
+    size = rf_big_endian(b, 4);
     if (size > rest->size - AROUND) {
         return false;
     }

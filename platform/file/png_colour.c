@@ -9,16 +9,10 @@
 #include "light.h"
 #include "png_chunks.h"
 
-/* Unsigned, high bytes first. */
-static uint32_t number_at(const uint8_t *b)
-{
-    return (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
-}
-
 /* Gamma is stored times 100,000: 1/2.2 is 45455, and programs round it to three digits. */
 static bool is_other_gamma(struct rf_bytes content)
 {
-    const int64_t gamma = content.size == 4 ? number_at(content.data) : 45455;
+    const int64_t gamma = content.size == 4 ? rf_big_endian(content.data, 4) : 45455;
 
     return llabs(gamma - 45455) > 500;
 }
@@ -30,7 +24,7 @@ static bool are_other_primaries(struct rf_bytes content)
     bool other = false;
 
     for (size_t i = 0; content.size == 32 && i < 8; i++) {
-        other |= llabs((int64_t)number_at(content.data + 4 * i) - srgb[i]) > 100;
+        other |= llabs((int64_t)rf_big_endian(content.data + 4 * i, 4) - srgb[i]) > 100;
     }
     return other;
 }

@@ -13,21 +13,10 @@ struct first {
     int orientation; /* 1 to 8 */
 };
 
-static uint32_t number(struct rf_bytes file, size_t at, int size)
-{
-    const bool high_first = file.data[0] == 'M';
-    uint32_t value = 0;
-
-    for (int i = 0; i < size; i++) {
-        value = value << 8 | file.data[at + (size_t)(high_first ? i : size - 1 - i)];
-    }
-    return value;
-}
-
 static void take_entry(struct rf_bytes file, size_t at, struct first *first)
 {
-    const uint32_t tag = number(file, at, 2), type = number(file, at + 2, 2);
-    const uint32_t value = number(file, at + 8, type == 3 ? 2 : 4);
+    const uint32_t tag = rf_tiff_number(file, at, 2), type = rf_tiff_number(file, at + 2, 2);
+    const uint32_t value = rf_tiff_number(file, at + 8, type == 3 ? 2 : 4);
 
     switch (tag) {
     case 254: /* NewSubfileType */
@@ -61,11 +50,11 @@ static struct first look(struct rf_bytes file)
     if (file.size < 8 || (memcmp(file.data, "II", 2) != 0 && memcmp(file.data, "MM", 2) != 0)) {
         return first;
     }
-    at = number(file, 4, 4);
+    at = rf_tiff_number(file, 4, 4);
     if (at > file.size || file.size - at < 2) {
         return first;
     }
-    count = number(file, at, 2);
+    count = rf_tiff_number(file, at, 2);
     for (uint32_t i = 0; i < count && file.size - at - 2 >= 12 * ((size_t)i + 1); i++) {
         take_entry(file, (size_t)at + 2 + 12 * (size_t)i, &first);
     }

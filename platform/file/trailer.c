@@ -12,16 +12,6 @@
 
 enum { DUAL_MAP = 0x0ab1, DUAL_EXTRA = 0x0ab3, SUB_IMAGE = 0x0001 };
 
-static uint32_t get(const uint8_t *from, int bytes)
-{
-    uint32_t value = 0;
-
-    while (bytes-- > 0) {
-        value = value << 8 | from[bytes];
-    }
-    return value;
-}
-
 /* A map of bytes, near where it is bright. */
 static int take_map(struct rf_read *read, struct rf_bytes map, uint32_t width, uint32_t height,
                     const char *maker)
@@ -76,7 +66,7 @@ static bool find_directory(struct rf_bytes file, struct rf_bytes *directory)
         end -= 2;
     }
     for (int blocks = 0; blocks < 8 && end >= 8; blocks++) {
-        const uint32_t size = get(file.data + end - 8, 4);
+        const uint32_t size = rf_little_endian(file.data + end - 8, 4);
 
         if (size < 4 || size >= 0x10000 || size > end - 8) {
             return false;
@@ -98,7 +88,8 @@ static bool is_named(struct rf_bytes name, const char *begin)
 /* Blocks lie before the directory: two zeros, the type, the length of the name, the name, data. */
 static void take_block(struct samsung *found, struct rf_bytes block)
 {
-    const uint32_t type = get(block.data + 2, 2), length = get(block.data + 4, 4);
+    const uint32_t type = rf_little_endian(block.data + 2, 2),
+                   length = rf_little_endian(block.data + 4, 4);
     struct rf_bytes name, data;
 
     if (length > block.size - 8) {
@@ -119,11 +110,11 @@ static void take_blocks(struct samsung *found, struct rf_bytes file, size_t main
                         struct rf_bytes directory)
 {
     const size_t at = (size_t)(directory.data - file.data);
-    const uint32_t count = get(directory.data + 8, 4);
+    const uint32_t count = rf_little_endian(directory.data + 8, 4);
 
     for (uint32_t i = 0; i < count && 12 + 12 * ((size_t)i + 1) <= directory.size; i++) {
         const uint8_t *const entry = directory.data + 12 + 12 * (size_t)i;
-        const uint32_t back = get(entry + 4, 4), size = get(entry + 8, 4);
+        const uint32_t back = rf_little_endian(entry + 4, 4), size = rf_little_endian(entry + 8, 4);
 
         if (back <= at - main_end && size <= back && size >= 8) {
             take_block(found, (struct rf_bytes){file.data + at - back, size});
@@ -138,8 +129,8 @@ static bool find_sides(struct rf_bytes extra, uint32_t *width, uint32_t *height)
         const uint8_t *const p = extra.data + at;
 
         if (p[0] >= 1 && p[0] <= 9 && p[1] == 0 && p[2] == 0xff && p[3] == 0xff) {
-            *width = get(p + 4, 4);
-            *height = get(p + 8, 4);
+            *width = rf_little_endian(p + 4, 4);
+            *height = rf_little_endian(p + 8, 4);
             return true;
         }
     }
@@ -186,8 +177,8 @@ static int read_huawei(struct rf_read *read, struct rf_bytes file, size_t main_e
             memcmp(rest.data, mark, sizeof mark - 1) != 0) {
             continue;
         }
-        width = get(rest.data + SIDES_AT, 2);
-        height = get(rest.data + SIDES_AT + 2, 2);
+        width = rf_little_endian(rest.data + SIDES_AT, 2);
+        height = rf_little_endian(rest.data + SIDES_AT + 2, 2);
         if (width == 0 || height == 0 || (uint64_t)width * height > rest.size - MAP_AT) {
             rf_note(read->info, "Huawei: its depth map is not whole, passed over");
             continue;

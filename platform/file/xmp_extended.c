@@ -16,11 +16,6 @@ struct chunk {
     struct rf_bytes content;
 };
 
-static uint32_t get32(const uint8_t *b)
-{
-    return (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
-}
-
 /* Find the walk's next chunk with this GUID; others are counted as strangers. */
 static bool next_chunk(struct rf_jpeg_walk *walk, const char *guid, struct chunk *chunk,
                        int *strangers)
@@ -38,8 +33,8 @@ static bool next_chunk(struct rf_jpeg_walk *walk, const char *guid, struct chunk
             ++*strangers;
             continue;
         }
-        chunk->length = get32(rest.data + GUID_BYTES);
-        chunk->offset = get32(rest.data + GUID_BYTES + 4);
+        chunk->length = rf_big_endian(rest.data + GUID_BYTES, 4);
+        chunk->offset = rf_big_endian(rest.data + GUID_BYTES + 4, 4);
         chunk->content.data = rest.data + HEAD_BYTES;
         chunk->content.size = rest.size - HEAD_BYTES;
         return true;
