@@ -22,11 +22,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
-#include <time.h>
 #include <unistd.h>
 #include <refocus/platform/convert.h>
 #include <refocus/platform/file.h>
 #include <refocus/platform/source.h>
+#include "../clock.h"
 
 enum { WIDTH = 160, HEIGHT = 120, MOST_BYTES = 1 << 22 };
 static const char *node, *jpeg;
@@ -39,13 +39,6 @@ struct feeder {
     atomic_bool quit;
     pthread_t thread;
 };
-
-static void sleep_ms(int ms)
-{
-    const struct timespec pause = {ms / 1000, ms % 1000 * 1000000L};
-
-    nanosleep(&pause, NULL);
-}
 
 static int open_output(uint32_t fourcc, int width, int height, size_t size)
 {

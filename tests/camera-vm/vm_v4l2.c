@@ -5,12 +5,12 @@
  * and closes the camera so many times. It runs where the driver is, in the
  * virtual machine. */
 #include <pthread.h>
-#include <time.h>
 #include <unistd.h>
 #include <refocus/refocus.h>
 #include <refocus/platform/convert.h>
 
 #include "check.h"
+#include "../clock.h"
 
 enum { WIDTH = 320, HEIGHT = 180 };
 static char node[64];
@@ -24,21 +24,6 @@ static uint8_t reference[WIDTH * HEIGHT * 3];
                      reason.text);                                                                 \
     } while (0)
 static struct refocus_reason reason;
-
-static int64_t now_ms(void)
-{
-    struct timespec now;
-
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
-}
-
-static void sleep_ms(int ms)
-{
-    const struct timespec pause = {ms / 1000, ms % 1000 * 1000000L};
-
-    nanosleep(&pause, NULL);
-}
 
 static struct refocus_source *opened(void)
 {
@@ -347,7 +332,7 @@ static int until_fault(struct refocus_source *source)
 /* Milliseconds until frames come again. */
 static int64_t recover(struct refocus_source *source)
 {
-    const int64_t begin = now_ms();
+    const double begin = now_ms();
 
     while (refocus_source_restart(source, NULL, &reason) != REFOCUS_OK) {
         if (now_ms() - begin > 5000)
@@ -355,7 +340,7 @@ static int64_t recover(struct refocus_source *source)
         sleep_ms(50);
     }
     take(source, 1);
-    return now_ms() - begin;
+    return (int64_t)(now_ms() - begin);
 }
 
 static void a_fatal_error_is_recovered_from(void **state)
@@ -449,7 +434,7 @@ static void another_thread_stops_it(void **state)
     struct refocus_source *source = streaming(REFOCUS_FRAME_NV12, 0);
     const struct refocus_frame *frame;
     pthread_t thread;
-    int64_t begin;
+    double begin;
 
     (void)state;
     take(source, 1);
@@ -470,7 +455,7 @@ static int cycles = 60;
 /* Every second one by DMA-BUF, every tenth with a frame that is out. */
 static void cycles_leak_nothing(void **state)
 {
-    const int64_t begin = now_ms();
+    const double begin = now_ms();
     int fds = 0, threads = 0, maps = 0;
 
     (void)state;

@@ -4,32 +4,24 @@
  *
  * usage: check-kernels [--bench] */
 #include "check.h"
+#include "../clock.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
-
-static double now(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 double best_time(void (*call)(void *context), void *context)
 {
-    const double end = now() + 0.1;
+    const double end = now_ms() + 100;
     double best = 1e9;
 
     do {
-        const double start = now();
+        const double start = now_ms();
         double taken;
 
         call(context);
-        taken = now() - start;
+        taken = 1e-3 * (now_ms() - start);
         best = taken < best ? taken : best;
-    } while (now() < end);
+    } while (now_ms() < end);
     return best;
 }
 

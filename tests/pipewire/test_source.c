@@ -1,6 +1,7 @@
 /* test_source.c: what the source `pipewire:` makes of frames as other programs give them, in the
  * session of session.py. */
 #include "../platform/capture/check.h"
+#include "../clock.h"
 
 #include <spa/buffer/meta.h>
 #include <time.h>
@@ -32,13 +33,6 @@ static int64_t now_ns(void)
 
     clock_gettime(CLOCK_MONOTONIC, &now);
     return now.tv_sec * (int64_t)1000000000 + now.tv_nsec;
-}
-
-static void sleep_ms(int ms)
-{
-    const struct timespec pause = {0, ms * 1000000L};
-
-    nanosleep(&pause, NULL);
 }
 
 static int open_camera(void **state)

@@ -12,9 +12,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <refocus/refocus.h>
 
+#include "../clock.h"
 #include "depth_fit.h"
 #include "depth_ways.h"
 #include "faults.h"
@@ -349,14 +349,6 @@ static int score_truths(int argc, char **argv)
     for (int i = 0; i < argc && !failed; i += 3)
         failed = score_truth(argv[i], argv[i + 1], argv[i + 2]);
     return failed ? 1 : 0;
-}
-
-static double clock_ms(clockid_t clock)
-{
-    struct timespec t;
-
-    clock_gettime(clock, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
 }
 
 /* CPU time of all threads together; the least and the median of 20. */

@@ -9,9 +9,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <refocus/refocus.h>
 
+#include "../clock.h"
 #include "png_io.h"
 #include "yuv.h"
 
@@ -31,14 +31,6 @@ struct subject {
     struct refocus_image photo, out;
     double prepare, render, both; /* ms */
 };
-
-static double now_ms(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
 
 static int set_up(struct subject *s, uint32_t format, const struct refocus_image *rgb, float blur)
 {
@@ -63,13 +55,13 @@ static int set_up(struct subject *s, uint32_t format, const struct refocus_image
 static int time_once(struct subject *s, const struct refocus_disparity *map,
                      const struct refocus_settings *params)
 {
-    const double begin = now_ms();
+    const double begin = clock_ms(CLOCK_THREAD_CPUTIME_ID);
     int status = refocus_prepare(s->renderer, &s->photo, map);
-    const double prepared = now_ms();
+    const double prepared = clock_ms(CLOCK_THREAD_CPUTIME_ID);
 
     if (status == REFOCUS_OK)
         status = refocus_render_settings(s->renderer, params, &s->out);
-    const double end = now_ms();
+    const double end = clock_ms(CLOCK_THREAD_CPUTIME_ID);
     s->prepare = fmin(s->prepare, prepared - begin);
     s->render = fmin(s->render, end - prepared);
     s->both = fmin(s->both, end - begin);

@@ -8,9 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <refocus/refocus.h>
 
+#include "../clock.h"
 #include "metrics.h"
 #include "png_io.h"
 #include "scene.h"
@@ -28,14 +28,6 @@ struct job {
     const char *out; /* folder for pictures, or NULL */
     json_t *rows;    /* for --json, or NULL */
 };
-
-static double seconds(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* The view's aperture; *aperture stays NULL for a disc. */
 static int make_aperture(const struct quality_view *view, struct refocus_aperture **aperture)
@@ -70,9 +62,9 @@ static int render_image(const struct quality_scene *scene, const struct quality_
     params.render.focus_disparity = (float)view->focus;
     params.render.max_blur_radius = (float)view->blur;
     params.render.aperture = aperture;
-    const double start = seconds();
+    const double start = now_ms();
     status = refocus_render_settings(renderer, &params, out);
-    *ms = 1000 * (seconds() - start);
+    *ms = now_ms() - start;
 done:
     refocus_renderer_destroy(&renderer);
     refocus_aperture_destroy(&aperture);

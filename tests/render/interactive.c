@@ -3,27 +3,12 @@
  *
  * usage: render-interactive [--size WxH] [--blur K] [--threads N] [--tries N] */
 #include <pthread.h>
-#include <time.h>
 
 #include "pictures.h"
+#include "../clock.h"
 
 static int width = 4000, height = 3000, threads = 2, tries = 12;
 static float blur = 100;
-
-static double now_ms(clockid_t clock)
-{
-    struct timespec t;
-
-    clock_gettime(clock, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
-
-static void sleep_ms(double ms)
-{
-    const struct timespec t = {(time_t)(ms / 1e3), (long)(fmod(ms, 1e3) * 1e6)};
-
-    nanosleep(&t, NULL);
-}
 
 /* A call in a thread of its own. */
 struct call {
@@ -40,7 +25,7 @@ static void run(struct call *call)
 {
     call->status = call->photo ? refocus_prepare(call->renderer, call->photo, call->disparity)
                                : refocus_render_settings(call->renderer, &call->params, &call->out);
-    call->end_ms = now_ms(CLOCK_MONOTONIC);
+    call->end_ms = clock_ms(CLOCK_MONOTONIC);
 }
 
 static void *run_thread(void *user)
@@ -57,16 +42,16 @@ static void measure_cancel(struct call call, const char *name, int last)
     int cancelled = 0;
 
     for (int i = 0; i < tries; i++) {
-        double start = now_ms(CLOCK_MONOTONIC), begin, cpu;
+        double start = clock_ms(CLOCK_MONOTONIC), begin, cpu;
         pthread_t thread;
 
         assert_int_equal(pthread_create(&thread, NULL, run_thread, &call), 0);
         sleep_ms(length * (i + 0.5) / tries);
-        begin = now_ms(CLOCK_MONOTONIC);
-        cpu = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+        begin = clock_ms(CLOCK_MONOTONIC);
+        cpu = clock_ms(CLOCK_PROCESS_CPUTIME_ID);
         refocus_cancel(call.renderer);
         pthread_join(thread, NULL);
-        cpu = now_ms(CLOCK_PROCESS_CPUTIME_ID) - cpu;
+        cpu = clock_ms(CLOCK_PROCESS_CPUTIME_ID) - cpu;
         if (call.status == REFOCUS_OK) { /* it had ended: spread them over its length */
             length = call.end_ms - start;
             continue;
@@ -106,7 +91,7 @@ static double time_render(struct call call, const struct refocus_settings *befor
             run(&first);
             assert_int_equal(first.status, REFOCUS_OK);
         }
-        start = now_ms(CLOCK_MONOTONIC);
+        start = clock_ms(CLOCK_MONOTONIC);
         run(&call);
         assert_int_equal(call.status, REFOCUS_OK);
         best = call.end_ms - start < best ? call.end_ms - start : best;
@@ -123,10 +108,10 @@ static void print_time(const char *name, double ms)
 static void measure_times(struct call call, uint8_t *out)
 {
     struct refocus_settings tap, half;
-    double start = now_ms(CLOCK_MONOTONIC);
+    double start = clock_ms(CLOCK_MONOTONIC);
 
     assert_int_equal(refocus_prepare(call.renderer, call.photo, call.disparity), REFOCUS_OK);
-    print_time("prepare", now_ms(CLOCK_MONOTONIC) - start);
+    print_time("prepare", clock_ms(CLOCK_MONOTONIC) - start);
     call.photo = NULL;
     tap = call.params;
     tap.render.focus_disparity = 0.2f;

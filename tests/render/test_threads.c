@@ -1,9 +1,9 @@
 /* test_threads.c: any number of threads renders equal pictures; another thread can cancel. */
 #include <pthread.h>
 #include <stdatomic.h>
-#include <time.h>
 
 #include "pictures.h"
+#include "../clock.h"
 
 static void same_bytes(void **state)
 {
@@ -48,29 +48,15 @@ struct canceller {
     atomic_int stop;
 };
 
-static void pause_ms(long ms)
-{
-    const struct timespec t = {ms / 1000, ms % 1000 * 1000000};
-    nanosleep(&t, NULL);
-}
-
 static void *cancel_all(void *user)
 {
     struct canceller *canceller = user;
 
     while (!atomic_load(&canceller->stop)) {
         refocus_cancel(canceller->renderer);
-        pause_ms(1);
+        sleep_ms(1);
     }
     return NULL;
-}
-
-static double seconds(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 /* Full ray tracing of this picture takes many seconds; cancelled, almost none. */
@@ -101,10 +87,10 @@ static void cancel_render(void **state)
     render_style(canceller.renderer, &p, &styles[0], 0.5f, 4, before);
 
     assert_int_equal(pthread_create(&thread, NULL, cancel_all, &canceller), 0);
-    const double start = seconds();
+    const double start = 1e-3 * now_ms();
     assert_int_equal(refocus_render_settings(canceller.renderer, &params, &image),
                      REFOCUS_ERR_CANCELLED);
-    const double taken = seconds() - start;
+    const double taken = 1e-3 * now_ms() - start;
     atomic_store(&canceller.stop, 1);
     pthread_join(thread, NULL);
     if (taken > 5)
@@ -229,7 +215,7 @@ static void *render_rivalling(void *user)
         for (size_t i = 0; i < sizeof out; i++)
             assert_int_equal(out[i], 0x33);
         rival->refused++;
-        pause_ms(1);
+        sleep_ms(1);
     }
     return NULL;
 }

@@ -1,25 +1,10 @@
 /* test_replay.c: the scripted camera: every fault, and the promises that hold through all of
  * them. */
 #include "check.h"
+#include "../../clock.h"
 
 #include <math.h>
 #include <pthread.h>
-#include <time.h>
-
-static int64_t now_ms(void)
-{
-    struct timespec now;
-
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
-}
-
-static void sleep_ms(int ms)
-{
-    const struct timespec pause = {ms / 1000, ms % 1000 * 1000000L};
-
-    nanosleep(&pause, NULL);
-}
 
 static const struct refocus_frame *next(struct refocus_source *source)
 {
@@ -44,7 +29,7 @@ static void frames_come_at_their_pace(void **state)
 {
     struct refocus_source *source = started("replay::size 64x48;fps 100;frames 20", 0);
     const struct refocus_frame *frame;
-    const int64_t begin = now_ms();
+    const double begin = now_ms();
 
     (void)state;
     for (uint32_t i = 0; i < 20; i++) {
@@ -109,7 +94,7 @@ static void a_device_returns_within_a_second(void **state)
 {
     struct refocus_source *source = started("replay::size 64x48;fps 100;at 5 vanish 300", 0);
     const struct refocus_frame *frame;
-    int64_t gone, back;
+    double gone, back;
     int status;
 
     (void)state;
@@ -219,7 +204,7 @@ static void another_thread_stops_it(void **state)
 {
     struct refocus_source *source = started("replay::size 64x48;fps 100;at 3 stall 60000", 0);
     const struct refocus_frame *frame;
-    const int64_t begin = now_ms();
+    const double begin = now_ms();
     pthread_t thread;
 
     (void)state;

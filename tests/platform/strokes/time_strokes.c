@@ -3,22 +3,14 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 #include <refocus/platform/file.h>
 #include <refocus/platform/strokes.h>
+#include "../../clock.h"
 
 enum { MOST = 100000, SEGMENT = 2 };
 
 static double times[MOST];
 static int count;
-
-static double now_ms(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec / 1e6;
-}
 
 static int by_size(const void *a, const void *b)
 {
@@ -34,12 +26,12 @@ static int draw(struct refocus_strokes *strokes, const struct refocus_stroke *st
     int status = refocus_strokes_begin(strokes, stroke, NULL);
 
     for (int i = 0; i < n && status == REFOCUS_OK; i += SEGMENT) {
-        const double start = now_ms();
+        const double start = clock_ms(CLOCK_THREAD_CPUTIME_ID);
 
         status = refocus_strokes_extend(strokes, points + 2 * i, n - i < SEGMENT ? n - i : SEGMENT,
                                         NULL);
         if (count < MOST)
-            times[count++] = now_ms() - start;
+            times[count++] = clock_ms(CLOCK_THREAD_CPUTIME_ID) - start;
     }
     return status;
 }
@@ -119,9 +111,9 @@ int main(int argc, char **argv)
 
     if (argc < 2 || refocus_photo_read(&photo, argv[1], NULL, &reason) != REFOCUS_OK)
         return 2;
-    start = now_ms();
+    start = clock_ms(CLOCK_THREAD_CPUTIME_ID);
     status = refocus_strokes_create(&strokes, photo->image, NULL);
-    created = now_ms() - start;
+    created = clock_ms(CLOCK_THREAD_CPUTIME_ID) - start;
     if (status == REFOCUS_OK && argc > 2) {
         status = refocus_strokes_create(&from, photo->image, NULL);
         if (status == REFOCUS_OK)

@@ -8,8 +8,8 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include "session.h"
+#include "../../clock.h"
 
 enum { W = 1200, H = 900, PIXELS = W * H }; /* large enough to be shown reduced first */
 
@@ -46,14 +46,6 @@ static void on_save(void *user, const struct rf_view_result *result, char words[
     strcpy(words, "saved");
     pthread_cond_signal(&came);
     pthread_mutex_unlock(&lock);
-}
-
-static double now_ms(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec / 1e6;
 }
 
 static int slow(void)
@@ -112,7 +104,6 @@ static struct rf_session *begin(void)
 static const struct rf_view_frame *wait_for(struct rf_session *session, uint64_t request, bool full)
 {
     const double end = now_ms() + 60000.0 * slow();
-    const struct timespec pause = {0, 1000000};
     const struct rf_view_frame *frame = NULL;
 
     while (now_ms() < end) {
@@ -121,7 +112,7 @@ static const struct rf_view_frame *wait_for(struct rf_session *session, uint64_t
             (frame->full || !full))
             return frame;
         assert_int_equal(rf_session_status(session), REFOCUS_OK);
-        nanosleep(&pause, NULL);
+        sleep_ms(1);
     }
     fail_msg("%s", "no frame came");
     return NULL;
@@ -195,14 +186,13 @@ static void test_nobody_waits(void **unused)
     state.method = REFOCUS_METHOD_RAYTRACE;
     setup.params.render.rays = 64;
     for (int i = 0; i < 20; i++) {
-        const struct timespec pause = {0, 20000000};
 
         state.focus = (float)i / 20;
         start = now_ms();
         request = rf_session_show(session, &state);
         if (now_ms() - start > longest)
             longest = now_ms() - start;
-        nanosleep(&pause, NULL);
+        sleep_ms(20);
     }
     assert_true(longest < 200.0 * slow());
     state.method = REFOCUS_METHOD_SWEEP;
@@ -221,7 +211,6 @@ static void test_nobody_waits(void **unused)
 /* While something is held no full picture is begun. */
 static void test_hold(void **unused)
 {
-    const struct timespec pause = {0, 100000000};
     struct rf_session *session = begin();
     struct rf_view_state state = whole(0.2f, 9);
     const struct rf_view_frame *frame;
@@ -235,7 +224,7 @@ static void test_hold(void **unused)
         request = rf_session_show(session, &state);
         frame = wait_for(session, request, false);
         assert_false(frame->full);
-        nanosleep(&pause, NULL);
+        sleep_ms(100);
         assert_false(rf_session_frame(session, &frame));
     }
     state.hold = false;
