@@ -1,7 +1,7 @@
 /* test_matte.c: a matte of the caller's: src/thin/given.c and settle.c. */
 #include "pictures.h"
 
-#include "renderer/renderer.h"
+#include "canceller.h"
 
 enum { WIDTH = 151, HEIGHT = 118, PIXELS = WIDTH * HEIGHT, NEAR = 50000, FAR = 12000 };
 static const float K = 20;
@@ -468,26 +468,13 @@ static void refused(void **state)
     }
 }
 
-struct canceller {
-    struct refocus_renderer *renderer;
-    atomic_int left;
-};
-
-static void cancel_later(void *user)
-{
-    struct canceller *canceller = user;
-
-    if (atomic_fetch_sub(&canceller->left, 1) == 1)
-        refocus_cancel(canceller->renderer);
-}
-
 /* After a cancelled prepare nothing is prepared, and the next one is as good as the first. */
 static void cancelled(void **state)
 {
     const struct refocus_disparity matte = refocus_disparity8(layers.matte, WIDTH, HEIGHT, WIDTH);
     const struct job job = job_of(&layers, &matte);
     struct refocus_renderer *renderer = create(&job);
-    struct canceller canceller = {renderer, 0};
+    struct canceller canceller = {renderer, 0, 0};
     int status = REFOCUS_ERR_CANCELLED, count = 0;
 
     (void)state;

@@ -2,7 +2,7 @@
  * renderer; and a region that of the whole. */
 #include "pictures.h"
 
-#include "renderer/renderer.h"
+#include "canceller.h"
 
 enum { WIDTH = 403, HEIGHT = 299, MOST = 3 * WIDTH * HEIGHT };
 
@@ -106,21 +106,6 @@ static void prepare(struct refocus_renderer *renderer, const struct picture *p)
     const struct refocus_disparity disparity = picture_disparity(p);
 
     assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
-}
-
-/* Cancels when it has been looked `left` times whether to go on. */
-struct canceller {
-    struct refocus_renderer *renderer;
-    atomic_int left, looks;
-};
-
-static void cancel_later(void *user)
-{
-    struct canceller *canceller = user;
-
-    atomic_fetch_add(&canceller->looks, 1);
-    if (atomic_fetch_sub(&canceller->left, 1) == 1)
-        refocus_cancel(canceller->renderer);
 }
 
 static void assert_same(const uint8_t *is, const uint8_t *should, const struct setting *s,

@@ -1,7 +1,7 @@
 /* test_texture.c: the texture of the background is continued behind what is blurred before it. */
 #include "pictures.h"
 
-#include "renderer/renderer.h"
+#include "canceller.h"
 
 enum { W = 201, H = 150, MOST = 3 * W * H, FAR = 5000, NEAR = 60000 };
 static const float K = 14;
@@ -184,26 +184,13 @@ static void as_smooth(void **state)
     picture_free(&flat);
 }
 
-struct canceller {
-    struct refocus_renderer *renderer;
-    atomic_int left;
-};
-
-static void cancel_later(void *user)
-{
-    struct canceller *canceller = user;
-
-    if (atomic_fetch_sub(&canceller->left, 1) == 1)
-        refocus_cancel(canceller->renderer);
-}
-
 /* A run that is cancelled anywhere leaves nothing behind. */
 static void cancelled(void **state)
 {
     static uint8_t out[MOST], expected[MOST];
     struct picture p = make(false);
     struct refocus_renderer *renderer = create(&p, REFOCUS_CPU_AUTO, 1, true);
-    struct canceller canceller = {renderer, 0};
+    struct canceller canceller = {renderer, 0, 0};
     int count = 0, status = REFOCUS_ERR_CANCELLED;
 
     (void)state;

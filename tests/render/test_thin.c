@@ -1,7 +1,7 @@
 /* test_thin.c: thin structures far before the focus, and in it: src/thin. */
 #include "pictures.h"
 
-#include "renderer/renderer.h"
+#include "canceller.h"
 
 enum { WIDTH = 339, HEIGHT = 251, MOST = 3 * WIDTH * HEIGHT, FAR = FENCE_FAR, NEAR = FENCE_NEAR };
 static const float K = 15;
@@ -330,19 +330,6 @@ static void regions(void **state)
     picture_free(&p);
 }
 
-struct canceller {
-    struct refocus_renderer *renderer;
-    atomic_int left;
-};
-
-static void cancel_later(void *user)
-{
-    struct canceller *canceller = user;
-
-    if (atomic_fetch_sub(&canceller->left, 1) == 1)
-        refocus_cancel(canceller->renderer);
-}
-
 static void change(struct setting *s, uint32_t *seed)
 {
     static const float focuses[] = {FAR / 65535.0f, 0.3f, NEAR / 65535.0f};
@@ -379,7 +366,7 @@ static void sequence(void **state)
     static uint8_t out[MOST], expected[MOST];
     struct picture p = picture_fence(WIDTH, HEIGHT, 4);
     struct refocus_renderer *renderer = create(&p, REFOCUS_CPU_AUTO, 2, true);
-    struct canceller canceller = {renderer, 0};
+    struct canceller canceller = {renderer, 0, 0};
     struct setting s = plain;
     uint32_t seed = 6;
     int cancelled = 0;
