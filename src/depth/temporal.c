@@ -146,8 +146,8 @@ int refocus_temporal_rescale(struct refocus_temporal *f, double scale, double of
     samples = (size_t)f->width * (size_t)f->height;
     for (size_t i = 0; i < samples && f->frames > 0; i++)
         f->last[i] = rescale(f->last[i], scale, offset);
-    for (int k = 0; k < RF_LOOKS; k++) /* planes that no frame has filled yet are left out */
-        for (size_t i = 0; i < samples && k < f->frames; i++) {
+    for (int k = 1; k < RF_LOOKS; k++) /* Frame 0 is the next; of the others as many are filled. */
+        for (size_t i = 0; i < samples && k <= f->frames; i++) {
             f->frame[k].disparity[i] = rescale(f->frame[k].disparity[i], scale, offset);
             if (!f->guided) /* then depth is its own guide */
                 f->frame[k].guide[i] = (uint8_t)(f->frame[k].disparity[i] >> 8);

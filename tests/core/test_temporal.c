@@ -349,6 +349,29 @@ static void follows_the_range(void **state)
     }
 }
 
+/* Without a photo depth is its own guide, of the new scale too: here the near half would else be
+ * looked for on the far one, whose codes were what the near half's are now. */
+static void guides_itself(void **state)
+{
+    const struct refocus_temporal_params params = refocus_temporal_params_default(16, 8);
+    uint16_t d[16 * 8], out[16 * 8];
+    const struct refocus_disparity map = refocus_disparity16(d, 16, 8, 32);
+    struct refocus_temporal *filter;
+
+    (void)state;
+    assert_int_equal(refocus_temporal_create(&filter, &params), REFOCUS_OK);
+    for (int t = 0; t < 2; t++) {
+        for (int i = 0; i < 16 * 8; i++)
+            d[i] = (uint16_t)((i % 16 < 8 ? 40000 : 10000) / (t ? 4 : 1) + 100 * t);
+        assert_int_equal(refocus_temporal_run(filter, NULL, &map, out, 32), REFOCUS_OK);
+        assert_int_equal(refocus_temporal_rescale(filter, 0.25, 0), REFOCUS_OK);
+    }
+    for (int i = 0; i < 16 * 8; i++)
+        assert_int_equal(out[i],
+                         (i % 16 < 8 ? 10000 : 2500) + 51); /* half the way, but for 1 in 256 */
+    refocus_temporal_destroy(&filter);
+}
+
 static void bad_arguments(void **state)
 {
     struct refocus_temporal_params params = refocus_temporal_params_default(W, H), bad[9];
@@ -544,6 +567,7 @@ int main(void)
         cmocka_unit_test(any_layout),
         cmocka_unit_test(any_photo),
         cmocka_unit_test(follows_the_range),
+        cmocka_unit_test(guides_itself),
         cmocka_unit_test(bad_arguments),
         cmocka_unit_test(tells_cuts),
         cmocka_unit_test(forgets_at_a_cut),
