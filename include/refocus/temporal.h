@@ -43,7 +43,7 @@ static inline struct refocus_temporal_params refocus_temporal_params_default(int
 }
 
 /**
- * Make a filter. It takes all its memory, about 43 bytes a sample, here.
+ * Make a filter. It takes all its memory, about 41 bytes a sample, here.
  *
  * @param filter  receives the filter, or NULL on an error
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_MEMORY

@@ -25,7 +25,6 @@ struct refocus_temporal {
     struct rf_frame frame[RF_LOOKS]; /* as they came, the newest first */
     uint16_t *last, *filtered;       /* the filtered map of the last frame and of this one */
     uint8_t *count, *counted;        /* frames that each sample has been seen in */
-    uint8_t *calm, *calmed;          /* Frames since each jumped. */
     struct rf_motion *motion;        /* One vector a block. */
     void *block;
     struct rf_run run;
@@ -53,8 +52,6 @@ static void lay_out(struct refocus_temporal *f, struct rf_arena *arena)
     f->filtered = rf_arena_take(arena, samples, 2);
     f->count = rf_arena_take(arena, samples, 1);
     f->counted = rf_arena_take(arena, samples, 1);
-    f->calm = rf_arena_take(arena, samples, 1);
-    f->calmed = rf_arena_take(arena, samples, 1);
     f->motion = rf_arena_take(arena, blocks, sizeof *f->motion);
 }
 
@@ -170,29 +167,21 @@ static void filter(struct refocus_temporal *f, size_t i, bool changes)
 
     f->filtered[i] = (uint16_t)d;
     f->counted[i] = 1;
-    f->calmed[i] = RF_LOOKS;
     if (f->strength == 0 || from.x == RF_NOWHERE ||
         (f->guided ? changed >= RF_ALIKE : apart >= f->noise)) {
         f->frame[0].from[i].x = RF_NOWHERE;
         return;
     }
-    f->calmed[i] =
-        apart >= f->noise ? 0 : (uint8_t)(f->calm[q] < RF_LOOKS ? f->calm[q] + 1 : RF_LOOKS);
     /* The photo does not explain a jump: looks vote. */
-    if (f->guided && f->calmed[i] < RF_LOOKS) {
+    if (apart >= f->noise) {
         struct rf_looks looks;
         int of;
 
         rf_look_back(&looks, f->frame, changes ? 2 : f->frames, f->width, i);
         of = rf_vote_of_looks(&looks, p, f->noise, &f->filtered[i]);
-        if (of) {
-            f->counted[i] = (uint8_t)of;
-            return;
-        }
-    }
-    if (apart >= f->noise) {
-        f->filtered[i] = (uint16_t)p;
-        f->counted[i] = (uint8_t)n;
+        if (!of)
+            f->filtered[i] = (uint16_t)p;
+        f->counted[i] = (uint8_t)(of ? of : n);
         return;
     }
     keep = (uint32_t)(256 * n / (n + 1));
@@ -323,7 +312,6 @@ int refocus_temporal_run(struct refocus_temporal *f, const struct refocus_image 
     } else {
         memcpy(f->filtered, f->frame[0].disparity, samples * sizeof *f->filtered);
         memset(f->counted, 1, samples);
-        memset(f->calmed, RF_LOOKS, samples);
     }
     if (atomic_exchange(&f->run.state, RF_RUN_IDLE) == RF_RUN_CANCELLED) {
         refocus_temporal_reset(f);
@@ -337,6 +325,5 @@ int refocus_temporal_run(struct refocus_temporal *f, const struct refocus_image 
     f->frame[0] = oldest;
     swap16(&f->last, &f->filtered);
     swap8(&f->count, &f->counted);
-    swap8(&f->calm, &f->calmed);
     return REFOCUS_OK;
 }

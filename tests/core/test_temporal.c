@@ -227,6 +227,59 @@ static void can_be_off(void **state)
     refocus_temporal_destroy(&on);
 }
 
+/* One sample by the equation of the header: n stays where it can grow no more, and looks have no
+ * vote where nothing jumps, though those before the climb are most alike. A jump is not
+ * believed before the second frame. A change from depth to a photo that is as bright forgets the
+ * past; another scale is rounded, and clamped. */
+static void equation(void **state)
+{
+    const struct refocus_temporal_params params = refocus_temporal_params_default(1, 1);
+    uint8_t grey[3];
+    uint16_t d, p = 0;
+    const struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, grey, 1, 1, 3);
+    const struct refocus_disparity map = refocus_disparity16(&d, 1, 1, 2);
+    struct refocus_temporal *filter;
+    int n = 0;
+
+    (void)state;
+    assert_int_equal(refocus_temporal_create(&filter, &params), REFOCUS_OK);
+    for (int t = 0; t < 600; t++) {
+        const int climbed = t < 19 ? 0 : t < 22 ? t - 19 : 3, last = p;
+        const bool jumped = t == 300 || t == 400 || t == 401;
+        double keep = n / (n + 1.0), apart;
+
+        d = (uint16_t)(t < 400 ? 20000 + 1200 * climbed : 40000);
+        d = (uint16_t)(jumped ? 40000 : d + (climbed == 3 ? t % 5 * 200 : 0));
+        memset(grey, climbed == 1 || climbed == 2 ? 111 : 100, 3);
+        assert_int_equal(refocus_temporal_run(filter, &photo, &map, &p, 2), REFOCUS_OK);
+        keep = keep < 0.85 ? keep : 0.85;
+        apart = (last - d) / (0.03 * 65535);
+        keep = t ? d + keep * (1 - apart * apart) * (last - d) : d;
+        if (jumped)
+            assert_int_equal(p, t == 401 ? 40000 : last);
+        else
+            assert_in_range(p, (int)keep - 8, (int)keep + 8);
+        n = t == 401 ? 2 : n + !jumped;
+    }
+    for (int with_photo = 0; with_photo < 2; with_photo++) {
+        d = (uint16_t)(25601 + 100 * with_photo);
+        assert_int_equal(refocus_temporal_run(filter, with_photo ? &photo : NULL, &map, &p, 2),
+                         REFOCUS_OK);
+        assert_int_equal(p, d);
+    }
+    assert_int_equal(refocus_temporal_rescale(filter, 0.5, 0), REFOCUS_OK);
+    d = 12853; /* The past is 25701 / 2, to the nearest 12851: half of two less is dropped. */
+    assert_int_equal(refocus_temporal_run(filter, &photo, &map, &p, 2), REFOCUS_OK);
+    assert_int_equal(p, 12853);
+    for (int offset = -1; offset <= 1; offset += 2) { /* 2/3 and 3/4 of 100 codes */
+        assert_int_equal(refocus_temporal_rescale(filter, 1, offset), REFOCUS_OK);
+        d = offset < 0 ? 100 : 65435;
+        assert_int_equal(refocus_temporal_run(filter, &photo, &map, &p, 2), REFOCUS_OK);
+        assert_int_equal(p, offset < 0 ? 34 : 65509);
+    }
+    refocus_temporal_destroy(&filter);
+}
+
 /* 8 bits, bottom-up rows, in place, and sizes down to one sample. */
 static void any_layout(void **state)
 {
@@ -558,21 +611,14 @@ static void is_cancelled(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(calms),
-        cmocka_unit_test(leaves_no_ghosts),
-        cmocka_unit_test(can_be_off),
-        cmocka_unit_test(waits_for_more_looks),
-        cmocka_unit_test(majorities),
-        cmocka_unit_test(looks_go_back),
-        cmocka_unit_test(any_layout),
-        cmocka_unit_test(any_photo),
-        cmocka_unit_test(follows_the_range),
-        cmocka_unit_test(guides_itself),
-        cmocka_unit_test(bad_arguments),
-        cmocka_unit_test(tells_cuts),
-        cmocka_unit_test(forgets_at_a_cut),
-        cmocka_unit_test(vectors_spread),
-        cmocka_unit_test(is_cancelled),
+        cmocka_unit_test(calms),          cmocka_unit_test(leaves_no_ghosts),
+        cmocka_unit_test(can_be_off),     cmocka_unit_test(waits_for_more_looks),
+        cmocka_unit_test(majorities),     cmocka_unit_test(looks_go_back),
+        cmocka_unit_test(equation),       cmocka_unit_test(any_layout),
+        cmocka_unit_test(any_photo),      cmocka_unit_test(follows_the_range),
+        cmocka_unit_test(guides_itself),  cmocka_unit_test(bad_arguments),
+        cmocka_unit_test(tells_cuts),     cmocka_unit_test(forgets_at_a_cut),
+        cmocka_unit_test(vectors_spread), cmocka_unit_test(is_cancelled),
     };
 
     return cmocka_run_group_tests_name("temporal", tests, NULL, NULL);
