@@ -81,7 +81,7 @@ static void forget_run(const struct rf_edges *e, struct rf_last_edges *last, int
 
 void rf_forget_moved(struct rf_edges *e, struct rf_last_edges *last)
 {
-    const bool none = last->width != e->width || last->height != e->height;
+    const bool none = !e->last;
 
     if (!none)
         find_moved(e, last);
