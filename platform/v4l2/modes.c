@@ -23,8 +23,6 @@ static double greatest_rate(int fd, uint32_t fourcc, uint32_t width, uint32_t he
 
         if (least->numerator > 0)
             fps = fmax(fps, (double)least->denominator / least->numerator);
-        if (interval.type != V4L2_FRMIVAL_TYPE_DISCRETE)
-            break;
     }
     return fps;
 }

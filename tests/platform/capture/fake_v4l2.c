@@ -13,12 +13,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { LENGTH = FAKE_WIDTH * FAKE_HEIGHT * 2, CONTROLS = 5, MOST = 64 };
+enum { LENGTH = FAKE_WIDTH * FAKE_HEIGHT * 2, CONTROLS = 5, MOST = 64, FIRST_OFFSET = 1 << 16 };
 
 struct fake_v4l2 fake = {.fd = -1};
 static struct {
     void *at[MOST];
     int dmabuf[MOST], dmabufs;
+    unsigned exported; /* bit 2 n + i: memory i of buffer n */
 } held;
 
 static bool fails(void)
@@ -95,13 +96,17 @@ int __wrap_close(int fd)
 
 void *__wrap_mmap64(void *at, size_t size, int protection, int flags, int fd, off_t offset)
 {
-    bool is_ours = fd >= 0 && fd == fake.fd;
+    bool is_device = fd >= 0 && fd == fake.fd, is_export = false;
     void *memory;
 
     for (int i = 0; i < held.dmabufs; i++)
-        is_ours |= held.dmabuf[i] == fd;
-    if (!is_ours)
+        is_export |= held.dmabuf[i] == fd;
+    if (!is_device && !is_export)
         return __real_mmap64(at, size, protection, flags, fd, offset);
+    if (is_device != (offset >= FIRST_OFFSET)) { /* Exports begin at 0. */
+        errno = EINVAL;
+        return MAP_FAILED;
+    }
     if (fails_unless_interrupted())
         return MAP_FAILED;
     memory = __real_mmap64(NULL, size, protection, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -184,12 +189,19 @@ static void say_format(struct v4l2_format *format)
         own->width = FAKE_WIDTH;
         own->height = FAKE_HEIGHT;
         own->num_planes = fake.fourcc == V4L2_PIX_FMT_NV12M ? 2 : 1;
-        own->plane_fmt[0].bytesperline = own->plane_fmt[1].bytesperline = FAKE_WIDTH;
+        own->plane_fmt[0].bytesperline = FAKE_WIDTH;
+        own->plane_fmt[1].bytesperline = 2 * FAKE_WIDTH;
+        own->colorspace = fake.space;
+        own->ycbcr_enc = (uint8_t)fake.encoding;
+        own->quantization = (uint8_t)fake.range;
     } else {
         format->fmt.pix.pixelformat = fake.fourcc;
         format->fmt.pix.width = FAKE_WIDTH;
         format->fmt.pix.height = FAKE_HEIGHT;
         format->fmt.pix.bytesperline = FAKE_WIDTH * 2;
+        format->fmt.pix.colorspace = fake.space;
+        format->fmt.pix.ycbcr_enc = fake.encoding;
+        format->fmt.pix.quantization = fake.range;
     }
 }
 
@@ -259,6 +271,7 @@ static int request_buffers(struct v4l2_requestbuffers *request)
         return EBUSY;
     request->count = request->count > 8 ? 8 : request->count;
     fake.buffers = (int)request->count;
+    held.exported = 0;
     fake.queued = fake.done = 0;
     return 0;
 }
@@ -267,16 +280,25 @@ static int query_buffer(struct v4l2_buffer *buffer)
 {
     if (buffer->index >= (uint32_t)fake.buffers)
         return EINVAL;
-    buffer->length = fake.multi ? 2 : LENGTH;
-    for (int i = 0; i < 2 && fake.multi; i++)
-        buffer->m.planes[i].length = LENGTH;
+    buffer->length = fake.multi ? 2 : fake.length ? fake.length : LENGTH;
+    if (!fake.multi)
+        buffer->m.offset = FIRST_OFFSET;
+    for (uint32_t i = 0; i < 2 && fake.multi; i++) {
+        buffer->m.planes[i].length = fake.length ? fake.length : LENGTH;
+        buffer->m.planes[i].m.mem_offset = FIRST_OFFSET;
+    }
     return 0;
 }
 
 static int export_buffer(struct v4l2_exportbuffer *export)
 {
+    const unsigned bit = 1u << (2 * export->index + export->plane);
+
     if (held.dmabufs == MOST)
         return ENFILE;
+    if (held.exported & bit)
+        return EINVAL;
+    held.exported |= bit;
     export->fd = held.dmabuf[held.dmabufs++] = __real_open64("/dev/null", O_RDONLY | O_CLOEXEC, 0);
     return 0;
 }
@@ -288,6 +310,7 @@ static int queue(const struct v4l2_buffer *buffer)
     if (buffer->index >= (uint32_t)fake.buffers || (fake.queued | fake.done) & bit)
         return EINVAL;
     fake.queued |= bit;
+    fake.queued_at_us = buffer->timestamp.tv_sec * INT64_C(1000000) + buffer->timestamp.tv_usec;
     return 0;
 }
 
@@ -305,10 +328,14 @@ static int dequeue(struct v4l2_buffer *buffer)
     fake.frames++;
     buffer->index = (uint32_t)n;
     buffer->sequence = fake.sequence++;
-    buffer->flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
-    buffer->bytesused = LENGTH;
-    for (int i = 0; i < 2 && fake.multi; i++)
-        buffer->m.planes[i].bytesused = LENGTH;
+    buffer->flags = fake.filled.flags ? fake.filled.flags : V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
+    buffer->bytesused = fake.filled.bytes ? fake.filled.bytes : LENGTH;
+    buffer->timestamp.tv_sec = (time_t)(fake.filled.us / 1000000);
+    buffer->timestamp.tv_usec = (suseconds_t)(fake.filled.us % 1000000);
+    for (int i = 0; i < 2 && fake.multi; i++) {
+        buffer->m.planes[i].bytesused = buffer->bytesused;
+        buffer->m.planes[i].data_offset = fake.filled.offset;
+    }
     return 0;
 }
 
@@ -353,6 +380,10 @@ static int answer_request(unsigned long request, void *argument)
     case VIDIOC_G_PARM:
         ((struct v4l2_streamparm *)argument)->parm.capture.timeperframe =
             (struct v4l2_fract){1, 30};
+        return 0;
+    case VIDIOC_S_PARM:
+        memcpy(fake.rate, &((struct v4l2_streamparm *)argument)->parm.capture.timeperframe,
+               sizeof fake.rate);
         return 0;
     case VIDIOC_QUERYCTRL:
         return say_control(argument);

@@ -23,6 +23,15 @@ extern struct fake_v4l2 {
     unsigned long refused; /* a request that fails with EIO, the next `refusals` times */
     int refusals;
 
+    uint32_t space, encoding, range; /* the driver's words for its colours */
+    uint32_t length;                 /* bytes of a buffer; 0 = enough */
+    struct {
+        uint32_t bytes, offset, flags;
+        int64_t us;
+    } filled;             /* the driver's words for a frame; bytes 0 = the whole buffer */
+    uint32_t rate[2];     /* the numerator and the denominator of the period that is set */
+    int64_t queued_at_us; /* the time of the frame that was put out last */
+
     int fd, buffers, mapped;
     bool streaming;
     unsigned queued, done; /* bit n: buffer n */

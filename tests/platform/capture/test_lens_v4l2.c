@@ -20,11 +20,12 @@ int rf_v4l2_ioctl(int fd, unsigned long request, void *argument)
     assert_int_equal(fd, 5);
     while (n < CONTROLS && ids[n] != control->id) /* the first field of both structs */
         n++;
-    if (n == CONTROLS || !there[n])
+    if (n == CONTROLS || (!there[n] && n != PLACE))
         return EINVAL;
     if (request == VIDIOC_QUERYCTRL) {
         struct v4l2_queryctrl *const range = argument;
 
+        range->flags = there[n] ? 0 : V4L2_CTRL_FLAG_DISABLED;
         range->minimum = n == PLACE ? 10 : 0;
         range->maximum = n == PLACE ? 250 : n == AUTO;
         return 0;

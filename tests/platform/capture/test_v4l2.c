@@ -2,6 +2,7 @@
  * is an error that the headers name, and words say why; nothing stays open, mapped or allocated,
  * and the same source, and another one, works when the device does. */
 #include "check.h"
+#include "clock.h"
 #include "fake_v4l2.h"
 
 #include <errno.h>
@@ -220,8 +221,12 @@ static void refused_frames(void **state)
             assert_status(refocus_sink_open(&sink, "v4l2:7", &reason), REFOCUS_OK);
             assert_status(refocus_sink_start(sink, FAKE_WIDTH, FAKE_HEIGHT, 25, &reason),
                           REFOCUS_OK);
-            for (int i = 0; i < shown; i++)
+            for (int i = 0; i < shown; i++) {
+                const int64_t now = rf_now_ns() / 1000;
+
                 assert_status(refocus_sink_write(sink, &image, &reason), REFOCUS_OK);
+                assert_in_range(fake.queued_at_us, now, now + 60 * 1000000);
+            }
             fake.refused = requests[kind >> 1];
             fake.refusals = fake.streaming && kind >> 1 ? 0 : REFUSALS;
             for (int i = fake.refusals; i > 0; i--) {
@@ -270,11 +275,136 @@ static void refused_buffers(void **state)
         }
 }
 
+static struct refocus_source *start(struct refocus_source_config config,
+                                    struct refocus_source_mode *mode)
+{
+    struct refocus_source *source = NULL;
+
+    assert_status(refocus_source_open(&source, "v4l2:7", &reason), REFOCUS_OK);
+    assert_status(refocus_source_start(source, &config, mode, &reason), REFOCUS_OK);
+    return source;
+}
+
+/* A driver tells its colours and the rate, and gives buffers that are too small. */
+static void formats(void **state)
+{
+    static const struct {
+        uint32_t space, encoding, range, matrix, full;
+    } cases[] = {
+        {V4L2_COLORSPACE_SMPTE170M, 0, 0, REFOCUS_MATRIX_BT601, false},
+        {V4L2_COLORSPACE_REC709, 0, 0, REFOCUS_MATRIX_BT709, false},
+        {V4L2_COLORSPACE_JPEG, 0, 0, REFOCUS_MATRIX_BT601, true},
+        {V4L2_COLORSPACE_REC709, V4L2_YCBCR_ENC_601, 0, REFOCUS_MATRIX_BT601, false},
+        {V4L2_COLORSPACE_SRGB, V4L2_YCBCR_ENC_709, V4L2_QUANTIZATION_FULL_RANGE,
+         REFOCUS_MATRIX_BT709, true},
+        {V4L2_COLORSPACE_SMPTE170M, V4L2_YCBCR_ENC_XV709, V4L2_QUANTIZATION_LIM_RANGE,
+         REFOCUS_MATRIX_BT709, false},
+    };
+    struct refocus_source_config config = refocus_source_config_default();
+    struct refocus_source_mode mode = refocus_source_mode_default();
+
+    (void)state;
+    fake.output = false;
+    for (size_t i = 0; i < 2 * sizeof cases / sizeof *cases; i++) {
+        struct refocus_source *source;
+        const struct refocus_frame *frame;
+
+        fake.multi = i % 2;
+        fake.space = cases[i / 2].space;
+        fake.encoding = cases[i / 2].encoding;
+        fake.range = cases[i / 2].range;
+        config.fps = 14.985;
+        source = start(config, &mode);
+        assert_true(fake.rate[0] == 1000 && fake.rate[1] == 14985 && mode.fps == 14.985);
+        assert_int_equal(mode.format, fake.multi ? REFOCUS_FRAME_NV12 : REFOCUS_FRAME_YUYV);
+        assert_status(refocus_source_wait(source, 1000, &frame, &reason), REFOCUS_OK);
+        assert_int_equal(frame->matrix, cases[i / 2].matrix);
+        assert_int_equal(!!(frame->flags & REFOCUS_FRAME_FULL_RANGE), cases[i / 2].full);
+        refocus_source_stop(source);
+        fake.length = 255; /* 256, 512 or 1024 are needed. */
+        assert_status(refocus_source_start(source, &config, &mode, &reason), REFOCUS_ERR_IO);
+        assert_string_equal(reason.text, "/dev/video7: the driver's strides or buffers are less "
+                                         "than a picture");
+        fake.length = 0;
+        refocus_source_close(&source);
+    }
+    fake.space = fake.encoding = fake.range = 0;
+}
+
+/* A driver says of a frame when it was, where it begins in its buffer, by a clock that does not
+ * count, and that it is damaged or holds less or more than it can. */
+static void frames(void **state)
+{
+    enum { LENGTH = 2 * FAKE_WIDTH * FAKE_HEIGHT, MONOTONIC = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC };
+    static const struct {
+        bool multi;
+        uint32_t bytes, offset, flags, is;
+    } cases[] = {
+        {false, 0, 0, MONOTONIC, REFOCUS_FRAME_MONOTONIC},
+        {false, 0, 0, V4L2_BUF_FLAG_TIMESTAMP_COPY, 0},
+        {false, 0, 0, MONOTONIC | V4L2_BUF_FLAG_ERROR,
+         REFOCUS_FRAME_MONOTONIC | REFOCUS_FRAME_CORRUPT},
+        {false, LENGTH - 1, 0, MONOTONIC, REFOCUS_FRAME_MONOTONIC | REFOCUS_FRAME_CORRUPT},
+        {false, LENGTH + 1, 0, MONOTONIC, REFOCUS_FRAME_MONOTONIC | REFOCUS_FRAME_CORRUPT},
+        {true, LENGTH / 2 + 64, 64, MONOTONIC, REFOCUS_FRAME_MONOTONIC},
+        {true, LENGTH / 2 + 63, 64, MONOTONIC, REFOCUS_FRAME_MONOTONIC | REFOCUS_FRAME_CORRUPT},
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct refocus_source_mode mode = refocus_source_mode_default();
+        const struct refocus_frame *frame;
+        struct refocus_source *source;
+        bool corrupt = cases[i].is & REFOCUS_FRAME_CORRUPT;
+
+        fake.multi = cases[i].multi;
+        fake.filled.bytes = cases[i].bytes;
+        fake.filled.offset = cases[i].offset;
+        fake.filled.flags = cases[i].flags;
+        fake.filled.us = 12345678;
+        fake.sequence = 77;
+        source = start(refocus_source_config_default(), &mode);
+        assert_status(refocus_source_wait(source, 1000, &frame, &reason), REFOCUS_OK);
+        assert_int_equal(frame->flags, cases[i].is);
+        assert_true(frame->timestamp_ns == INT64_C(12345678000) && frame->sequence == 77);
+        assert_true(!fake.multi || frame->stride[1] == 2 * frame->stride[0]);
+        for (int k = 0; k < (fake.multi ? 2 : 1); k++) /* Memories begin at a page. */
+            assert_int_equal((uintptr_t)frame->plane[k] % 4096, corrupt ? 0 : cases[i].offset);
+        refocus_source_close(&source);
+    }
+    memset(&fake.filled, 0, sizeof fake.filled);
+}
+
+/* A stream that starts anew knows nothing of buffers that the driver did not take back before. */
+static void starts_anew(void **state)
+{
+    struct refocus_source_mode mode = refocus_source_mode_default();
+    struct refocus_source *source = start(refocus_source_config_default(), &mode);
+    const struct refocus_frame *frame, *kept;
+    int status;
+
+    (void)state;
+    fake.refused = VIDIOC_QBUF;
+    fake.refusals = 1000;
+    while ((status = refocus_source_wait(source, 1000, &frame, &reason)) == REFOCUS_OK)
+        refocus_source_release(source, frame);
+    assert_int_equal(status, REFOCUS_ERR_IO);
+    fake.refusals = 0;
+    assert_status(refocus_source_restart(source, &mode, &reason), REFOCUS_OK);
+    assert_status(refocus_source_wait(source, 1000, &frame, &reason), REFOCUS_OK);
+    assert_status(refocus_source_wait(source, 1000, &kept, &reason), REFOCUS_OK);
+    refocus_source_release(source, frame);
+    assert_int_equal((fake.queued | fake.done) >> kept->buffer & 1, 0);
+    refocus_source_close(&source);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(cameras), cmocka_unit_test(virtual_cameras),
-                                       cmocka_unit_test(refused_frames),
-                                       cmocka_unit_test(refused_buffers)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cameras),        cmocka_unit_test(virtual_cameras),
+        cmocka_unit_test(formats),        cmocka_unit_test(frames),
+        cmocka_unit_test(starts_anew),    cmocka_unit_test(refused_frames),
+        cmocka_unit_test(refused_buffers)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
