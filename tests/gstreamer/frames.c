@@ -149,10 +149,16 @@ static struct refocus_image image_of(const GstVideoFrame *frame, uint8_t *chroma
         image.plane[swapped && i ? 3 - i : i] = GST_VIDEO_FRAME_PLANE_DATA(frame, i);
         image.stride[swapped && i ? 3 - i : i] = GST_VIDEO_FRAME_PLANE_STRIDE(frame, i);
     }
+    if (frame->info.colorimetry.range == GST_VIDEO_COLOR_RANGE_0_255)
+        image.range = REFOCUS_RANGE_FULL;
+    if (frame->info.colorimetry.matrix == GST_VIDEO_COLOR_MATRIX_BT709 ||
+        frame->info.colorimetry.matrix == GST_VIDEO_COLOR_MATRIX_BT2020)
+        image.matrix = REFOCUS_MATRIX_BT709;
     if (strcmp(name, "GRAY8") == 0) {
         image.plane[1] = image.plane[2] = chroma;
         image.stride[1] = image.stride[2] = image.width;
-        image.range = REFOCUS_RANGE_FULL;
+        if (frame->info.colorimetry.range != GST_VIDEO_COLOR_RANGE_16_235)
+            image.range = REFOCUS_RANGE_FULL;
     }
     switch (frame->info.colorimetry.transfer) {
     case GST_VIDEO_TRANSFER_SMPTE2084:

@@ -70,6 +70,22 @@ static void formats(void **state)
     check_frame("video/x-raw,format=NV12,width=63,height=47,framerate=25/1", DEPTH, 16, 64, 48);
 }
 
+/* Matrices and ranges; BT.2020 of 8 bits is nearest to BT.709. In numbers of GStreamer: the range
+ * is 1 for 0 to 255 and 2 for 16 to 235. */
+static void colours(void **state)
+{
+    static const char *const kinds[] = {"NV12,colorimetry=bt709", "NV12,colorimetry=bt2020",
+                                        "NV12,colorimetry=1:4:0:0", "I420,colorimetry=1:3:0:0",
+                                        "GRAY8,colorimetry=2:4:0:0"};
+    char caps[128];
+
+    (void)state;
+    for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++) {
+        g_snprintf(caps, sizeof caps, "video/x-raw,format=%s," SIZE, kinds[i]);
+        check_frame(caps, DEPTH, 16, 64, 48);
+    }
+}
+
 /* Ten bits by the curves of video, PQ and HLG. */
 static void ten_bits(void **state)
 {
@@ -156,6 +172,9 @@ static void steady_light(void **state)
     gst_segment_init(&segment, GST_FORMAT_TIME);
     gst_harness_push_event(bench.video, gst_event_new_segment(&segment));
     assert_true(lamps_come_alone(&bench, 7, 1620));
+    assert_true(lamps_come_alone(&bench, 8, 1660));
+    assert_false(lamps_come_alone(&bench, 7, 1700));
+    assert_true(lamps_come_alone(&bench, 8, 1400));
     bench_close(&bench);
 }
 
@@ -163,6 +182,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(formats),
+        cmocka_unit_test(colours),
 #if G_BYTE_ORDER == G_LITTLE_ENDIAN
         cmocka_unit_test(ten_bits),
 #endif

@@ -252,11 +252,13 @@ static void damaged_map(void **state)
     begin(&bench);
     assert_int_equal(gst_harness_push(bench.video, frame_make(NV12, 3, 0)), GST_FLOW_OK);
     GST_BUFFER_PTS(map) = ms(40);
-    assert_int_equal(gst_harness_push(bench.depth, map), GST_FLOW_OK);
+    assert_int_equal(gst_harness_push(bench.depth, gst_buffer_ref(map)), GST_FLOW_OK);
     end_depth(&bench);
     gst_buffer_unref(gst_harness_pull(bench.video));
     goes_on(&bench, 40, true);
     goes_on(&bench, 80, true);
+    assert_int_equal(GST_MINI_OBJECT_REFCOUNT_VALUE(map), 1);
+    gst_buffer_unref(map);
     finish(&bench);
 }
 

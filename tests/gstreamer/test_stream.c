@@ -85,7 +85,7 @@ static void pairing(void **state)
 static void new_caps(void **state)
 {
     struct refocus_settings settings = frame_settings(1, 5);
-    const char *const caps[] = {NV12, RGB, P010, NV12};
+    const char *const caps[] = {NV12, P010, RGB, P010, NV12};
     GstBuffer *depth = frame_make(DEPTH, 4, 0);
     struct refocus_disparity disparity;
     struct bench bench;
@@ -359,8 +359,8 @@ static void focus_of_a_place(void **state)
         bool at_once;
     } step[] = {
         {0, 100, 0.5, 0, true},     {40, 130, 0.5, 0, false},  {80, 100, 0.5, 0, false},
-        {120, 130, 0.5, 0, false},  {160, 30, 0.5, 0, false},  {200, 200, 0.2, 0, true},
-        {240, 100, 0.2, 0, false},  {1400, 200, 0.2, 0, true}, /* more than a second later */
+        {120, 130, 0.5, 0, false},  {160, 30, 0.5, 0, false},  {200, 200, 1, 0, true},
+        {240, 100, 1, 0, false},    {1400, 200, 1, 0, true},   /* more than a second later */
         {1440, 100, -1, 0, true},                              /* by the property `focus` */
         {1480, 200, 0.2, 0, true},  {1520, 100, 0.2, 9, true}, /* another range */
         {1560, 200, 0.2, 9, false},
@@ -372,7 +372,7 @@ static void focus_of_a_place(void **state)
 
     (void)state;
     bench_open(&bench, NV12, DEPTH);
-    g_object_set(bench.element, "focus", 0.2, "focus-y", 0.5, "blur", 40.0, "near", 1.0, NULL);
+    g_object_set(bench.element, "focus", 0.2, "focus-y", 1.0, "blur", 40.0, "near", 1.0, NULL);
     assert_int_equal(push_depth(&bench, step[0].value, step[0].ms), GST_FLOW_OK);
     for (int i = 0; i < STEPS; i++) {
         GstBuffer *const frame = frame_make(NV12, 3, (GstClockTime)step[i].ms * GST_MSECOND);
@@ -395,6 +395,7 @@ static void lateness(void **state)
 {
     struct bench bench;
     GstMessage *message;
+    guint64 rendered, dropped;
 
     (void)state;
     bench_open(&bench, NV12, DEPTH);
@@ -405,11 +406,16 @@ static void lateness(void **state)
     /* The frame of 0 ms was late by 50: those up to 100 are. */
     gst_harness_push_upstream_event(
         bench.video, gst_event_new_qos(GST_QOS_TYPE_UNDERFLOW, 2, 50 * GST_MSECOND, 0));
-    push(bench.video, frame_make(NV12, 0, 80 * GST_MSECOND));
+    for (int left_out = 1; left_out <= 2; left_out++)
+        push(bench.video, frame_make(NV12, 0, (GstClockTime)(60 + 20 * left_out) * GST_MSECOND));
     assert_true(comes_out_sharp(&bench, 120)); /* the next that comes out */
-    message = gst_bus_pop_filtered(bench.bus, GST_MESSAGE_QOS);
-    assert_non_null(message);
-    gst_message_unref(message);
+    for (guint64 left_out = 1; left_out <= 2; left_out++) {
+        message = gst_bus_pop_filtered(bench.bus, GST_MESSAGE_QOS);
+        assert_non_null(message);
+        gst_message_parse_qos_stats(message, NULL, &rendered, &dropped);
+        assert_true(rendered == 1 && dropped == left_out);
+        gst_message_unref(message);
+    }
     g_object_set(bench.element, "qos", FALSE, NULL);
     gst_harness_push_upstream_event(
         bench.video,
@@ -430,13 +436,23 @@ static void live(void **state)
     gst_harness_set_live(bench.depth, TRUE);
     gst_harness_set_upstream_latency(bench.video, FRAME * GST_MSECOND);
     gst_harness_use_testclock(bench.video);
-    g_object_set(bench.element, "focus", 1.0, NULL);
+    g_object_set(bench.element, "focus", 1.0, "blur", 8.0, NULL);
     assert_int_equal(push_depth(&bench, 255, 0), GST_FLOW_OK);
     assert_int_equal(push(bench.video, frame_make(NV12, 0, 0)), GST_FLOW_OK);
     out = gst_harness_pull(bench.video);
     assert_non_null(out);
     gst_buffer_unref(out);
     assert_int_equal(gst_harness_query_latency(bench.video), 2 * FRAME * GST_MSECOND);
+    /* A map that is farther off than half a frame is not taken before the next one is there. */
+    assert_int_equal(push_depth(&bench, 255, 60), GST_FLOW_OK);
+    frame = frame_make(NV12, 3, 90 * GST_MSECOND);
+    assert_int_equal(push(bench.video, gst_buffer_ref(frame)), GST_FLOW_OK);
+    g_usleep(20000);
+    assert_int_equal(push_depth(&bench, 0, 95), GST_FLOW_OK);
+    out = gst_harness_pull(bench.video);
+    assert_false(frame_same(NV12, frame, out));
+    gst_buffer_unref(frame);
+    gst_buffer_unref(out);
     frame = frame_make(NV12, 0, 1000 * GST_MSECOND);
     assert_int_equal(push(bench.video, frame), GST_FLOW_OK);
     assert_true(gst_harness_crank_single_clock_wait(bench.video));
@@ -446,15 +462,25 @@ static void live(void **state)
     bench_close(&bench);
 }
 
-/* Flags, offsets and metas of a buffer stay. */
+static void count(GstElement *element, GstSegment *segment, guint64 pts, guint64 dts,
+                  guint64 duration, GstStructure *info, int *times)
+{
+    (void)element, (void)segment, (void)dts, (void)info;
+    *times += pts == 0 && duration == FRAME * GST_MSECOND;
+}
+
+/* Flags, offsets and metas of a buffer stay; who asks is told when it is taken. */
 static void metas(void **state)
 {
+    int selected = 0;
     GstCaps *const reference = gst_caps_new_empty_simple("timestamp/x-test");
     struct bench bench;
     GstBuffer *frame, *out;
 
     (void)state;
     bench_open(&bench, NV12, DEPTH);
+    g_object_set(bench.element, "emit-signals", TRUE, NULL);
+    g_signal_connect(bench.element, "samples-selected", G_CALLBACK(count), &selected);
     push_depth(&bench, 9, 0);
     end(bench.depth);
     frame = frame_make(NV12, 0, 0);
@@ -466,6 +492,7 @@ static void metas(void **state)
     assert_non_null(gst_buffer_get_reference_timestamp_meta(out, reference));
     assert_true(GST_BUFFER_FLAG_IS_SET(out, GST_BUFFER_FLAG_MARKER));
     assert_int_equal(GST_BUFFER_OFFSET(out), 77);
+    assert_int_equal(selected, 1);
     gst_buffer_unref(out);
     gst_caps_unref(reference);
     bench_close(&bench);
