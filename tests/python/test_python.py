@@ -3,6 +3,7 @@
 
 usage: test_python.py FOLDER_OF_THE_PACKAGE [REFOCUS]
 """
+import dataclasses
 import gc
 import math
 import os
@@ -32,7 +33,8 @@ def scene():
 
 
 def picture_of(photo, disparity, out=None, order='rgb', blur=BLUR, **fields):
-    deep = int(not (isinstance(photo, refocus.Image) or photo.dtype == numpy.uint8))
+    planes = photo.planes if isinstance(photo, refocus.Image) else [photo]
+    deep = int(memoryview(planes[0]).itemsize > 1)
     with refocus.Renderer(WIDTH, HEIGHT, BLUR, threads=2, deep=deep) as renderer:
         renderer.prepare(photo, disparity, order=order)
         return renderer.render(refocus.Settings(0.9, blur, **fields), out, order=order)
@@ -128,6 +130,11 @@ class Pictures(Case):
             self.assertEqual((out.dtype, out.shape), (photo.dtype, photo.shape))
             sharp = picture_of(photo, self.disparity, blur=0)
             self.same(sharp, photo)
+        linear = refocus.Image(refocus.Format.RGB_FLOAT, WIDTH, HEIGHT, (photo,))
+        self.differs(linear, white=0.5)
+        self.differs(linear, transfer=refocus.Transfer.SRGB)
+        linear.transfer = refocus.Transfer.GAMMA
+        self.differs(linear, gamma=1.8)
         out = numpy.empty((HEIGHT, WIDTH, 3), numpy.uint8)
         picture_of((self.photo.astype(numpy.uint16) * 257), self.disparity, out, dither=1)
         difference = numpy.abs(out.astype(int) - self.expected)
@@ -141,6 +148,16 @@ class Pictures(Case):
         self.assertEqual(out.format, refocus.Format.NV12)
         self.assertTrue((out.planes[1] == 128).all())
         self.assertGreater(numpy.mean(numpy.abs(out.planes[0].astype(int) - luma)), 3)
+        chroma[:, ::2] = 90
+        self.differs(frame, matrix=refocus.Matrix.BT709)
+        self.differs(frame, range=refocus.Range.FULL)
+
+    def differs(self, image, **fields):
+        """Whether what a picture says of its values counts."""
+        one, other = (picture_of(each, self.disparity)
+                      for each in (image, dataclasses.replace(image, **fields)))
+        self.assertFalse(numpy.array_equal(getattr(one, 'planes', [one])[0],
+                                           getattr(other, 'planes', [other])[0]))
 
     def test_settings(self):
         settings = refocus.Settings(0.9, BLUR, rays=16, look={'cat_eye': 0.5})
@@ -185,6 +202,8 @@ class Depth(Case):
         disparity, report = refocus.depth_to_disparity(metres, 'm')
         self.assertEqual((disparity[0, 0], disparity[-1, -1]), (65535, 0))
         self.assertEqual((report.near_m, report.far_m, report.unknown), (1, 4, 1))
+        one_row = numpy.linspace(1, 4, 20000, dtype=numpy.float32)[None]
+        self.assertEqual(refocus.depth_to_disparity(one_row, 'm')[0][0, 0], 65535)
         millimetres = (metres * 1000).round()
         millimetres[3, 3] = 0
         again = refocus.depth_to_disparity(millimetres.astype(numpy.uint16), 'mm')[0]
@@ -198,7 +217,14 @@ class Depth(Case):
 
     def test_upsampling_and_edges(self):
         small = self.disparity[::4, ::4].copy()
-        self.assertEqual(refocus.upsample(self.photo, small).shape, (HEIGHT, WIDTH))
+        clean = refocus.upsample(self.photo, small)
+        self.assertEqual(clean.shape, (HEIGHT, WIDTH))
+        small[2:4, 2:4], sure = 65535, numpy.full(small.shape, 255, numpy.uint8)
+        sure[2:4, 2:4] = 0
+        for confidence, least, most in ((None, 40000, 60000), (sure, 0, 600)):
+            off = refocus.upsample(self.photo, small, confidence=confidence)[8:16, 8:16] - \
+                clean[8:16, 8:16].astype(int)
+            self.assertTrue(least <= off.mean() <= most, off.mean())
         placed, report = refocus.depth_edges(self.photo, self.disparity)
         self.assertEqual(placed.shape, (HEIGHT, WIDTH))
         self.assertGreaterEqual(report.on_photo, 0)
@@ -266,6 +292,10 @@ class Errors(Case):
                 (ValueError, 'ascontiguousarray', photo, disparity[:, ::2]),
                 (ValueError, 'ascontiguousarray', photo.transpose(1, 0, 2), disparity),
                 (ValueError, 'dimensions', photo, disparity[0]),
+                (ValueError, 'disparity: no side may be larger than 65535', photo,
+                 numpy.zeros((65537, 1), numpy.uint16)),
+                (ValueError, 'disparity: no side may be larger than 65535', photo,
+                 numpy.zeros((1, 65537), numpy.uint16)),
                 (TypeError, 'depth_to_disparity', photo, disparity.astype(numpy.float32)),
                 (TypeError, 'cannot be read', photo, disparity.astype('>u2')),
                 (ValueError, '', numpy.broadcast_to(photo[:1], photo.shape), disparity),
@@ -275,6 +305,11 @@ class Errors(Case):
                 self.refused(refocus.StateError, 'prepare', renderer.render, refocus.Settings())
         for out in (photo[:-1].copy(), numpy.zeros((HEIGHT, WIDTH, 3), numpy.int32), 'text'):
             self.refused((ValueError, TypeError), '', picture_of, photo, disparity, out)
+        for wrong in (numpy.zeros((HEIGHT, WIDTH - 1), numpy.uint8), disparity):
+            self.refused((ValueError, TypeError), 'confidence', refocus.upsample, photo, disparity,
+                         confidence=wrong)
+            self.refused((ValueError, TypeError), 'confidence', refocus.depth_to_disparity,
+                         disparity, 'mm', confidence=wrong)
         fixed = photo.copy()
         fixed.flags.writeable = False
         self.refused((ValueError, BufferError), '', picture_of, photo, disparity, fixed)
@@ -325,7 +360,8 @@ class Errors(Case):
         self.refused(refocus.ArgumentError, 'max_width', refocus.Renderer, 0, 10, 5)
         self.refused(refocus.SizeError, '', refocus.Renderer, 9999, 9999, 5, max_memory=10 ** 6)
         self.refused(refocus.ArgumentError, '', refocus.Aperture, blades=2)
-        self.refused(ValueError, '255', refocus.Aperture, numpy.ones((300, 300), numpy.uint8))
+        for shape in (300, 3), (3, 300):
+            self.refused(ValueError, '255', refocus.Aperture, numpy.ones(shape, numpy.uint8))
         self.refused(refocus.ArgumentError, 'focus', refocus.render, self.photo, self.disparity,
                      blur=3)
         self.refused(refocus.ArgumentError, 'near_m', refocus.render, self.photo, self.disparity,
@@ -338,7 +374,8 @@ class Errors(Case):
 
 class Life(Case):
     def test_nothing_is_kept_and_nothing_leaks(self):
-        objects = self.photo, self.disparity, numpy.zeros((4, 4), numpy.uint8)
+        objects = (self.photo, self.disparity, numpy.zeros((4, 4), numpy.uint8),
+                   numpy.zeros_like(self.disparity))
         aperture = refocus.Aperture(blades=5)
 
         def once(i):
@@ -347,6 +384,9 @@ class Life(Case):
                 settings = refocus.Settings(0.9, 4, rays=4, aperture=aperture, focus={
                     'sharp_map': objects[2]})
                 renderer.render(settings)
+                renderer.get_view(refocus.View.DISPARITY, objects[3])
+                refocus.focus_at_point(objects[1], 3, 4)
+                refocus.upsample(objects[0], objects[1], out=objects[3])
                 for bad in (objects[1], None):
                     try:
                         renderer.render(settings, bad)
@@ -390,10 +430,11 @@ class Life(Case):
         self.assertEqual(sys.getrefcount(deep), before)
 
     def test_threads(self):
-        big = numpy.tile(self.photo, (6, 6, 1))
+        big = numpy.tile(self.photo, (6, 6, 1)).astype(numpy.uint16)
         map_ = numpy.tile(self.disparity, (6, 6))
-        renderer = refocus.Renderer(big.shape[1], big.shape[0], 40, threads=1)
+        renderer = refocus.Renderer(big.shape[1], big.shape[0], 40, threads=1, deep=1)
         renderer.prepare(big, map_)
+        references = sys.getrefcount(big)
         settings = refocus.Settings(0.5, 40, rays=1024)
         found = []
 
@@ -412,9 +453,10 @@ class Life(Case):
         busy = 0
         while busy < 3 and thread.is_alive():
             try:
-                renderer.get_view(refocus.View.DISPARITY)
+                renderer.prepare(self.photo, self.disparity)
             except refocus.BusyError:
                 busy += 1
+        self.assertEqual(sys.getrefcount(big), references)  # It is still read.
         with self.assertRaises(refocus.BusyError):
             renderer.close()
         while thread.is_alive():
