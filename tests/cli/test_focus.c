@@ -208,8 +208,14 @@ static void the_camera_s_lens_is_followed(void **state)
 
 static void points_lie_in_the_picture(void **state)
 {
-    static const char *const outside[] = {"focus-at 64,3", "pull-at 3,48 1", "focus-at -1,0",
-                                          "focus-at 0,-0.5"};
+    static const char *const outside[] = {"focus-at 64,3",
+                                          "pull-at 3,48 1",
+                                          "focus-at -1,0",
+                                          "focus-at 0,-0.5",
+                                          "focus-rectangle 0,0,64,49",
+                                          "focus-rectangle 1,1,9,0.5"};
+    static const char *const wrong[] = {"pull 0.5 -1", "pull 0.5 3601", "pull 0.5 nan",
+                                        "focus-at 1;2", "focus 0,5"};
     struct live_focus focus;
     double point[2];
 
@@ -222,7 +228,7 @@ static void points_lie_in_the_picture(void **state)
     command(&focus, "focus-at 63,47");
     assert_true(live_focus_point(&focus, point));
     look(&focus);
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 6; i++) {
         char why[200] = "";
         bool quit = false;
 
@@ -230,7 +236,60 @@ static void points_lie_in_the_picture(void **state)
         assert_non_null(strstr(why, "64x48"));
         assert_false(live_focus_point(&focus, point));
     }
+    for (int i = 0; i < 5; i++) {
+        char why[200] = "";
+        bool quit = false;
+
+        assert_false(live_focus_command(&focus, wrong[i], &quit, why, sizeof why));
+        assert_non_null(strstr(why, "is no number as it takes them"));
+    }
     pthread_mutex_destroy(&focus.lock);
+}
+
+/* A rectangle is its middle until it is followed. */
+static void rectangles_have_a_middle(void **state)
+{
+    static const char *const other[] = {"focus-at 3,4", "focus 0.5"};
+    struct live_focus focus;
+    double point[2], box[4];
+    uint64_t asked;
+
+    (void)state;
+    begin(&focus, 0.5);
+    live_focus_size(&focus, 64, 48);
+    for (int i = 0; i < 2; i++) {
+        command(&focus, "focus-rectangle 0,0,64,48");
+        look(&focus);
+        command(&focus, "focus-rectangle 10,20,30,20");
+        assert_true(live_focus_point(&focus, point) && live_focus_rectangle(&focus, box, &asked));
+        assert_true(point[0] == 25 && point[1] == 30);
+        command(&focus, other[i]); /* It is followed no more. */
+        assert_false(live_focus_rectangle(&focus, box, &asked));
+    }
+    pthread_mutex_destroy(&focus.lock);
+}
+
+/* The range of a frame takes in the distance in focus, nearer or farther than what there is. */
+static void the_range_takes_in_the_focus(void **state)
+{
+    static const double metres[] = {0.5, 8, 3};
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        struct live_range of_frame = {0.5, 0.25};
+        struct lens_settings lens = LENS_SETTINGS_NONE;
+        struct live_focus focus;
+
+        lens.focus_distance = metres[i];
+        live_focus_init(&focus, &lens);
+        live_focus_frame(&focus, now, (double)NAN, &of_frame);
+        assert_true(of_frame.near == (i == 0 ? 2 : 0.5) && of_frame.far == (i == 1 ? 0.125 : 0.25));
+        lens = (struct lens_settings)LENS_SETTINGS_NONE; /* A lens may be set beyond infinity. */
+        live_focus_init(&focus, &lens);
+        live_focus_frame(&focus, now, -0.5, &of_frame);
+        assert_true(of_frame.far == 0);
+        pthread_mutex_destroy(&focus.lock);
+    }
 }
 
 int main(void)
@@ -241,7 +300,9 @@ int main(void)
                                        cmocka_unit_test(commands_before_the_first_frame_are_kept),
                                        cmocka_unit_test(distances_stay_while_the_range_moves),
                                        cmocka_unit_test(the_camera_s_lens_is_followed),
-                                       cmocka_unit_test(points_lie_in_the_picture)};
+                                       cmocka_unit_test(points_lie_in_the_picture),
+                                       cmocka_unit_test(rectangles_have_a_middle),
+                                       cmocka_unit_test(the_range_takes_in_the_focus)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -278,6 +278,8 @@ class Pictures(Live):
                  'stacks', 'error', 'autofocus', 'position', 'dioptres', 'least', 'greatest'}
         self.assertEqual([word for word in words if '`%s`' % word not in described and
                           '"%s"' % word not in described], [])
+        r = self.report('--camera', 'replay::size 64x48;fps 2;frames 2', '--depth', DEPTH)
+        self.assertLess(r['fps'], 3 if SLOW == 1 else 99)  # Half a second lies between two frames.
 
     def test_the_looks_of_render(self):
         photo = bytes((x * 37 + y * 91 + x * y * 13) % 199 + (56 if x % 9 == 4 and y % 9 == 4 else 0)
@@ -315,6 +317,17 @@ class Pictures(Live):
             self.fails(code, words, '--camera', 'file:photo.ppm', '--frames', '1', '--out',
                        'none-%d.ppm', *depth, *look, common=[])
             self.assertFalse(os.path.exists('none-0.ppm'))
+        # The light of a lamp that is wider than in the frame before follows slowly.
+        for n in range(2):
+            with open('lamp-%d.ppm' % n, 'wb') as file:
+                file.write(b'P6\n64 48\n255\n' + bytes(255 if 20 <= y < 22 and 30 <= x < 37 + n else 40
+                                                       for y in range(48) for x in range(64) for _ in range(3)))
+        lamps = '--depth', 'depth.pgm', '--focus', '1', '--blur', '6', '--highlights', '6', '--quality', 'preview'
+        subprocess.run([REFOCUS, 'render', 'lamp-1.ppm', *lamps, '-o', 'render.ppm'], check=True)
+        for camera, frame, alone in ('lamp-%d.ppm', 1, False), ('lamp-1.ppm', 0, True):
+            self.report('--camera', 'file:' + camera, *lamps, '--out', 'live-%d.ppm', '--frames', str(frame + 1),
+                        common=[])
+            self.assertEqual(content('live-%d.ppm' % frame) == content('render.ppm'), alone)
         refused(2, 'outside of the picture', '--field', 'plane', '--field-at', '64,2')
         refused(2, 'outside of the picture', '--tilt-angle', '9', '--tilt-line', '1,1,2,48')
         refused(2, '--focus-plane', '--focus-plane', '1,1,9,9,20,1')

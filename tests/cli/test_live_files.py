@@ -166,6 +166,9 @@ class Files(Live):
                          b'YUV4MPEG2 W64 H48 F30000:1001 Ip A128:117 C420mpeg2 XCOLORRANGE=LIMITED')
         self.report(*args, '--fps', '12.5')
         self.assertIn(b' F25:2 Ip A128:117', content('out.y4m')[:80])
+        write('in.y4m', video.replace(b'C420jpeg', b'C420jpeg XCOLORRANGE=FULL'))
+        self.report(*args)
+        self.assertTrue(content('out.y4m').split(b'\n')[0].endswith(b' XCOLORRANGE=FULL'))
 
     def test_pictures_have_the_rate_of_the_other_source(self):
         """Picture n goes with frame n, whatever the rate of the film."""

@@ -26,6 +26,7 @@ struct room {
     double pace, change; /* the largest steps so far: of the range, and of the lens */
 };
 static struct room room;
+static int wall = WALL;
 
 static int noise(int most)
 {
@@ -40,8 +41,8 @@ static void draw(int person)
     for (int i = 0; i < W * H; i++) {
         const int y = i / W, x = i % W;
         const int mm = x < person && y > 20 ? PERSON
-                       : y > 80             ? WALL - (WALL - FLOOR) * (y - 80) / (H - 81)
-                                            : WALL;
+                       : y > 80             ? wall - (wall - FLOOR) * (y - 80) / (H - 81)
+                                            : wall;
 
         room.mm[i] = (uint16_t)(mm + noise(mm / 100));
         if (noise(50) == 0)
@@ -191,12 +192,30 @@ static void who_leaves_leaves_the_range_slowly(void **state)
     focus = in_focus();
     assert_true(fabs(1 / room.range.near - 1.1) < 0.02);
     watch(0.9, 0);
-    assert_true(fabs(1 / room.range.near - 1.1) < 0.02); /* he may come back */
+    watch(0.2, 60); /* He may come back. */
+    watch(0.9, 0);
+    assert_true(fabs(1 / room.range.near - 1.1) < 0.02);
     assert_true(room.pace == 0);
     watch(9, 0);
     assert_true(fabs(1 / room.range.near - 2.5) < 0.1);
     assert_true(room.pace < 0.03 && room.change < 0.03);
     assert_true(fabs(in_focus() - focus) < 1e-9);
+}
+
+/* So is what is farther: at once there, and slowly forgotten. */
+static void a_door_is_opened_and_shut(void **state)
+{
+    (void)state;
+    begin(0, 0);
+    watch(1, 0);
+    wall = 2 * WALL;
+    watch(0.7, 0);
+    assert_true(fabs(1 / room.range.far - 8) < 0.5);
+    wall = WALL;
+    watch(0.9, 0);
+    assert_true(fabs(1 / room.range.far - 8) < 0.5);
+    watch(9, 0);
+    assert_true(fabs(1 / room.range.far - 4) < 0.1);
 }
 
 /* Focus on the person, who then leaves: the focus stays where he was, beyond what there is. */
@@ -255,6 +274,19 @@ static void faults_move_nothing(void **state)
     assert_true(room.pace == 0);
 }
 
+/* A laser scanner's samples lie alone. */
+static void few_points_will_do(void **state)
+{
+    struct live_range seen;
+
+    (void)state;
+    begin(0, 0);
+    for (int i = 0; i < W * H; i++)
+        room.mm[i] = i / W % 3 || i % W % 3 ? 0 : i % W < W / 2 ? 2000 : 5000;
+    assert_true(live_range_measure(&room.ranger, &room.map, &seen));
+    assert_true(fabs(seen.near - 0.5) < 1e-6 && fabs(seen.far - 0.2) < 1e-6);
+}
+
 static void what_is_given_stays(void **state)
 {
     (void)state;
@@ -286,8 +318,10 @@ int main(void)
         cmocka_unit_test(a_still_scene_stays_still),
         cmocka_unit_test(who_walks_in_has_a_disparity_of_his_own),
         cmocka_unit_test(who_leaves_leaves_the_range_slowly),
+        cmocka_unit_test(a_door_is_opened_and_shut),
         cmocka_unit_test(a_focus_beyond_the_scene_stays_where_it_is),
         cmocka_unit_test(faults_move_nothing),
+        cmocka_unit_test(few_points_will_do),
         cmocka_unit_test(what_is_given_stays),
     };
 

@@ -38,7 +38,8 @@ static void draw(double x, double y, double size, int left)
                                 : inside                     ? texture(u + 50, v + 50, 1)
                                                              : texture(i, j, 3);
 
-            memset(rgb[j][i], (int)lrint(fmin(fmax(code + noise(6), 0), 255)), 3);
+            rgb[j][i][1] = (uint8_t)lrint(fmin(fmax(code + noise(6), 0), 255));
+            rgb[j][i][0] = rgb[j][i][2] = (uint8_t)noise(127); /* green stands for brightness */
         }
 }
 
@@ -50,9 +51,9 @@ static bool follow(struct live_tracker *tracker)
     return live_track_frame(tracker, &photo);
 }
 
-static struct live_tracker begin(void)
+static struct live_tracker begin(double height)
 {
-    static const double box[4] = {160 - SIDE / 2.0, 120 - SIDE / 2.0, SIDE, SIDE};
+    const double box[4] = {160 - SIDE / 2.0, 120 - height / 2, SIDE, height};
     struct live_tracker tracker;
 
     seed = 1;
@@ -73,7 +74,7 @@ static double off(const struct live_tracker *tracker, double x, double y)
 /* Errors do not add up: neither where all stands still nor where the subject comes back. */
 static void does_not_drift(void **state)
 {
-    struct live_tracker tracker = begin();
+    struct live_tracker tracker = begin(SIDE);
 
     (void)state;
     for (int t = 0; t < 200; t++) {
@@ -94,7 +95,7 @@ static void does_not_drift(void **state)
 /* The rectangle does not go with what passes before its subject. */
 static void outlives_an_occluder(void **state)
 {
-    struct live_tracker tracker = begin();
+    struct live_tracker tracker = begin(SIDE);
 
     (void)state;
     for (int left = -SIDE; left < W; left += 4) {
@@ -112,7 +113,7 @@ static void grows_with_its_subject(void **state)
     (void)state;
     for (int i = 0; i < 2; i++) {
         const double most = i ? 1.6 : 0.6;
-        struct live_tracker tracker = begin();
+        struct live_tracker tracker = begin(SIDE / 2.0);
 
         for (int t = 0; t <= 60; t++) {
             const double size = 1 + (most - 1) * t / 60;
@@ -125,12 +126,42 @@ static void grows_with_its_subject(void **state)
     }
 }
 
+/* Y of frames is what G of pictures is, and nothing else counts. */
+static void any_format(void **state)
+{
+    static const struct {
+        uint32_t format;
+        int step;
+    } kinds[] = {{REFOCUS_FORMAT_NV12, 1}, {REFOCUS_FORMAT_YUYV, 2}};
+    static uint8_t memory[2 * W * H];
+
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        const struct refocus_image photo = refocus_image_planar(kinds[k].format, memory, W, H);
+        struct live_tracker tracker = begin(SIDE), other = tracker;
+
+        other.has_pattern = false;
+        for (int t = 0; t < 12; t++) {
+            if (t)
+                draw(160 + 3 * t, 120 - 2 * t, 1, W);
+            for (int i = 0; i < 2 * W * H; i++)
+                memory[i] = (uint8_t)noise(127);
+            for (int i = 0; i < W * H; i++)
+                memory[i * kinds[k].step] = rgb[i / W][i % W][1];
+            assert_true(follow(&tracker) && live_track_frame(&other, &photo));
+            assert_memory_equal(other.box, tracker.box, sizeof tracker.box);
+        }
+        assert_true(off(&tracker, 193, 98) < 3);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(does_not_drift),
         cmocka_unit_test(outlives_an_occluder),
         cmocka_unit_test(grows_with_its_subject),
+        cmocka_unit_test(any_format),
     };
 
     return cmocka_run_group_tests_name("track", tests, NULL, NULL);
