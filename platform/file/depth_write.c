@@ -36,11 +36,6 @@ static void make_standard(struct rf_text *text, const struct refocus_depth_write
     rf_text_words(text, CLOSING);
 }
 
-static struct rf_bytes bytes_of(const struct rf_text *text)
-{
-    return (struct rf_bytes){(const uint8_t *)text->data, text->size};
-}
-
 /* Whether a segment is of a packet that an earlier writing left; its GUID comes
  * first. */
 static bool is_old(struct rf_bytes segment, char guid[33])
@@ -88,8 +83,8 @@ static int splice(struct rf_store *store, struct rf_bytes file, const struct rf_
             copied = begin;
         }
         if (!head && !placed) {
-            rf_jpeg_put_xmp(store, bytes_of(standard));
-            rf_jpeg_put_extended(store, bytes_of(extended), guid);
+            rf_jpeg_put_xmp(store, rf_text_bytes(standard));
+            rf_jpeg_put_extended(store, rf_text_bytes(extended), guid);
             placed = true;
         }
         if (skip) {
@@ -121,7 +116,7 @@ static int write_all(const char *path, struct rf_bytes file, int orientation,
         return status;
     }
     if (!extended.failed) {
-        rf_md5_hex(bytes_of(&extended), guid);
+        rf_md5_hex(rf_text_bytes(&extended), guid);
         make_standard(&standard, depth, orientation, guid);
     }
     if (standard.failed || extended.failed) {

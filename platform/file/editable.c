@@ -36,8 +36,7 @@ static int add_original(struct rf_editable *editable, const struct refocus_photo
     rf_text_words(&editable->standard, BEGIN IMAGE " GImage:Mime=\"image/");
     rf_text_words(&editable->standard, is_png ? "png" : "jpeg");
     rf_text_words(&editable->standard, "\"" FINISH);
-    put_data(&editable->extended, BEGIN IMAGE " GImage:Data=\"",
-             (struct rf_bytes){(const uint8_t *)original.data, original.size});
+    put_data(&editable->extended, BEGIN IMAGE " GImage:Data=\"", rf_text_bytes(&original));
     free(original.data);
     return status == REFOCUS_OK && original.failed ? rf_fail_memory(reason) : status;
 }

@@ -64,7 +64,7 @@ static void put_xmp(struct rf_store *store, struct rf_text *text,
     rf_text_number(text, " hdrgm:HDRCapacityMin", values->base_headroom);
     rf_text_number(text, " hdrgm:HDRCapacityMax", values->other_headroom);
     rf_text_words(text, " hdrgm:BaseRenditionIsHDR=\"False\"/></rdf:RDF></x:xmpmeta>");
-    rf_jpeg_put_xmp(store, (struct rf_bytes){(const uint8_t *)text->data, text->size});
+    rf_jpeg_put_xmp(store, rf_text_bytes(text));
 }
 
 static int put_all(struct rf_store *store, const struct rf_jpeg_encoded *jpeg,

@@ -148,8 +148,7 @@ static int add_xmp(struct writer *writer)
     }
     status = make_editable(writer);
     if (status == REFOCUS_OK) {
-        writer->keep.insert =
-            (struct rf_bytes){(const uint8_t *)writer->insert.data, writer->insert.size};
+        writer->keep.insert = rf_text_bytes(&writer->insert);
         status = rf_keep_xmp(photo, &writer->keep, writer->rows->width, writer->rows->height,
                              writer->reason);
     }

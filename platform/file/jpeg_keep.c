@@ -41,11 +41,6 @@ static bool is_of_the_file(int marker, struct rf_bytes segment)
     }
 }
 
-static struct rf_bytes bytes_of(const struct rf_text *text)
-{
-    return (struct rf_bytes){(const uint8_t *)text->data, text->size};
-}
-
 static void put_packet(struct rf_store *store, const struct rf_xmp_packet *packet,
                        struct refocus_reason *reason)
 {
@@ -59,7 +54,7 @@ static void put_packet(struct rf_store *store, const struct rf_xmp_packet *packe
         rf_jpeg_put_xmp(store, standard);
     }
     if (packet->edit_extended.outcome == RF_XMP_CHANGED) {
-        rf_jpeg_put_extended(store, bytes_of(&packet->edit_extended.packet), packet->new_guid);
+        rf_jpeg_put_extended(store, rf_text_bytes(&packet->edit_extended.packet), packet->new_guid);
     }
 }
 
@@ -138,7 +133,7 @@ static int edit_xmp(struct rf_xmp_keep *keep, const struct refocus_write_options
     rf_behind_drop_depth(behind);
     xmp->size = 0;
     rf_behind_put_xmp(xmp, behind, options);
-    *keep = (struct rf_xmp_keep){.cut = RF_XMP_CUT_EDITABLE, .insert = bytes_of(xmp)};
+    *keep = (struct rf_xmp_keep){.cut = RF_XMP_CUT_EDITABLE, .insert = rf_text_bytes(xmp)};
     return rf_keep_xmp(options->keep, keep, rows->width, rows->height, reason);
 }
 
@@ -182,8 +177,8 @@ int rf_jpeg_put_kept(struct rf_store *store, const struct refocus_write_options 
         keep.cut = editable.cut;
     }
     rf_behind_put_xmp(&editable.standard, behind, options);
-    keep.insert = bytes_of(&editable.standard);
-    keep.insert_extended = bytes_of(&editable.extended);
+    keep.insert = rf_text_bytes(&editable.standard);
+    keep.insert_extended = rf_text_bytes(&editable.extended);
     if (status == REFOCUS_OK && editable.standard.failed) {
         status = rf_fail_memory(reason);
     }

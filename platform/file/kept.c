@@ -105,11 +105,8 @@ unsigned rf_xmp_keep_found(const struct rf_xmp_keep *keep)
 
 struct rf_bytes rf_xmp_kept(const struct rf_xmp_packet *packet)
 {
-    const struct rf_text *const text = &packet->edit.packet;
-
-    return packet->edit.outcome == RF_XMP_SAME
-               ? packet->standard
-               : (struct rf_bytes){(const uint8_t *)text->data, text->size};
+    return packet->edit.outcome == RF_XMP_SAME ? packet->standard
+                                               : rf_text_bytes(&packet->edit.packet);
 }
 
 void rf_xmp_keep_free(struct rf_xmp_keep *keep)

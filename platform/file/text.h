@@ -13,6 +13,11 @@ struct rf_text {
     bool failed;
 };
 
+static inline struct rf_bytes rf_text_bytes(const struct rf_text *text)
+{
+    return (struct rf_bytes){(const uint8_t *)text->data, text->size};
+}
+
 void rf_text_put(struct rf_text *text, const void *bytes, size_t size);
 void rf_text_words(struct rf_text *text, const char *words);
 /* Put name="value", with 12 digits. */

@@ -48,11 +48,6 @@ static int edit(struct rf_xmp_keep *keep, struct rf_bytes packet, struct rf_xmp_
     return status;
 }
 
-static struct rf_bytes bytes_of(const struct rf_text *text)
-{
-    return (struct rf_bytes){(const uint8_t *)text->data, text->size};
-}
-
 static int edit_extended(struct rf_xmp_keep *keep, struct rf_xmp_packet *packet,
                          struct rf_text *insert)
 {
@@ -64,7 +59,7 @@ static int edit_extended(struct rf_xmp_keep *keep, struct rf_xmp_packet *packet,
     }
     packet->edit.cut |= RF_XMP_CUT_EXTENDED;
     if (packet->edit_extended.outcome == RF_XMP_CHANGED && !(keep->cut & RF_XMP_CUT_EXTENDED)) {
-        rf_md5_hex(bytes_of(&packet->edit_extended.packet), packet->new_guid);
+        rf_md5_hex(rf_text_bytes(&packet->edit_extended.packet), packet->new_guid);
         rf_text_words(insert, "<rdf:Description xmlns:rdf=\"" RF_NS_RDF
                               "\" rdf:about=\"\" xmlns:xmpNote=\"" RF_NS_NOTE
                               "\" xmpNote:HasExtendedXMP=\"");
@@ -93,7 +88,7 @@ static int edit_packet(struct rf_xmp_keep *keep, int index, struct rf_bytes jpeg
         status = insert.failed ? rf_fail_memory(keep->read.reason) : status;
     }
     if (status == REFOCUS_OK) {
-        packet->edit.insert = bytes_of(&insert);
+        packet->edit.insert = rf_text_bytes(&insert);
         status = edit(keep, packet->standard, &packet->edit);
     }
     packet->edit.insert.data = NULL;
