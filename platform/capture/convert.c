@@ -152,9 +152,7 @@ static int check(const struct refocus_frame *frame, struct refocus_reason *reaso
 {
     if (rf_format_planes(frame->format) == 0 || frame->width < 1 || frame->height < 1 ||
         frame->width > REFOCUS_MAX_SIDE || frame->height > REFOCUS_MAX_SIDE)
-        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                               "the frame has no size or "
-                               "format");
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "the frame has no size or format");
     for (int i = 0; i < rf_format_planes(frame->format); i++) {
         const int64_t row = rf_plane_row(frame->format, i, frame->width);
 
@@ -214,8 +212,7 @@ int refocus_convert_rgb8(struct refocus_converter *converter, const struct refoc
         out->width != frame->width || out->height != frame->height ||
         !rf_stride_fits(out->stride[0], (int64_t)out->width * 3, out->height))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                               "the picture to convert into must be RGB8 of the "
-                               "frame's size");
+                               "the picture to convert into must be RGB8 of the frame's size");
     if (frame->format == REFOCUS_FRAME_MJPEG && frame->plane[0])
         return rf_convert_jpeg_rgb8(converter, frame, out, reason);
     status = check(frame, reason);
@@ -350,8 +347,7 @@ int refocus_convert_samples(struct refocus_converter *converter, const struct re
     if (frame->format != REFOCUS_FRAME_GREY && frame->format != REFOCUS_FRAME_Y16 &&
         frame->format != REFOCUS_FRAME_Z16)
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                               "it is a colour format; depth comes as GREY, Y16 or "
-                               "Z16");
+                               "it is a colour format; depth comes as GREY, Y16 or Z16");
     status = check(frame, reason);
     if (status == REFOCUS_OK)
         status = reserve_rows(converter, frame, reason);

@@ -40,17 +40,14 @@ int rf_capture_fail_errno(struct refocus_reason *reason, int error, const char *
                                "%s: used by another program; end that one first", what);
     case EACCES:
     case EPERM:
-        return rf_capture_fail(reason, REFOCUS_ERR_PERMISSION,
-                               "%s: access is refused; for a camera become a member of "
-                               "the group 'video'",
-                               what);
+        return rf_capture_fail(
+            reason, REFOCUS_ERR_PERMISSION,
+            "%s: access is refused; for a camera become a member of the group 'video'", what);
     case ENOMEM:
         return rf_capture_fail_memory(reason);
     case EPIPE:
         return rf_capture_fail(reason, REFOCUS_ERR_GONE,
-                               "%s: the reader closed it; keep it open as long as "
-                               "wanted",
-                               what);
+                               "%s: the reader closed it; keep it open as long as wanted", what);
     default:
         return rf_capture_fail(reason, REFOCUS_ERR_IO, "%s: %s", what,
                                strerror_r(error, words, sizeof words));

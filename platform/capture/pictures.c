@@ -165,10 +165,9 @@ static int check_gap(const struct pictures *pictures, const char *missing,
 
     for (int i = 1; i <= LONGEST_GAP; i++)
         if (has_number(pictures, pictures->next + i, name))
-            return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
-                                   "%.120s is missing, and there is %.120s; number them without a "
-                                   "gap",
-                                   missing, name);
+            return rf_capture_fail(
+                reason, REFOCUS_ERR_FORMAT,
+                "%.120s is missing, and there is %.120s; number them without a gap", missing, name);
     return REFOCUS_OK;
 }
 
@@ -184,9 +183,7 @@ static int read_next(struct refocus_source *source, int buffer, struct refocus_r
         if (status != REFOCUS_OK)
             return status;
         if (!(source->config.flags & REFOCUS_SOURCE_LOOP) || pictures->next == pictures->first)
-            return rf_capture_fail(reason, REFOCUS_ERR_END,
-                                   "there are no more "
-                                   "pictures");
+            return rf_capture_fail(reason, REFOCUS_ERR_END, "there are no more pictures");
         pictures->next = pictures->first;
         has_number(pictures, pictures->next, name);
     }

@@ -102,14 +102,10 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
     const double fps = rf_source_fps(source, replay->script.fps);
 
     if (replay->gone)
-        return rf_capture_fail(reason, REFOCUS_ERR_GONE,
-                               "the device is gone (by "
-                               "script)");
+        return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the device is gone (by script)");
     if (replay->script.start_errors > 0) {
         replay->script.start_errors--;
-        return rf_capture_fail(reason, REFOCUS_ERR_IO,
-                               "the stream cannot start (by "
-                               "script)");
+        return rf_capture_fail(reason, REFOCUS_ERR_IO, "the stream cannot start (by script)");
     }
     if (replay->inner) {
         struct refocus_source_config config = source->config;
@@ -224,9 +220,7 @@ static int reopen(struct refocus_source *source, struct refocus_reason *reason)
     struct rf_replay *replay = source->state;
 
     if (replay->gone && rf_now_ns() < replay->gone_until_ns)
-        return rf_capture_fail(reason, REFOCUS_ERR_GONE,
-                               "the device is gone (by "
-                               "script)");
+        return rf_capture_fail(reason, REFOCUS_ERR_GONE, "the device is gone (by script)");
     replay->gone = false;
     return REFOCUS_OK;
 }

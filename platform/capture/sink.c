@@ -216,8 +216,7 @@ int refocus_sink_write(struct refocus_sink *sink, const struct refocus_image *im
     if (image->format != sink->format || image->width != sink->width ||
         image->height != sink->height || !is_whole(image))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                               "give a picture of the size and format that were "
-                               "announced");
+                               "give a picture of the size and format that were announced");
     return sink->ops->write(sink, image, reason);
 }
 

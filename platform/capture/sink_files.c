@@ -94,9 +94,8 @@ static int parse_raw(struct stream *stream, struct refocus_reason *reason)
         stream->layout = rf_format_by_name(comma + 1);
     if (!stream->own && !rf_can_encode(stream->layout))
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                               "'%.40s' is no format of raw frames that can be written; "
-                               "give own, NV12, NV21, YUV420, YUYV, UYVY, RGB24, BGR24, "
-                               "RGBX or BGRX",
+                               "'%.40s' is no format of raw frames that can be written; give own, "
+                               "NV12, NV21, YUV420, YUYV, UYVY, RGB24, BGR24, RGBX or BGRX",
                                comma + 1);
     *comma = '\0';
     return REFOCUS_OK;
@@ -260,11 +259,10 @@ static int start_stream(struct refocus_sink *sink, int width, int height, double
             tall == stream->tall && layout == stream->frame.format &&
             range_of(sink) == stream->range)
             return REFOCUS_OK;
-        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                               "%.120s: a stream of %dx%d has begun, and %dx%d came, "
-                               "or other colours; begin another",
-                               stream->path, stream->frame.width, stream->frame.height, width,
-                               height);
+        return rf_capture_fail(
+            reason, REFOCUS_ERR_UNSUPPORTED,
+            "%.120s: a stream of %dx%d has begun, and %dx%d came, or other colours; begin another",
+            stream->path, stream->frame.width, stream->frame.height, width, height);
     }
     stream->tall = tall;
     stream->range = range_of(sink);

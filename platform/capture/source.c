@@ -61,8 +61,7 @@ static int unknown(const char *name, struct refocus_reason *reason)
     for (int i = 0; i < OPTIONAL; i++)
         if (behind(name, optional[i]))
             return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                                   "this build has no %s, or its module is gone; there "
-                                   "are %s",
+                                   "this build has no %s, or its module is gone; there are %s",
                                    optional[i], refocus_source_backends());
     return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                            "no such kind of source; give KIND:NAME with one of %s",
@@ -203,9 +202,7 @@ int refocus_source_start(struct refocus_source *source, const struct refocus_sou
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                                "what is wanted of the source is out of its range");
     if (source->streaming)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE,
-                               "it streams already; stop it "
-                               "first");
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "it streams already; stop it first");
     source->config = config ? *config : refocus_source_config_default();
     if (source->config.buffers == 0)
         source->config.buffers = 4;
@@ -241,9 +238,7 @@ int refocus_source_wait(struct refocus_source *source, int timeout_ms,
         return REFOCUS_ERR_ARGUMENT;
     *result = NULL;
     if (!source->streaming)
-        return rf_capture_fail(reason, REFOCUS_ERR_STATE,
-                               "it does not stream; start "
-                               "it");
+        return rf_capture_fail(reason, REFOCUS_ERR_STATE, "it does not stream; start it");
     status = rf_source_poll(source, -1, 0, 0, NULL);
     if (status == REFOCUS_ERR_CANCELLED)
         return rf_capture_fail(reason, status, "interrupted");

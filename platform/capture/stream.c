@@ -100,10 +100,9 @@ static int parse_raw(struct stream *stream, struct refocus_reason *reason)
                                "give raw:FILE,FORMAT,WIDTHxHEIGHT or with ,FPS behind");
     stream->format = rf_format_by_name(word[n - 1]);
     if (stream->format == REFOCUS_FRAME_ANY || stream->format == REFOCUS_FRAME_MJPEG)
-        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                               "'%.40s' is no format of raw frames; give NV12, YUYV, "
-                               "RGB24, Y16, ...",
-                               word[n - 1]);
+        return rf_capture_fail(
+            reason, REFOCUS_ERR_ARGUMENT,
+            "'%.40s' is no format of raw frames; give NV12, YUYV, RGB24, Y16, ...", word[n - 1]);
     return REFOCUS_OK;
 }
 
@@ -219,10 +218,9 @@ static int start(struct refocus_source *source, struct refocus_source_mode *mode
     if (status != REFOCUS_OK)
         return status;
     if (stream->is_pipe && source->config.flags & REFOCUS_SOURCE_LOOP)
-        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                               "%.160s: a pipe has no beginning to go back to; read it without a "
-                               "loop",
-                               stream->path);
+        return rf_capture_fail(
+            reason, REFOCUS_ERR_ARGUMENT,
+            "%.160s: a pipe has no beginning to go back to; read it without a loop", stream->path);
     if (!stream->is_pipe && lseek(stream->fd, stream->begin, SEEK_SET) < 0)
         return rf_capture_fail_errno(reason, errno, stream->path);
     stream->ring.count = source->config.buffers;
@@ -251,8 +249,7 @@ static int read_frame(const struct refocus_source *source, uint8_t *memory, size
             return status;
         if (status != REFOCUS_OK || strncmp(header, "FRAME", 5) != 0)
             return rf_capture_fail(reason, REFOCUS_ERR_FORMAT,
-                                   "%.160s: damaged: frame %lld does not begin with "
-                                   "FRAME",
+                                   "%.160s: damaged: frame %lld does not begin with FRAME",
                                    stream->path, (long long)stream->frame);
     }
     status = rf_read_bytes(source, stream->fd, memory, bytes, &n, reason);

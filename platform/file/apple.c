@@ -170,8 +170,7 @@ int rf_read_apple(struct rf_read *read, struct rf_bytes file, struct rf_bytes mp
 
         if (end > file.size && file.size > main_end) {
             return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
-                           "damaged: it ends before image %d of those it announces; copy "
-                           "it again",
+                           "damaged: it ends before image %d of those it announces; copy it again",
                            i + 1);
         }
         if (begin < main_end || end > file.size || begin == end) {

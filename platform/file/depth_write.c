@@ -93,8 +93,7 @@ static int splice(struct rf_store *store, struct rf_bytes file, const struct rf_
     }
     if (step != RF_JPEG_END || !placed) {
         return rf_fail(reason, REFOCUS_ERR_FORMAT,
-                       "damaged JPEG: it ends in the middle of the picture; copy it "
-                       "again");
+                       "damaged JPEG: it ends in the middle of the picture; copy it again");
     }
     rf_store_write(store, file.data + copied, file.size - copied);
     return REFOCUS_OK;

@@ -114,8 +114,7 @@ static int take_depth(struct rf_heic *heic, heif_item_id item,
             status = rf_raster_orient(read, &read->samples, read->info->orientation);
         }
     } else {
-        rf_note(read->info, "HEIC: what its samples mean is not said in a known way: "
-                            "passed over");
+        rf_note(read->info, "HEIC: what its samples mean is not said in a known way: passed over");
         rf_raster_free(&read->samples);
     }
     return status;
@@ -133,8 +132,7 @@ int rf_heic_depth(struct rf_heic *heic)
     }
     if (!heif_image_handle_get_depth_image_representation_info(heic->primary, item, &about) ||
         !about) {
-        rf_note(read->info, "HEIC: a depth image that does not say which end is near: "
-                            "passed over");
+        rf_note(read->info, "HEIC: a depth image that does not say which end is near: passed over");
         return REFOCUS_OK;
     }
     status = take_depth(heic, item, about);

@@ -297,8 +297,7 @@ static int read_second(struct rf_read *read, struct rf_bytes file, const struct 
         return rf_read_jpeg(read, behind);
     }
     return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
-                   "it holds one picture only; give an MPO, a stereo HEIC, or two "
-                   "pictures");
+                   "it holds one picture only; give an MPO, a stereo HEIC, or two pictures");
 }
 
 int rf_read_jpeg(struct rf_read *read, struct rf_bytes file)

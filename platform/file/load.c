@@ -116,9 +116,7 @@ int refocus_file_read(const char *path, uint64_t max_bytes, struct refocus_blob 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
     if (!path || !blob) {
-        return rf_fail(reason, REFOCUS_ERR_ARGUMENT,
-                       "there is no name or no place for "
-                       "it");
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "there is no name or no place for it");
     }
     return rf_load(path, max_bytes, NULL, reason, blob);
 }

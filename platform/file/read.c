@@ -23,8 +23,7 @@ static int read_container(struct rf_read *read, struct rf_bytes file)
 
     if (read->second && !(format && format->has_second)) {
         return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
-                       "it is no stereo file; give an MPO, a stereo HEIC, or two "
-                       "pictures");
+                       "it is no stereo file; give an MPO, a stereo HEIC, or two pictures");
     }
     if (!format && file.size == 0) {
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "it is empty");

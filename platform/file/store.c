@@ -287,9 +287,7 @@ int refocus_file_write(const char *path, const void *bytes, size_t size,
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
     if (!path || !bytes) {
-        return rf_fail(reason, REFOCUS_ERR_ARGUMENT,
-                       "there is no name or nothing to "
-                       "write");
+        return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "there is no name or nothing to write");
     }
     status = rf_store_open(&store, path, reason);
     if (status != REFOCUS_OK) {

@@ -251,9 +251,8 @@ matches match_in_order(const pair &p, const refocus_stereo_params *params,
 
     if (s.matched < params->least_match / 2) {
         m.status = REFOCUS_ERR_NO_DEPTH;
-        m.why =
-            "the two pictures do not match, whose rows may lie a fiftieth of the width apart; give "
-            "a rectified pair, left before right";
+        m.why = "the two pictures do not match, whose rows may lie a fiftieth of the width apart; "
+                "give a rectified pair, left before right";
         return m;
     }
     for (int i = 0; i < ROUNDS; i++)
@@ -266,9 +265,8 @@ matches match_in_order(const pair &p, const refocus_stereo_params *params,
     remove_far_chance(m.disparity);
     m.status = m.matched < params->least_match ? (int)REFOCUS_ERR_NO_DEPTH : (int)REFOCUS_OK;
     if (m.status != REFOCUS_OK)
-        m.why =
-            "too few pixels of the two pictures match, whose rows may lie a fiftieth of the width "
-            "apart; give a rectified pair, left before right";
+        m.why = "too few pixels of the two pictures match, whose rows may lie a fiftieth of the "
+                "width apart; give a rectified pair, left before right";
     else if (params->method == REFOCUS_STEREO_PLAIN)
         m.disparity = raw;
     else if (params->method == REFOCUS_STEREO_WLS) {

@@ -112,10 +112,9 @@ static int get_bands(PyObject *value, struct refocus_focus_params *focus)
         PyObject *const item = PySequence_GetItem(value, i);
         PyObject *const triple = item ? PySequence_Tuple(item) : NULL;
         const int good =
-            triple && PyArg_ParseTuple(triple,
-                                       "fff;band: (disparity, half_width, "
-                                       "transition) of each",
-                                       &band->disparity, &band->half_width, &band->transition);
+            triple &&
+            PyArg_ParseTuple(triple, "fff;band: (disparity, half_width, transition) of each",
+                             &band->disparity, &band->half_width, &band->transition);
         Py_XDECREF(triple);
         Py_XDECREF(item);
         if (!good)

@@ -412,8 +412,7 @@ int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes, siz
     (void)size;
     if (reason)
         snprintf(reason->text, sizeof reason->text,
-                 "this build reads no files of strokes; "
-                 "build it with jansson");
+                 "this build reads no files of strokes; build it with jansson");
     return REFOCUS_ERR_UNSUPPORTED;
 }
 

@@ -118,8 +118,7 @@ int rf_v4l2_map(struct rf_v4l2 *device, int count, bool export_dmabuf,
     rf_v4l2_unmap(device);
     if (error == EOVERFLOW)
         return rf_capture_fail(reason, REFOCUS_ERR_IO,
-                               "%s: the driver's strides or buffers are less than a "
-                               "picture",
+                               "%s: the driver's strides or buffers are less than a picture",
                                device->path);
     if (!error)
         return rf_capture_fail_memory(reason);

@@ -296,9 +296,7 @@ static int set_control(struct refocus_source *source, const char *name, double v
         }
         query.id |= V4L2_CTRL_FLAG_NEXT_CTRL;
     }
-    return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
-                           "%s: it has no control "
-                           "'%.60s'",
+    return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "%s: it has no control '%.60s'",
                            camera->device.path, name);
 }
 

@@ -115,8 +115,7 @@ static int choose_format(struct rf_v4l2 *device, int width, int height,
     if (status != REFOCUS_OK && status != REFOCUS_ERR_UNSUPPORTED)
         return status;
     return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                           "%s: it takes no frames of %dx%d; set its size or the "
-                           "camera's",
+                           "%s: it takes no frames of %dx%d; set its size or the camera's",
                            device->path, width, height);
 }
 

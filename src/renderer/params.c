@@ -56,8 +56,7 @@ int rf_check_settings(const struct rf_log *log, const struct refocus_renderer *r
     if (has_sides(s) && s->rays == REFOCUS_RAYS_FULL)
         return rf_refuse(
             log, REFOCUS_ERR_ARGUMENT,
-            "rays is %d, may be 1 to %d with an aperture that differs before and behind "
-            "the focus",
+            "rays is %d, may be 1 to %d with an aperture that differs before and behind the focus",
             REFOCUS_RAYS_FULL, REFOCUS_MAX_RAYS);
     what = refused(r, s);
     return what ? rf_refuse(log, REFOCUS_ERR_ARGUMENT, "method is %u, %s, which refuses %s",
@@ -99,11 +98,10 @@ int rf_check_deep(const struct rf_log *log, const struct rf_frame *f, struct rf_
         !(refocus_method_traits(p->method) & REFOCUS_METHOD_TAKES_DEEP) ||
         p->blend != REFOCUS_BLEND_LINEAR || p->sigma < 1e6f || p->grain > 0 ||
         (p->star_spikes > 0 && p->star_strength > 0))
-        return rf_refuse(
-            log, REFOCUS_ERR_UNSUPPORTED,
-            "a deep photo or out needs deep = 1 of the renderer's parameters, and is rendered by "
-            "sweep, search, blur and interpolated, R, G, B or P010, P016, in linear light, without "
-            "sigma, grain, stars and in_place");
+        return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
+                         "a deep photo or out needs deep = 1 of the renderer's parameters, and is "
+                         "rendered by sweep, search, blur and interpolated, R, G, B or P010, P016, "
+                         "in linear light, without sigma, grain, stars and in_place");
     if (refocus_format_is_yuv(f->out->format) &&
         !keeps_pairs(region, r->photo.width, r->photo.height, 1))
         return refuse_split(log, region);
@@ -122,10 +120,9 @@ int rf_check_yuv(const struct rf_log *log, const struct rf_frame *f, struct rf_r
         return REFOCUS_OK;
     if (rf_chroma_down(f->out->format) != r->yuv->down ||
         !rf_method_of(r->papers, f->params->method)->yuv_tile || has_look(f))
-        return rf_refuse(
-            log, REFOCUS_ERR_UNSUPPORTED,
-            "a photo of Y, U and V is rendered by sweep or search, without cat's eye, fringe, "
-            "grain, stars and two-sided apertures, into its own sampling");
+        return rf_refuse(log, REFOCUS_ERR_UNSUPPORTED,
+                         "a photo of Y, U and V is rendered by sweep or search, without cat's eye, "
+                         "fringe, grain, stars and two-sided apertures, into its own sampling");
     return keeps_pairs(region, r->photo.width, r->photo.height, odd_rows)
                ? REFOCUS_OK
                : refuse_split(log, region);

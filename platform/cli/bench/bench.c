@@ -36,17 +36,16 @@ static const struct option options[] = {
     METHOD_OPTIONS(struct settings, engine, "standard"),
     {OPTION(OPTION_FLAG, "--rays", NULL, struct settings, statistics),
      .brief = "what the rays of the mask hit, in place of times",
-     .help = "without a number: no times, but what the rays of the mask hit: how many "
-             "find a true intersection after 1, 2, ... tests of the search"},
+     .help = "without a number: no times, but what the rays of the mask hit: how many find a true "
+             "intersection after 1, 2, ... tests of the search"},
     {OPTION(OPTION_FLAG, "--frames", NULL, struct settings, frames),
      .brief = "a table over blur, quality, threads and sizes",
-     .help = "a table over blur, quality, threads and, without PHOTO or --size, sizes; "
-             "in turns with a memcpy of the frame and a plain box blur of the same "
-             "radius"},
+     .help = "a table over blur, quality, threads and, without PHOTO or --size, sizes; in turns "
+             "with a memcpy of the frame and a plain box blur of the same radius"},
     {OPTION(OPTION_FLAG, "--kernels", NULL, struct settings, kernels),
      .brief = "the loops that frames are made of",
-     .help = "no frames, but the loops that they are made of: nanoseconds for a pixel "
-             "or a ray sample, and those of plain C"},
+     .help = "no frames, but the loops that they are made of: nanoseconds for a pixel or a ray "
+             "sample, and those of plain C"},
     RUN_OPTIONS(struct settings, engine),
     REPEAT_OPTION(struct settings, engine),
     PAPER_OPTIONS(struct settings, engine.papers, engine.method),
@@ -89,8 +88,7 @@ static int print_report(const struct settings *settings, const struct engine *en
     printf("create   %9.2f ms   %.1f MiB\n", engine->create_ms,
            (double)engine->info.memory / (1 << 20));
     printf("prepare  %9.2f ms\n", engine->prepare_ms);
-    printf("render   %9.2f ms   median of %.0f, %.2f to %.2f; %.2f megapixels a "
-           "second\n",
+    printf("render   %9.2f ms   median of %.0f, %.2f to %.2f; %.2f megapixels a second\n",
            times->median, settings->engine.repeat, times->min, times->max,
            megapixels(scene) * 1e3 / times->median);
     return report_end_output();
@@ -119,8 +117,7 @@ static int check(const struct settings *settings, const char *photo, int argc, c
         return status;
     if (settings->frames && settings->statistics)
         return report_failure(EXIT_WRONG, "--frames",
-                              "it does not go with --rays without a number; leave one "
-                              "of them out");
+                              "it does not go with --rays without a number; leave one of them out");
     if (photo && !isnan(settings->size[0]))
         return report_failure(EXIT_WRONG, "--size",
                               "the photo has a size of its own; leave one of them out");

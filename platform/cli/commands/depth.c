@@ -52,12 +52,11 @@ static const struct option options[] = {
      .help = "write an 8-bit picture to look at instead: " OUTPUT_PICTURES},
     {OPTION(OPTION_NUMBERS, "--focus-at", "X,Y", struct depth_command_settings, focus_at),
      .least = 0, .greatest = REFOCUS_MAX_SIDE, .count = 2,
-     .help = "for a .jpg: the pixel in focus when it is opened again; default: what "
-             "the photo says"},
+     .help =
+         "for a .jpg: the pixel in focus when it is opened again; default: what the photo says"},
     {OPTION(OPTION_NUMBER, "--blur", "K", struct depth_command_settings, blur), .least = 0,
      .greatest = REFOCUS_MAX_BLUR_RADIUS,
-     .help = "for a .jpg, with --focus-at: the blur radius of disparity 0 when 1 is in "
-             "focus"},
+     .help = "for a .jpg, with --focus-at: the blur radius of disparity 0 when 1 is in focus"},
     {OPTION(OPTION_FLAG, "--json", NULL, struct depth_command_settings, json),
      .brief = "print a report as one JSON object", .help = "print the report as one JSON object"},
     {.help = NULL},
@@ -93,13 +92,11 @@ static int check_ways(const struct depth_command_settings *settings, const char 
                               "it is for depth that is read from a file; leave it out");
     if (pair && options_given(&depth_command, argc, argv, "--upsample"))
         return report_failure(EXIT_WRONG, "--upsample",
-                              "depth of a stereo pair has the photo's size; leave it "
-                              "out");
+                              "depth of a stereo pair has the photo's size; leave it out");
     if (!nothing)
         return EXIT_DONE;
     return options_refuse(&depth_command, argc, argv, of_read,
-                          "--strokes alone paint over nothing; give --depth, or leave "
-                          "it out");
+                          "--strokes alone paint over nothing; give --depth, or leave it out");
 }
 
 /* Options of a focus stack, and the number of its frames. */
@@ -157,25 +154,21 @@ static int check(const struct depth_command_settings *settings, const char *cons
                                        (settings->model != NULL) + (settings->depth.file != NULL) >
                                    1)
         return report_failure(EXIT_WRONG, files[0],
-                              "its depth is given twice; give one of RIGHT, "
-                              "--side-by-side, --stereo-file, --focal-stack, "
-                              "--estimate and --depth");
+                              "its depth is given twice; give one of RIGHT, --side-by-side, "
+                              "--stereo-file, --focal-stack, --estimate and --depth");
     if (status == EXIT_DONE && is_made(settings, files) && output_is_jpeg(settings->output) &&
         settings->side_by_side && settings->view == VIEW_NONE)
         return report_failure(EXIT_WRONG, settings->output,
-                              "depth of half a picture does not fit the file; give a "
-                              ".png");
+                              "depth of half a picture does not fit the file; give a .png");
     if (status == EXIT_DONE && settings->strokes && settings->side_by_side)
         return report_failure(EXIT_WRONG, "--strokes",
-                              "they are not painted over half a picture; give LEFT and "
-                              "RIGHT");
+                              "they are not painted over half a picture; give LEFT and RIGHT");
     if (status == EXIT_DONE && !isnan(settings->blur) && isnan(settings->focus_at[0]))
         return report_failure(EXIT_WRONG, "--blur", "it goes with --focus-at; give that too");
     if (status == EXIT_DONE && !isnan(settings->focus_at[0]) &&
         (settings->view != VIEW_NONE || !output_is_jpeg(settings->output)))
         return report_failure(EXIT_WRONG, "--focus-at",
-                              "it is kept in a photo alone; give -o a .jpg, or leave "
-                              "it out");
+                              "it is kept in a photo alone; give -o a .jpg, or leave it out");
     return status == EXIT_DONE ? check_ways(settings, files, argc, argv) : status;
 }
 
@@ -247,13 +240,12 @@ const struct command depth_command = {
     .name = "depth",
     .usage = "FILE [RIGHT] -o OUT [options]",
     .summary = "make, read, repair or upsample the depth of a photo, and write it",
-    .notes = "FILE is a photo that carries depth, a photo with --depth, a depth map, "
-             "the left picture of a stereo pair, or any photo with --estimate or "
-             "--strokes; with --focal-stack give all frames of a focus stack. Samples without a "
-             "value are filled from those around them, "
-             "from the farther side where two surfaces meet, or from behind a thin thing at the "
-             "border, and counted. In --json, 'stack' is what was found of a focus stack, in the "
-             "words of struct refocus_stack_result (refocus/stack.h).",
+    .notes = "FILE is a photo that carries depth, a photo with --depth, a depth map, the left "
+             "picture of a stereo pair, or any photo with --estimate or --strokes; with "
+             "--focal-stack give all frames of a focus stack. Samples without a value are filled "
+             "from those around them, from the farther side where two surfaces meet, or from "
+             "behind a thin thing at the border, and counted. In --json, 'stack' is what was found "
+             "of a focus stack, in the words of struct refocus_stack_result (refocus/stack.h).",
     .options = options,
     .files_least = 1,
     .files_most = REFOCUS_STACK_MOST_FRAMES,

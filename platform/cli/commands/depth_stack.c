@@ -25,12 +25,10 @@ const struct option_word stack_align_words[] = {
 
 const struct option_word stack_order_words[] = {
     [REFOCUS_STACK_ORDER_ADDED] = {"given", "the farthest focus first"},
-    [REFOCUS_STACK_ORDER_FOUND] = {"found",
-                                   "found by their sharpness; edges, and what lies lower, show "
-                                   "which end is far, else it is as given"},
-    [REFOCUS_STACK_ORDER_EITHER] = {"auto",
-                                    "as given, the farthest first or last: edges, and what lies "
-                                    "lower, show which, else first"},
+    [REFOCUS_STACK_ORDER_FOUND] = {"found", "found by their sharpness; edges, and what lies lower, "
+                                            "show which end is far, else it is as given"},
+    [REFOCUS_STACK_ORDER_EITHER] = {"auto", "as given, the farthest first or last: edges, and what "
+                                            "lies lower, show which, else first"},
     {0}};
 
 const struct option_word stack_in_focus_words[] = {
@@ -215,12 +213,11 @@ static void tell_apertures(struct refocus_photo_info *info, const struct stack_f
     if (frames->of_files)
         snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH,
                  "EXIF: the f-numbers of the frames, %.3g to %.3g", 1 / most, 1 / least);
-    snprintf(
-        info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH,
-        "apertures: the %s surface is taken to be in focus; the widest aperture blurs by up to "
-        "%.1f pixels",
-        frames->kind == REFOCUS_STACK_APERTURE_NEAREST ? "nearest" : "farthest",
-        (double)result->blur);
+    snprintf(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH,
+             "apertures: the %s surface is taken to be in focus; the widest aperture blurs by up "
+             "to %.1f pixels",
+             frames->kind == REFOCUS_STACK_APERTURE_NEAREST ? "nearest" : "farthest",
+             (double)result->blur);
 }
 
 static int finish(struct input *input, struct refocus_stack *stack,
@@ -262,15 +259,13 @@ static int finish(struct input *input, struct refocus_stack *stack,
     if (result.moving > 0)
         snprintf(input->made_info.evidence[input->made_info.evidence_count++], REFOCUS_INFO_LENGTH,
                  "focus stack: something moves in %.1f %% of the picture: frames that differ from "
-                 "frame %d are "
-                 "left out there",
+                 "frame %d are left out there",
                  100 * (double)result.moving, result.reference);
     if (result.matched)
-        snprintf(
-            input->made_info.evidence[input->made_info.evidence_count++], REFOCUS_INFO_LENGTH,
-            "focus stack: frames of another exposure or white are matched to frame %d: %u, the "
-            "farthest of %.2f times its light",
-            result.reference, (unsigned)result.matched, (double)result.exposure);
+        snprintf(input->made_info.evidence[input->made_info.evidence_count++], REFOCUS_INFO_LENGTH,
+                 "focus stack: frames of another exposure or white are matched to frame %d: %u, "
+                 "the farthest of %.2f times its light",
+                 result.reference, (unsigned)result.matched, (double)result.exposure);
     if (frames->kind != REFOCUS_STACK_FOCUS) {
         tell_apertures(&input->made_info, frames, &result);
         return EXIT_DONE;

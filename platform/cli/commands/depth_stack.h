@@ -31,10 +31,9 @@ struct stack_settings {
          "the FILEs show one view at 2 to 32 focus distances, one after the other, or at several " \
          "apertures: depth, and a photo that is in focus everywhere, are made of them"},           \
         {OPTION(OPTION_TEXT, "--positions", "LIST", type, member.positions),                       \
-         .help =                                                                                   \
-             "focus of each frame in dioptres, 1 / metres, with commas, or a .json file with a "   \
-             "list of them; then any order will do, and depth is in metres; default: the subject " \
-             "distances of EXIF, else equally far apart",                                          \
+         .help = "focus of each frame in dioptres, 1 / metres, with commas, or a .json file with " \
+                 "a list of them; then any order will do, and depth is in metres; default: the "   \
+                 "subject distances of EXIF, else equally far apart",                              \
          .needs = "--focal-stack"},                                                                \
         {OPTION(OPTION_INTEGER, "--reference", "N", type, member.reference), .least = 1,           \
          .greatest = REFOCUS_STACK_MOST_FRAMES,                                                    \

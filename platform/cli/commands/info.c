@@ -167,8 +167,7 @@ static int run(int argc, char **argv)
 const struct command info_command = {
     .name = "info",
     .usage = "FILE|- [options]",
-    .summary = "what depth, lens and orientation data a file carries, and why it is "
-               "believed",
+    .summary = "what depth, lens and orientation data a file carries, and why it is believed",
     .options = options,
     .files_least = 1,
     .files_most = 1,

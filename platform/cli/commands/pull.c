@@ -289,13 +289,11 @@ const struct command pull_command = {
     .name = "pull",
     .usage = "PHOTO -o OUT [options]",
     .summary = "focus pull: an animation between focus settings",
-    .notes = "A file of --keys: {\"refocus-pull\": 1, \"keys\": [{\"time\": 0, "
-             "\"focus\": 1, \"blur\": 12}, {\"time\": 1.5, \"focus\": 0.2, \"ease\": "
-             "\"in\"}]}. Keys may name focus, blur, highlights, focus-width, "
-             "focus-transition, cat-eye, field-x, field-y, field-disparity, "
-             "field-radius, field-falloff and field-angle; \"ease\" is how the way to "
-             "a key goes: smooth, linear, in (slowly at first), out (slowly in the "
-             "end).\n"
+    .notes = "A file of --keys: {\"refocus-pull\": 1, \"keys\": [{\"time\": 0, \"focus\": 1, "
+             "\"blur\": 12}, {\"time\": 1.5, \"focus\": 0.2, \"ease\": \"in\"}]}. Keys may name "
+             "focus, blur, highlights, focus-width, focus-transition, cat-eye, field-x, field-y, "
+             "field-disparity, field-radius, field-falloff and field-angle; \"ease\" is how the "
+             "way to a key goes: smooth, linear, in (slowly at first), out (slowly in the end).\n"
              "Ctrl-C ends with status 1 and leaves nothing behind.",
     .options = options,
     .files_least = 1,

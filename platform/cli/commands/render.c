@@ -94,8 +94,7 @@ static int check_options(struct settings *settings)
 
     if (status == EXIT_DONE && settings->view != VIEW_NONE && !isnan(settings->region[0]))
         status = report_failure(EXIT_WRONG, "--region",
-                                "a view always shows the whole; leave --region or "
-                                "--view out");
+                                "a view always shows the whole; leave --region or --view out");
     if (status == EXIT_DONE && settings->view != VIEW_ANAGLYPH && !isnan(settings->parallax))
         status =
             report_failure(EXIT_WRONG, "--parallax", "goes with --view anaglyph; give that too");
@@ -324,8 +323,7 @@ static int make_all(struct batch *batch)
 
     if (settings->shot.engine.repeat > 1)
         return report_failure(EXIT_WRONG, "--repeat",
-                              "it times one photo; give one, or leave it "
-                              "out");
+                              "it times one photo; give one, or leave it out");
     if (jobs.printed)
         batch->reports = begin_reports(&batch->many);
     status = jobs_run(&jobs);

@@ -37,12 +37,10 @@ static const struct option options[] = {
     LIST("--focuses", "D,D...", focuses, "disparities in focus",
          "disparities in focus; default 0,0.25,0.5,0.75,1"),
     LIST("--blurs", "K,K...", blurs, "blur radii, pixels of the photo",
-         "blur radii in pixels of the photo; default a quarter of --blur, half, and "
-         "all of it"),
+         "blur radii in pixels of the photo; default a quarter of --blur, half, and all of it"),
     LIST("--f-numbers", "N,N...", f_numbers, NULL, "in place of --blurs, as --f-number"),
     LIST("--apertures", "A,A...", apertures, NULL,
-         "shapes as --aperture takes them; default a disc, polygons, a heart and a "
-         "star"),
+         "shapes as --aperture takes them; default a disc, polygons, a heart and a star"),
     LIST("--sigmas", "S,S...", sigmas, NULL, "as --sigma; default off,400,100,30"),
     {OPTION(OPTION_INTEGER, "--cell-width", "PIXELS", struct settings, sheet.cell_width),
      .least = 8, .greatest = 8192,
@@ -279,9 +277,8 @@ const struct command sheet_command = {
     .name = "sheet",
     .usage = "PHOTO -o OUT [options]",
     .summary = "contact sheet over focus and aperture",
-    .notes = "Lists have commas between their values, at most 16 of them. Each cell is "
-             "rendered "
-             "at full size and made smaller then: what it shows is what render makes.\n"
+    .notes = "Lists have commas between their values, at most 16 of them. Each cell is rendered at "
+             "full size and made smaller then: what it shows is what render makes.\n"
              "Ctrl-C ends with status 1 and leaves what was at OUT as it was.",
     .options = options,
     .files_least = 1,

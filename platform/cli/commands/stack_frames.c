@@ -155,8 +155,7 @@ static int read_apertures(struct stack_frames *frames, const struct said *said)
     if (!frames->of_files && frames->count > 2)
         return report_failure(
             EXIT_FAILED, frames->file[0],
-            "not all frames tell their f-numbers; give two frames, or photos with "
-            "EXIF");
+            "not all frames tell their f-numbers; give two frames, or photos with EXIF");
     return EXIT_DONE;
 }
 

@@ -54,9 +54,8 @@ static const struct option options[] = {
     {OPTION(OPTION_FLAG, "--fullscreen", NULL, struct settings, fullscreen),
      .brief = "the whole screen", .help = "the whole screen", .elsewhere = true},
     {OPTION(OPTION_TEXT, "--font", "FILE|none", struct settings, font),
-     .help =
-         "font of its text, TrueType or OpenType; default: DejaVu Sans, Noto Sans or Liberation "
-         "Sans, where the system has them; without any the text is in the title",
+     .help = "font of its text, TrueType or OpenType; default: DejaVu Sans, Noto Sans or "
+             "Liberation Sans, where the system has them; without any the text is in the title",
      .elsewhere = true},
     {OPTION(OPTION_NUMBER, "--dpi", "N", struct settings, dpi), .least = 24, .greatest = 2400,
      .help = "of the screen, by which the text has its size; default: what the screen says, or 96",
@@ -275,8 +274,7 @@ static int show(struct viewing *v, view_run_fn *run_window)
     setup.quit_after_ms = isnan(settings->seconds) ? 0 : (int)(settings->seconds * 1000);
     if (status == EXIT_DONE && !view_make_names(&saving.names, settings->output, name))
         status = report_failure(EXIT_FAILED, name,
-                                "its name is too long to make others of it; give "
-                                "--output");
+                                "its name is too long to make others of it; give --output");
     if (status == EXIT_DONE) {
         report_progress_end();
         if (run_window(&setup, report, reason) != REFOCUS_OK)

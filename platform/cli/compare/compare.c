@@ -69,8 +69,7 @@ static int check(const struct settings *settings, const char *photo)
         status = input_check_lens(&settings->lens);
     if (status == EXIT_DONE && !settings->reference)
         status = report_failure(EXIT_WRONG, "--reference",
-                                "there is nothing to compare with; give --reference "
-                                "GT");
+                                "there is nothing to compare with; give --reference GT");
     if (status == EXIT_DONE && settings->output)
         status = output_check(settings->output, OUTPUT_PICTURE, NULL, inputs, 5);
     return status;
@@ -87,8 +86,7 @@ static int read_reference(struct refocus_photo **reference, const char *file,
                               reason.text[0] ? reason.text : "it is not a picture");
     if ((*reference)->image->width != photo->width || (*reference)->image->height != photo->height)
         return report_failure(EXIT_FAILED, file,
-                              "it has %dx%d pixels, the photo %dx%d; give one of the "
-                              "same size",
+                              "it has %dx%d pixels, the photo %dx%d; give one of the same size",
                               (int)(*reference)->image->width, (int)(*reference)->image->height,
                               (int)photo->width, (int)photo->height);
     input_tell_bits(*reference, file);
@@ -127,10 +125,7 @@ static int add(struct comparison *c, const char *name, const struct refocus_imag
 
     item->name = name;
     item->rgb = packed(image, copy);
-    return item->rgb ? EXIT_DONE
-                     : report_failure(EXIT_FAILED, name,
-                                      "not enough "
-                                      "memory");
+    return item->rgb ? EXIT_DONE : report_failure(EXIT_FAILED, name, "not enough memory");
 }
 
 static int check_border(const struct comparison *c, int border)
@@ -149,9 +144,7 @@ static int score(struct comparison *c, const uint8_t *mask, int border)
 
         if (quality_score(item->rgb, c->item[0].rgb, c->width, c->height, border, mask,
                           &item->scores) != 0)
-            return report_failure(EXIT_FAILED, item->name,
-                                  "not enough memory to score "
-                                  "it");
+            return report_failure(EXIT_FAILED, item->name, "not enough memory to score it");
         item->scored = item->scores.pixels > 0;
     }
     return EXIT_DONE;
@@ -327,10 +320,9 @@ static int compare(struct engine *engine, struct input *input, struct comparison
     if (status == EXIT_DONE && settings->output) {
         struct refocus_image picture = compare_picture(c, prepared);
 
-        status = picture.plane[0] ? output_write_image(settings->output, &picture, NULL)
-                                  : report_failure(EXIT_FAILED, settings->output,
-                                                   "not enough "
-                                                   "memory");
+        status = picture.plane[0]
+                     ? output_write_image(settings->output, &picture, NULL)
+                     : report_failure(EXIT_FAILED, settings->output, "not enough memory");
         free(picture.plane[0]);
     }
     if (status == EXIT_DONE)

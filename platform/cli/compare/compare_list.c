@@ -71,9 +71,7 @@ static int parse_entry(struct variant *variant, char *text, char **words)
         next = strchr(next + 1, ':');
         if (argc > WORDS_MOST)
             return report_failure(EXIT_WRONG, "--methods",
-                                  "'%s' has too many options; give at "
-                                  "most %d",
-                                  name, WORDS_MOST);
+                                  "'%s' has too many options; give at most %d", name, WORDS_MOST);
         argv[argc++] = *words;
         *words += 1 + sprintf(*words, "--%.*s", (int)strcspn(option, ":"), option);
         status = check_own(argv[argc - 1]);

@@ -11,14 +11,13 @@ struct behind_settings {
 /* Rows for tables of options, where the settings have a member of the type above. */
 #define BEHIND_OPTIONS(type, member)                                                               \
     {OPTION(OPTION_TEXT, "--behind", "IMAGE", type, member.image), .needs = "--behind-depth",      \
-     .help = "what the photo hides, where that is known: a picture of the photo's size, which "    \
-             "is shown where a blurred foreground uncovers it"},                                   \
+     .help = "what the photo hides, where that is known: a picture of the photo's size, which is " \
+             "shown where a blurred foreground uncovers it"},                                      \
     {                                                                                              \
         OPTION(OPTION_TEXT, "--behind-depth", "MAP", type, member.depth),                          \
             .needs = "--behind",                                                                   \
-            .help =                                                                                \
-                "depth map of IMAGE, of its size, in the units and between the distances of the "  \
-                "photo's; counts where it is farther than that"                                    \
+            .help = "depth map of IMAGE, of its size, in the units and between the distances of "  \
+                    "the photo's; counts where it is farther than that"                            \
     }
 
 /* The layer; struct_size 0: there is none. */

@@ -9,8 +9,7 @@ int input_check_range(const struct input *input, const struct refocus_depth_map 
 {
     if (map->near_m > 0 && map->far_m > 0 && map->near_m >= map->far_m)
         return report_failure(EXIT_WRONG, input->depth_name,
-                              "near %g m is not nearer than far %g m; give --near and "
-                              "--far",
+                              "near %g m is not nearer than far %g m; give --near and --far",
                               map->near_m, map->far_m);
     return EXIT_DONE;
 }

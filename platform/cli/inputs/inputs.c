@@ -32,8 +32,7 @@ int input_check_depth(const struct depth_settings *settings)
     limits_take(&settings->limits);
     if (refocus_depth_set_invalid(&map, settings->invalid) != REFOCUS_OK)
         return report_failure(EXIT_WRONG, "--invalid",
-                              "'%s' is not known; give zero, max or 2047, or several "
-                              "with commas",
+                              "'%s' is not known; give zero, max or 2047, or several with commas",
                               settings->invalid);
 
     if (settings->file && standard_is(settings->file))
@@ -142,9 +141,7 @@ int input_take_photo(struct input *input, const char *photo, const char *instead
         return report_failure(EXIT_FAILED, photo, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
     if (!input->photo->image->plane[0])
-        return report_failure(EXIT_FAILED, photo,
-                              "it is a depth map, not a photo; "
-                              "give %s",
+        return report_failure(EXIT_FAILED, photo, "it is a depth map, not a photo; give %s",
                               instead);
     return EXIT_DONE;
 }
@@ -182,11 +179,10 @@ static int choose_bits(struct input *input, const struct depth_settings *setting
         settings->light)
         return take_light(input);
     if (asked && (!deep->plane[0] || settings->deep == DEEP_NONE))
-        return report_failure(
-            EXIT_FAILED, settings->transfer ? "--transfer" : "--white",
-            "the option is for photos of more than 8 bits, rendered by sweep, search, blur or "
-            "interpolated in linear light without --sigma, --grain, --star and --view; leave it "
-            "out");
+        return report_failure(EXIT_FAILED, settings->transfer ? "--transfer" : "--white",
+                              "the option is for photos of more than 8 bits, rendered by sweep, "
+                              "search, blur or interpolated in linear light without --sigma, "
+                              "--grain, --star and --view; leave it out");
     if (!deep->plane[0] || settings->deep == DEEP_NONE ||
         (settings->deep == DEEP_LIGHT && deep->format != REFOCUS_FORMAT_RGB_FLOAT)) {
         input_tell_bits(input->photo, input->photo_name);
@@ -226,12 +222,11 @@ static int settle_shape(struct input *input, const struct depth_settings *settin
                               "them; leave that out, or give 0 or 180",
                               (int)map->width, (int)map->height);
     if (shape_lies_on_its_side(width, height, photo))
-        return report_failure(EXIT_FAILED, input->depth_name,
-                              "its %dx%d samples lie on their side beside the photo of %dx%d "
-                              "pixels; turn them by --orient-depth 90 or 270, or give the map of "
-                              "this photo",
-                              (int)map->width, (int)map->height, (int)photo->width,
-                              (int)photo->height);
+        return report_failure(
+            EXIT_FAILED, input->depth_name,
+            "its %dx%d samples lie on their side beside the photo of %dx%d pixels; turn them by "
+            "--orient-depth 90 or 270, or give the map of this photo",
+            (int)map->width, (int)map->height, (int)photo->width, (int)photo->height);
     return own ? EXIT_DONE : shape_check(input->depth_name, width, height, photo, "map");
 }
 

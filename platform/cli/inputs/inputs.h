@@ -14,10 +14,8 @@ extern const struct option_word gain_map_words[];
     {                                                                                              \
         OPTION(OPTION_TEXT, "--depth", "FILE", type, member.file),                                 \
             .brief = "depth map; without it the one that the photo carries",                       \
-            .help =                                                                                \
-                "depth map: PNG, PGM or JPEG of 8 or 16 bits, PFM, NumPy's .npy or .npz, or a "    \
-                "photo that "                                                                      \
-                "carries one; without it the depth that the photo itself carries"                  \
+            .help = "depth map: PNG, PGM or JPEG of 8 or 16 bits, PFM, NumPy's .npy or .npz, or "  \
+                    "a photo that carries one; without it the depth that the photo itself carries" \
     }
 #define DEPTH_RANGE_OPTIONS(type, member)                                                          \
     {OPTION(OPTION_NUMBER, "--near", "M", type, member.near_m), .least = 0, .above = true,         \
@@ -32,9 +30,8 @@ extern const struct option_word gain_map_words[];
 #define DEPTH_UNIT_OPTIONS(type, member)                                                           \
     {OPTION(OPTION_TEXT, "--depth-unit", "U", type, member.unit),                                  \
      .brief = "disparity (bright = near), inverse, mm, m, or 5000/m",                              \
-     .help = "what its samples are: disparity (bright = near), inverse (dark = "                   \
-             "near), mm, m, or a number per metre such as 5000/m; default: what the "              \
-             "file says, else disparity"},                                                         \
+     .help = "what its samples are: disparity (bright = near), inverse (dark = near), mm, m, or "  \
+             "a number per metre such as 5000/m; default: what the file says, else disparity"},    \
         DEPTH_RANGE_OPTIONS(type, member)
 #define DEPTH_WAYS_OPTIONS(type, member)                                                           \
     ESTIMATE_OPTIONS(type, member.model, member.network, NULL),                                    \
@@ -76,15 +73,13 @@ extern const struct option_word gain_map_words[];
         OPTION(OPTION_TEXT, "--matte", "FILE|none", type, member.matte),                           \
             .help = "how much of each pixel is subject: a grey PNG, PGM or JPEG of 8 or 16 bits, " \
                     "white = subject; its edges and hair are drawn by it (sweep); default: the "   \
-                    "portrait matte "                                                              \
-                    "of the photo, if it has one; none: no matte"                                  \
+                    "portrait matte of the photo, if it has one; none: no matte"                   \
     }
 #define INVALID_OPTION(type, member)                                                               \
     {                                                                                              \
         OPTION(OPTION_TEXT, "--invalid", "CODES", type, member.invalid),                           \
-            .help = "samples that hold no value, with commas: zero, max (255 or 65535), "          \
-                    "2047; NaN and infinity never do, nor in distances zero, and 65535 if less "   \
-                    "than a "                                                                      \
+            .help = "samples that hold no value, with commas: zero, max (255 or 65535), 2047; "    \
+                    "NaN and infinity never do, nor in distances zero, and 65535 if less than a "  \
                     "hundredth has it"                                                             \
     }
 #define REPAIR_OPTIONS(type, member)                                                               \

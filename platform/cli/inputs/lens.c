@@ -176,8 +176,7 @@ static int choose_blur(const struct input *input, const struct lens_settings *se
     if (given(settings->blur) && settings->blur > most_blur(input))
         return report_failure(
             EXIT_WRONG, "--blur",
-            "%g pixels are more than %g, the most of view, serve and all methods but "
-            "sweep",
+            "%g pixels are more than %g, the most of view, serve and all methods but sweep",
             settings->blur, most_blur(input));
     if (given(settings->blur)) {
         choice->from = "pixels";
@@ -302,9 +301,8 @@ static int focus_at_distance(const struct input *input, double metres, double *f
 
     if (!range_is_known(input))
         return report_failure(EXIT_FAILED, input->depth_name,
-                              "--focus-distance needs distances in metres, which it "
-                              "does not say; give --near and --far, or --focus or "
-                              "--focus-at in its place");
+                              "--focus-distance needs distances in metres, which it does not say; "
+                              "give --near and --far, or --focus or --focus-at in its place");
     *focus = refocus_disparity_of_depth(&range, metres);
     if (!(*focus >= 0 && *focus <= 1))
         return report_failure(EXIT_WRONG, "--focus-distance",

@@ -42,8 +42,7 @@ struct lens_settings {
          .least = 0,                                                                               \
          .greatest = REFOCUS_MAX_SIDE,                                                             \
          .count = 4,                                                                               \
-         .help = "focus on the nearest surface that has a quarter of that rectangle, "             \
-                 "pixels"},                                                                        \
+         .help = "focus on the nearest surface that has a quarter of that rectangle, pixels"},     \
         {OPTION(OPTION_NUMBER, "--focus-distance", "M", type, member.focus_distance),              \
          .group = "focus",                                                                         \
          .least = 0,                                                                               \
@@ -65,14 +64,13 @@ struct lens_settings {
      .above = true,                                                                                \
      .greatest = 1000,                                                                             \
      .brief = "the blur of such a lens instead",                                                   \
-     .help = "blur of a lens of this f-number, at most 944 pixels; without "                       \
-             "a focal length, or metres of the depth, the blur that the file names, or the "       \
-             "default, which "                                                                     \
-             "stands for the f-number of the file, or f/2, made more or less"},                    \
+     .help = "blur of a lens of this f-number, at most 944 pixels; without a focal length, or "    \
+             "metres of the depth, the blur that the file names, or the default, which stands "    \
+             "for the f-number of the file, or f/2, made more or less"},                           \
         {OPTION(OPTION_NUMBER, "--focal-length", "MM", type, member.focal_length), .least = 0,     \
          .above = true, .greatest = 100000,                                                        \
-         .help = "focal length for --f-number; default: the EXIF focal length in 35 mm "           \
-                 "terms, for the blur that a full-frame camera has at that f-number"},             \
+         .help = "focal length for --f-number; default: the EXIF focal length in 35 mm terms, "    \
+                 "for the blur that a full-frame camera has at that f-number"},                    \
     {                                                                                              \
         OPTION(OPTION_NUMBER, "--sensor-width", "MM", type, member.sensor_width),                  \
             .least = 0, .above = true, .greatest = 10000,                                          \

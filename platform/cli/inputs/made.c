@@ -17,9 +17,7 @@ static int read_right(struct refocus_photo **photo, const char *name, bool secon
         return report_failure(EXIT_FAILED, name, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
     if (!(*photo)->image->plane[0])
-        return report_failure(EXIT_FAILED, name,
-                              "it is a depth map, not a photo; give "
-                              "a photo");
+        return report_failure(EXIT_FAILED, name, "it is a depth map, not a photo; give a photo");
     return EXIT_DONE;
 }
 
@@ -134,8 +132,7 @@ static int match(struct input *input, const char *right, const struct stereo_set
     }
     tell_doubt(right ? right : left, &report);
     snprintf(input->made_info.evidence[0], REFOCUS_INFO_LENGTH,
-             "stereo: disparities %.1f to %.1f pixels, %.0f %% of the pixels agree from both "
-             "sides",
+             "stereo: disparities %.1f to %.1f pixels, %.0f %% of the pixels agree from both sides",
              (double)report.least, (double)report.greatest, 100.0 * (double)report.matched);
     snprintf(input->made_info.evidence[1], REFOCUS_INFO_LENGTH,
              "stereo: the second picture is %.1f pixels lower, turned by %.2f degrees and %.2f %% "

@@ -52,12 +52,11 @@ static bool are_distances(const struct refocus_depth_map *map, char line[UNIT_LI
         }
     }
     zeros = zeros && !(map->flags & REFOCUS_DEPTH_ZERO_IS_UNKNOWN);
-    snprintf(
-        line, UNIT_LINE,
-        "its samples from %.0f to %.0f%s are taken for disparities, bright = near; if they are "
-        "distances, give --depth-unit mm, or 5000/m, else disparity%s",
-        least, most, zeros ? ", and zeros," : "",
-        zeros ? "; if zeros have no value, --invalid zero" : "");
+    snprintf(line, UNIT_LINE,
+             "its samples from %.0f to %.0f%s are taken for disparities, bright = near; if they "
+             "are distances, give --depth-unit mm, or 5000/m, else disparity%s",
+             least, most, zeros ? ", and zeros," : "",
+             zeros ? "; if zeros have no value, --invalid zero" : "");
     return least >= LEAST && most <= MOST && 2 * most > 3 * least;
 }
 

@@ -65,9 +65,8 @@ extern const struct option_word ways_match_words[], ways_order_words[];
     {                                                                                              \
         OPTION(OPTION_FLAG, "--stereo-file", NULL, type, stereo.within),                           \
             .brief = short_help,                                                                   \
-            .help =                                                                                \
-                "the photo's file holds both pictures of a stereo pair: an MPO, two JPEGs or a "   \
-                "stereo HEIC"                                                                      \
+            .help = "the photo's file holds both pictures of a stereo pair: an MPO, two JPEGs or " \
+                    "a stereo HEIC"                                                                \
     }
 #define MATCH_OPTION(type, stereo, short_help)                                                     \
     OPTION(OPTION_CHOICE, "--match", "HOW", type, stereo.method),                                  \

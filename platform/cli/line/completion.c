@@ -154,10 +154,9 @@ static void print_zsh(const struct command *const *commands, const char *const *
     }
     printf("    help | man) compadd ");
     print_subcommands(commands);
-    puts(
-        " ;;\n    completion) compadd bash zsh fish ;;\n    esac\n}\n"
-        "if [ \"$funcstack[1]\" = _refocus ]; then _refocus \"$@\"; else compdef _refocus refocus; "
-        "fi");
+    puts(" ;;\n    completion) compadd bash zsh fish ;;\n    esac\n}\n"
+         "if [ \"$funcstack[1]\" = _refocus ]; then _refocus \"$@\"; else compdef _refocus "
+         "refocus; fi");
 }
 
 static void print_fish_option(const struct command *command, const struct option *option)

@@ -95,9 +95,7 @@ static int parse_option(const struct command *command, int argc, char **argv, in
         return unknown_option(command, argv[*i]);
     if (option->kind == OPTION_FLAG) {
         if (value)
-            return report_failure(EXIT_WRONG, option->name,
-                                  "takes no value; leave "
-                                  "'=%s' out",
+            return report_failure(EXIT_WRONG, option->name, "takes no value; leave '=%s' out",
                                   value);
         return options_set(option, option->name, "", settings);
     }

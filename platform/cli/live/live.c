@@ -248,13 +248,11 @@ const struct command live_command = {
     .usage = "--camera SOURCE --depth SOURCE [--out SINK] [options]",
     .summary = "camera in, refocused frames out",
     .notes = "While it runs, standard input (and --socket) takes a command a line: focus D, "
-             "focus-at X,Y, focus-rectangle X,Y,W,H (follows), "
-             "pull D SECONDS, pull-at X,Y SECONDS (smooth), blur K, stack (take a new one), quit. "
-             "Depth is paired with "
-             "colour by time within half a frame; without a pair the newest depth serves, or, "
-             "with --frames-policy every, the nearest in time. "
-             "After a fault the camera is opened again; platform/README.md lists faults and "
-             "outcomes. Ctrl-C ends it with status 0.",
+             "focus-at X,Y, focus-rectangle X,Y,W,H (follows), pull D SECONDS, pull-at X,Y SECONDS "
+             "(smooth), blur K, stack (take a new one), quit. Depth is paired with colour by time "
+             "within half a frame; without a pair the newest depth serves, or, with "
+             "--frames-policy every, the nearest in time. After a fault the camera is opened "
+             "again; platform/README.md lists faults and outcomes. Ctrl-C ends it with status 0.",
     .options = live_options,
     .files_least = 0,
     .files_most = 0,

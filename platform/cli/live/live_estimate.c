@@ -39,8 +39,7 @@ int live_estimate_parse(struct live_estimate_settings *settings, const char *dep
             settings->every = strtol(comma + 7, &end, 10);
             if (end == comma + 7 || *end || settings->every < 1 || settings->every > 1000000)
                 return report_failure(EXIT_WRONG, "--depth",
-                                      "'%.40s' is no number of frames; "
-                                      "give every=1 or more",
+                                      "'%.40s' is no number of frames; give every=1 or more",
                                       comma + 1);
         } else if (strncmp(comma, ",preset=", 8) == 0) {
             settings->preset = find_preset(comma + 8);

@@ -3,9 +3,8 @@
 #include "live/live_estimate.h"
 #include "live/live_look.h"
 
-const char live_look_no_metres[] =
-    "--focus-distance and --f-number need a depth in metres; give --near and --far, or --focus "
-    "and --blur";
+const char live_look_no_metres[] = "--focus-distance and --f-number need a depth in metres; give "
+                                   "--near and --far, or --focus and --blur";
 
 bool live_look_needs_metres(const struct live_settings *settings)
 {

@@ -87,14 +87,12 @@ const struct option live_options[] = {
      .least = -INFINITY, .greatest = INFINITY, .count = 2,
      .brief = "focus on the surface at that pixel, and stay there",
      .help = "focus on the surface at that pixel of the first frame, and stay at its distance; "
-             "without any --focus...: where the camera's lens is, if it says so, else the "
-             "centre"},
+             "without any --focus...: where the camera's lens is, if it says so, else the centre"},
     {OPTION(OPTION_NUMBERS, "--focus-rectangle", "X,Y,W,H", struct live_settings,
             lens.focus_rectangle),
      .least = 0, .greatest = REFOCUS_MAX_SIDE, .count = 4,
-     .help =
-         "follow what the first frame shows in that rectangle, and focus on the nearest surface "
-         "that has a quarter of it; while it is not to be seen the focus stays"},
+     .help = "follow what the first frame shows in that rectangle, and focus on the nearest "
+             "surface that has a quarter of it; while it is not to be seen the focus stays"},
     {OPTION(OPTION_NUMBER, "--focus-distance", "M", struct live_settings, lens.focus_distance),
      .least = 0, .above = true, .greatest = INFINITY,
      .help = "metres in focus, also 'inf'; the depth must be in metres"},

@@ -68,17 +68,16 @@ int live_report(struct live *live)
 
     refocus_source_get_counters(live->camera, &counters);
     if (!settings->engine.json) {
-        fprintf(stderr,
-                "%llu frames in, %llu out, %llu dropped; %.1f a second, %.1f ms from "
-                "camera to sink\n",
-                (unsigned long long)live->capture.frames, (unsigned long long)out,
-                (unsigned long long)dropped + counters.dropped, fps,
-                live_times_quantile(&live->latency, 0.5));
+        fprintf(
+            stderr,
+            "%llu frames in, %llu out, %llu dropped; %.1f a second, %.1f ms from camera to sink\n",
+            (unsigned long long)live->capture.frames, (unsigned long long)out,
+            (unsigned long long)dropped + counters.dropped, fps,
+            live_times_quantile(&live->latency, 0.5));
         return EXIT_DONE;
     }
     json = json_pack(
-        "{s:o, s:s?, s:i, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:o, "
-        "s:f, s:f}",
+        "{s:o, s:s?, s:i, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:o, s:f, s:f}",
         "camera", report_text_json(settings->camera), "format",
         refocus_frame_format_name(live->mode.format), "width", (int)live->mode.width, "height",
         (int)live->mode.height, "frames_in", (json_int_t)live->capture.frames, "frames_out",

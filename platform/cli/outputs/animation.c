@@ -70,19 +70,16 @@ int animation_check(const char *path, const char *const *inputs, int input_count
     const enum kind kind = path ? kind_of(path) : KIND_NONE;
 
     if (path && strlen(path) + 64 > PATH_MAX)
-        return report_failure(EXIT_FAILED, path,
-                              "the name is too long; give a shorter "
-                              "one");
+        return report_failure(EXIT_FAILED, path, "the name is too long; give a shorter one");
     if (path && kind == KIND_NONE)
         return report_failure(EXIT_WRONG, path,
-                              "no such animation is written; give frames-%%03d with the "
-                              "ending of a picture, " OUTPUT_PICTURES
-                              ", or end the name in .y4m, .apng, .mp4, "
-                              ".gif or .webm");
+                              "no such animation is written; give frames-%%03d with the ending of "
+                              "a picture, " OUTPUT_PICTURES
+                              ", or end the name in .y4m, .apng, .mp4, .gif or .webm");
     if (kind == KIND_ENCODER && !encoder_is_there())
         return report_failure(EXIT_FAILED, path,
-                              "there is no ffmpeg program to write it; install ffmpeg, "
-                              "or give a name in .apng or .y4m");
+                              "there is no ffmpeg program to write it; install ffmpeg, or give a "
+                              "name in .apng or .y4m");
     return output_check(path, OUTPUT_PICTURE, films, inputs, input_count);
 }
 
@@ -170,9 +167,7 @@ static int write_picture(struct animation *a, const struct refocus_image *image,
     char name[PATH_MAX];
 
     if (!frame_name(a, a->frames, name)) {
-        snprintf(reason->text, sizeof reason->text,
-                 "the name is too long; give a "
-                 "shorter one");
+        snprintf(reason->text, sizeof reason->text, "the name is too long; give a shorter one");
         return REFOCUS_ERR_ARGUMENT;
     }
     return refocus_image_write(name, image, NULL, reason);

@@ -94,14 +94,11 @@ static int check_folder_of(const char *path, const char *name)
     char folder[LONGEST_FOLDER];
 
     if (!folder_of(path, folder))
-        return report_failure(EXIT_FAILED, name,
-                              "the name is too long; give a shorter "
-                              "one");
+        return report_failure(EXIT_FAILED, name, "the name is too long; give a shorter one");
     if (access(folder, W_OK | X_OK) != 0)
         return report_failure(EXIT_FAILED, name,
-                              "the folder %s cannot be written to (%s); give another "
-                              "place",
-                              folder, strerror(errno));
+                              "the folder %s cannot be written to (%s); give another place", folder,
+                              strerror(errno));
     return EXIT_DONE;
 }
 
@@ -129,9 +126,7 @@ int output_check(const char *path, unsigned kinds, const char *const *others,
     if (stat(path, &out) != 0)
         return check_folder(path);
     if (S_ISDIR(out.st_mode))
-        return report_failure(EXIT_FAILED, path,
-                              "it is a folder; give the name of a "
-                              "file");
+        return report_failure(EXIT_FAILED, path, "it is a folder; give the name of a file");
     if (!S_ISREG(out.st_mode))
         return report_failure(EXIT_FAILED, path,
                               "it is a pipe, socket or device; give the name of a file");
@@ -139,8 +134,7 @@ int output_check(const char *path, unsigned kinds, const char *const *others,
         if (inputs[i] && stat(inputs[i], &in) == 0 && in.st_dev == out.st_dev &&
             in.st_ino == out.st_ino)
             return report_failure(EXIT_WRONG, path,
-                                  "it is an input too and would be lost; give another "
-                                  "name");
+                                  "it is an input too and would be lost; give another name");
     return check_folder(path);
 }
 

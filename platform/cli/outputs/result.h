@@ -30,16 +30,14 @@ const char *result_format(uint32_t index);
      .help = "of standard output (-o -), and {ext} of names; default the photo's own"},            \
         {OPTION(OPTION_TEXT, "--resize", "SIZE", type, member.resize), .elsewhere = true,          \
          .brief = "size of the picture: W, WxH or N%",                                             \
-         .help =                                                                                   \
-             "make the picture smaller: W pixels wide, to fit into WxH, or N% of its sides; "      \
-             "never larger than it is. Everything else is in pixels of the photo; the mean of "    \
-             "areas is taken in linear light"},                                                    \
+         .help = "make the picture smaller: W pixels wide, to fit into WxH, or N% of its sides; "  \
+                 "never larger than it is. Everything else is in pixels of the photo; the mean "   \
+                 "of areas is taken in linear light"},                                             \
     {                                                                                              \
         OPTION(OPTION_INTEGER, "--jpeg-quality", "Q", type, member.quality),                       \
             .elsewhere = true, .least = 1, .greatest = 100,                                        \
             .help = "of JPEG, default 95, or HEIC, default 90. Below 90 the colour of a JPEG is "  \
-                    "stored at half "                                                              \
-                    "the size"                                                                     \
+                    "stored at half the size"                                                      \
     }
 
 /* These return exit codes and print why it is not EXIT_DONE. */

@@ -168,8 +168,7 @@ static int read_key(struct keys **keys, const char *file, int i, json_t *object)
         !(json_number_value(time) > before && json_number_value(time) >= 0 &&
           json_number_value(time) <= MOST_SECONDS))
         return damaged(file, i, "time",
-                       "has to be seconds, later than those of the key before, at most "
-                       "3600");
+                       "has to be seconds, later than those of the key before, at most 3600");
     key = append(keys, json_number_value(time), EASE_SMOOTH);
     if (!key)
         return report_failure(EXIT_FAILED, file, "not enough memory");
@@ -202,15 +201,10 @@ static int read_all(struct keys **keys, const char *file, json_t *root)
         char clean[64];
 
         report_clean(clean, sizeof clean, name);
-        return report_failure(EXIT_FAILED, file,
-                              "'%s' is no member; did you mean "
-                              "'keys'?",
-                              clean);
+        return report_failure(EXIT_FAILED, file, "'%s' is no member; did you mean 'keys'?", clean);
     }
     if (json_array_size(list) < 2 || json_array_size(list) > MOST_KEYS)
-        return report_failure(EXIT_FAILED, file,
-                              "'keys' has to be a list of 2 to %d "
-                              "keys",
+        return report_failure(EXIT_FAILED, file, "'keys' has to be a list of 2 to %d keys",
                               MOST_KEYS);
     json_array_foreach(list, i, value)
     {

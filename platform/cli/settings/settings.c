@@ -95,9 +95,7 @@ static int set_member(const struct command *command, const char *file, const cha
         char why[LONGEST_VALUE];
 
         if (option)
-            return damaged(file, key,
-                           "does not describe the picture; give it on the command "
-                           "line");
+            return damaged(file, key, "does not describe the picture; give it on the command line");
         snprintf(why, sizeof why, "unknown setting%s%s%s", nearest ? "; did you mean '" : "",
                  nearest ? nearest + strspn(nearest, "-") : "", nearest ? "'?" : "");
         return damaged(file, key, why);
@@ -112,10 +110,8 @@ static int set_member(const struct command *command, const char *file, const cha
         given = json_string_value(value);
     else if (!number_text(value, text, sizeof text) && !numbers_text(value, text, sizeof text))
         return damaged(file, key,
-                       option->kind == OPTION_NUMBERS ? "give numbers, as "
-                                                        "[1, 2]"
-                                                      : "give a number or a "
-                                                        "text");
+                       option->kind == OPTION_NUMBERS ? "give numbers, as [1, 2]"
+                                                      : "give a number or a text");
     status = options_set(option, member_name(what, file, key), given, settings);
     return status == EXIT_WRONG ? EXIT_FAILED : status;
 }

@@ -163,8 +163,7 @@ static int read_mask(const char *file, struct refocus_aperture_params *params)
     params->mask_stride = width;
     if (width > REFOCUS_MAX_APERTURE_SIDE || height > REFOCUS_MAX_APERTURE_SIDE)
         return report_failure(EXIT_FAILED, file,
-                              "%dx%d pixels are too many for an "
-                              "aperture; give at most %dx%d",
+                              "%dx%d pixels are too many for an aperture; give at most %dx%d",
                               width, height, REFOCUS_MAX_APERTURE_SIDE, REFOCUS_MAX_APERTURE_SIDE);
     return EXIT_DONE;
 }
@@ -191,8 +190,7 @@ static int find_iris(const struct bokeh_settings *s, double *iris)
                               "it goes with --f-number; give that too");
     if (s->f_number < s->open_f_number)
         return report_failure(EXIT_WRONG, "--open-f-number",
-                              "f/%g is wider than that; give a number above 0, at most "
-                              "%g",
+                              "f/%g is wider than that; give a number above 0, at most %g",
                               s->f_number, s->f_number);
     *iris = s->open_f_number / s->f_number;
     return EXIT_DONE;
@@ -305,13 +303,12 @@ int bokeh_check_method(const struct refocus_settings *p, bool has_sides)
 {
     if (!bokeh_suits_method(p, has_sides))
         return report_failure(EXIT_WRONG, of_sweep(p, has_sides),
-                              "it does not go with --method %s; give sweep, or leave "
-                              "it out",
+                              "it does not go with --method %s; give sweep, or leave it out",
                               refocus_method_name(p->render.method));
     if (has_sides && p->render.rays == REFOCUS_RAYS_FULL)
         return report_failure(EXIT_WRONG, "--rays",
-                              "'full' does not go with discs that differ before and "
-                              "behind the focus; give a whole number from 1 to %d",
+                              "'full' does not go with discs that differ before and behind the "
+                              "focus; give a whole number from 1 to %d",
                               REFOCUS_MAX_RAYS);
     return EXIT_DONE;
 }

@@ -48,13 +48,12 @@ const char *bokeh_figure_summary(uint32_t index);
          .help = "f-number of the lens wide open, where it is round: a polygon shows as "          \
                  "--f-number closes it"},                                                          \
         BOKEH_NUMBER(type, member, "--squeeze", "Q", squeeze, 0.5, 2,                              \
-                     "width / height of the discs, below 1 as of an anamorphic lens; "             \
-                     "default 1"),                                                                 \
+                     "width / height of the discs, below 1 as of an anamorphic lens; default 1"),  \
         BOKEH_NUMBER(type, member, "--ring", "R", ring, 0, 0.9,                                    \
                      "radius of a stop in the middle, as of a mirror lens; default 0"),            \
         BOKEH_NUMBER(type, member, "--edge", "E", edge, -1, 1,                                     \
-                     "behind the focus: 1 = bubbles with bright edges, -1 = discs that "           \
-                     "fade out; before it the contrary; default 0"),                               \
+                     "behind the focus: 1 = bubbles with bright edges, -1 = discs that fade out; " \
+                     "before it the contrary; default 0"),                                         \
         BOKEH_NUMBER(type, member, "--edge-before", "E", edge_before, -1, 1,                       \
                      "the edge before the focus, when it is not the contrary"),                    \
         BOKEH_NUMBER(type, member, "--cat-eye", "A", cat_eye, 0, 0.9,                              \

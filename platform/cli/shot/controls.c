@@ -94,8 +94,7 @@ int controls_check(const struct control_settings *s, bool focus_given)
                               "it goes with --tilt-angle; give that too");
     if (s->far_clamp > s->near_clamp)
         return report_failure(EXIT_WRONG, "--far-clamp",
-                              "%g is nearer than --near-clamp %g; give a number from 0 "
-                              "to %g",
+                              "%g is nearer than --near-clamp %g; give a number from 0 to %g",
                               s->far_clamp, s->near_clamp, s->near_clamp);
     return EXIT_DONE;
 }
@@ -171,8 +170,7 @@ static int aim_by_points(const struct controls *controls, struct refocus_setting
     }
     if (refocus_focus_plane_of_points(&plane, point) != REFOCUS_OK)
         return report_failure(EXIT_WRONG, "--focus-plane",
-                              "the three pixels lie on one line, or nearly; give "
-                              "others");
+                              "the three pixels lie on one line, or nearly; give others");
     tilt(params, &plane);
     return EXIT_DONE;
 }

@@ -12,9 +12,8 @@ const struct option_word engine_quality_words[] = {
     {"preview", "32 rays, thin structures gathered by them"},
     {"standard", "64 rays, thin structures splatted"},
     {"best", "128 rays, thin structures splatted, texture continued behind them"},
-    [QUALITY_AUTO] = {"auto",
-                      "standard, but more rays, up to 256, where they would lie farther apart than "
-                      "at a blur of 20 pixels"},
+    [QUALITY_AUTO] = {"auto", "standard, but more rays, up to 256, where they would lie farther "
+                              "apart than at a blur of 20 pixels"},
     {0}};
 
 static const struct {
@@ -40,13 +39,12 @@ static int check_aperture(uint32_t method, const struct engine_settings *setting
     if (!(refocus_method_traits(method) & REFOCUS_METHOD_DISC_ONLY) ||
         bokeh_is_plain_disc(&settings->bokeh, settings->aperture))
         return EXIT_DONE;
-    return report_failure(EXIT_WRONG, "--aperture",
-                          "'%s' does not go with --method %s, which knows a disc "
-                          "alone; leave one of them out",
-                          settings->aperture && strcmp(settings->aperture, "disc") != 0
-                              ? settings->aperture
-                              : "such a disc",
-                          refocus_method_name(method));
+    return report_failure(
+        EXIT_WRONG, "--aperture",
+        "'%s' does not go with --method %s, which knows a disc alone; leave one of them out",
+        settings->aperture && strcmp(settings->aperture, "disc") != 0 ? settings->aperture
+                                                                      : "such a disc",
+        refocus_method_name(method));
 }
 
 int engine_begin(struct engine *engine, const struct engine_settings *settings)
@@ -102,9 +100,7 @@ void engine_suit_rays(const struct engine *engine, struct refocus_settings *para
 
 static int interrupted(const struct engine *engine)
 {
-    return report_failure(EXIT_FAILED, engine->name,
-                          "interrupted; nothing was "
-                          "written");
+    return report_failure(EXIT_FAILED, engine->name, "interrupted; nothing was written");
 }
 
 double engine_most_blur(const struct engine_settings *settings)
@@ -321,8 +317,7 @@ json_t *engine_json(const struct engine *engine)
                                                             : json_integer(params->render.rays);
 
     return json_pack(
-        "{s:s, s:o, s:s, s:o, s:o, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:o, s:I, "
-        "s:I}",
+        "{s:s, s:o, s:s, s:o, s:o, s:i, s:f, s:f, s:i, s:s, s:f, s:f, s:o, s:o, s:I, s:I}",
         "method", refocus_method_name(params->render.method), "rays", rays, "blend",
         engine_blend_words[params->render.blend].name, "sigma",
         params->render.sigma < 1e30f ? json_real(params->render.sigma) : json_string("off"),

@@ -97,15 +97,13 @@ extern const struct option_word engine_quality_words[], engine_fill_words[], eng
          .greatest = 1e30,                                                                         \
          .word = "off",                                                                            \
          .word_value = INFINITY,                                                                   \
-         .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default "           \
-                 "off"},                                                                           \
+         .help = "weight exp(-(max(R,G,B) - 255)^2 / 2 S^2) of bright samples; default off"},      \
     {                                                                                              \
         OPTION(OPTION_NUMBER, "--highlights", "GAIN", type, member.highlights),                    \
             .least = 1, .greatest = 16, .word = "off", .word_value = 1, .other_word = "auto",      \
             .other_value = HIGHLIGHTS_ESTIMATED,                                                   \
-            .help =                                                                                \
-                "sweep, search: light given back to clipped highlights: auto = as much as the "    \
-                "photo tells, the default; up to GAIN times white to small ones",                  \
+            .help = "sweep, search: light given back to clipped highlights: auto = as much as "    \
+                    "the photo tells, the default; up to GAIN times white to small ones",          \
             OF_METHODS(type, member.method, OF_SWEEP | OF_SEARCH)                                  \
     }
 #define METHOD_OPTIONS(type, member, usual)                                                        \

@@ -58,12 +58,11 @@ extern const struct option_word papers_spread_words[], papers_field_words[], pap
                      "scatter: light in a circle of confusion; default uniform",                   \
                      OF_METHODS(type, method, OF_SCATTER)),                                        \
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--airy-radius", "R", airy_radius, 0.25, 16,     \
-                     "scatter, lommel: first dark ring of a point in focus, pixels; "              \
-                     "default 1",                                                                  \
+                     "scatter, lommel: first dark ring of a point in focus, pixels; default 1",    \
                      .needs = "--spread"),                                                         \
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--depth-ratio", "Q", depth_ratio, 1, 1000,      \
-                     "scatter: far / near metres, for light that falls with the square "           \
-                     "of the distance; default 1, not at all",                                     \
+                     "scatter: far / near metres, for light that falls with the square of the "    \
+                     "distance; default 1, not at all",                                            \
                      OF_METHODS(type, method, OF_SCATTER)),                                        \
         PAPER_NUMBER(type, member, OPTION_INTEGER, "--star", "N", star, 0, 16,                     \
                      "sweep, scatter: spikes of a star filter, 0 or 2 to 16; default 0",           \
@@ -76,22 +75,20 @@ extern const struct option_word papers_spread_words[], papers_field_words[], pap
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--star-strength", "P", star_strength, 0, 1,     \
                      "share of the light in the spikes; default 0.25", PAPER_STAR_NEEDS),          \
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--sharp-radius", "R", sharp_radius, 0.5, 16,    \
-                     "interpolated: c0, blur radius up to which all is sharp; default "            \
-                     "0.5",                                                                        \
-                     OF_METHODS(type, method, OF_INTERPOLATED)),                                   \
-        PAPER_NUMBER(type, member, OPTION_NUMBER, "--middle-ratio", "Q", middle_ratio, 1, 1000,    \
-                     "interpolated: r1, radius of the middle picture / c0, above 1; "              \
-                     "default (1 + r2) / 2",                                                       \
-                     OF_METHODS(type, method, OF_INTERPOLATED)),                                   \
-        PAPER_NUMBER(type, member, OPTION_NUMBER, "--last-ratio", "Q", last_ratio, 1, 1000,        \
-                     "interpolated: r2, radius of the last picture / c0, above 1; "                \
-                     "default: the largest blur",                                                  \
+                     "interpolated: c0, blur radius up to which all is sharp; default 0.5",        \
                      OF_METHODS(type, method, OF_INTERPOLATED)),                                   \
         PAPER_NUMBER(                                                                              \
-            type, member, OPTION_NUMBERS, "--attention", "X,Y", attention, 0, 65535,               \
-            "foveated: pixel that is looked at; default: where the focus is found, as by "         \
-            "--focus-at, else the centre",                                                         \
-            OF_METHODS(type, method, OF_FOVEATED)),                                                \
+            type, member, OPTION_NUMBER, "--middle-ratio", "Q", middle_ratio, 1, 1000,             \
+            "interpolated: r1, radius of the middle picture / c0, above 1; default (1 + r2) / 2",  \
+            OF_METHODS(type, method, OF_INTERPOLATED)),                                            \
+        PAPER_NUMBER(type, member, OPTION_NUMBER, "--last-ratio", "Q", last_ratio, 1, 1000,        \
+                     "interpolated: r2, radius of the last picture / c0, above 1; default: the "   \
+                     "largest blur",                                                               \
+                     OF_METHODS(type, method, OF_INTERPOLATED)),                                   \
+        PAPER_NUMBER(type, member, OPTION_NUMBERS, "--attention", "X,Y", attention, 0, 65535,      \
+                     "foveated: pixel that is looked at; default: where the focus is found, as "   \
+                     "by --focus-at, else the centre",                                             \
+                     OF_METHODS(type, method, OF_FOVEATED)),                                       \
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--attention-angle", "DEG", attention_angle, 0,  \
                      170, "foveated: across the exact part; default 10",                           \
                      OF_METHODS(type, method, OF_FOVEATED)),                                       \
@@ -99,8 +96,7 @@ extern const struct option_word papers_spread_words[], papers_field_words[], pap
                      "foveated: across the picture; default 50",                                   \
                      OF_METHODS(type, method, OF_FOVEATED)),                                       \
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--attention-depth", "D", attention_depth, 0, 1, \
-                     "foveated: disparity about the focus of the exact part; default 1, "          \
-                     "all",                                                                        \
+                     "foveated: disparity about the focus of the exact part; default 1, all",      \
                      OF_METHODS(type, method, OF_FOVEATED)),                                       \
         PAPER_CHOICE(type, member, "--field", field, papers_field_words,                           \
                      "sweep, search, blur, diffusion: where it is blurred; default lens",          \
@@ -110,8 +106,7 @@ extern const struct option_word papers_spread_words[], papers_field_words[], pap
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--field-disparity", "D", field_disparity, 0, 1, \
                      "of the field's centre; default that in focus", PAPER_FIELD_NEEDS),           \
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--field-radius", "R", field_radius, 0, 4,       \
-                     "distance that stays sharp, of the width or in disparity; default "           \
-                     "0.1",                                                                        \
+                     "distance that stays sharp, of the width or in disparity; default 0.1",       \
                      PAPER_FIELD_NEEDS),                                                           \
         PAPER_NUMBER(type, member, OPTION_NUMBER, "--field-falloff", "R", field_falloff, 0.001, 4, \
                      "further distance to the full blur; default 0.3", PAPER_FIELD_NEEDS),         \

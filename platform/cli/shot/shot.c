@@ -191,11 +191,9 @@ int shot_output(struct shot *shot, const double region[4], uint32_t format,
     if (!isnan(region[0])) {
         if (region[2] < 1 || region[3] < 1 || region[0] + region[2] > width ||
             region[1] + region[3] > height)
-            return report_failure(EXIT_WRONG, "--region",
-                                  "%g,%g,%g,%g does not lie within the %dx%d pixels of "
-                                  "%s",
-                                  region[0], region[1], region[2], region[3], width, height,
-                                  shot->input.photo_name);
+            return report_failure(
+                EXIT_WRONG, "--region", "%g,%g,%g,%g does not lie within the %dx%d pixels of %s",
+                region[0], region[1], region[2], region[3], width, height, shot->input.photo_name);
         params->render.region_x = (int32_t)region[0];
         params->render.region_y = (int32_t)region[1];
         params->render.region_width = width = (int32_t)region[2];
