@@ -59,9 +59,8 @@ static int set_meaning(struct rf_read *read, const struct auxiliary *auxiliary, 
         status = rf_xmp_number(read, xmp, RF_XMP_APPLE_INT_MAX, "IntMaxValue", &has_code_high,
                                &code_high);
     }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     code_low = has_code_low ? code_low : 0.0;
     code_high = has_code_high ? code_high : read->samples.max_value;
     if (code_low >= code_high || (has_low && has_high && low >= high) ||
@@ -83,9 +82,8 @@ static int set_meaning(struct rf_read *read, const struct auxiliary *auxiliary, 
         rf_depth_from_disparity(map, code_low, code_high, 0.0, 0.0);
         rf_note(read->info, "Apple: disparity without a range, bright is near");
     }
-    if (accuracy) {
+    if (accuracy)
         rf_note(read->info, "Apple: accuracy of the distances: %.60s", accuracy);
-    }
     return REFOCUS_OK;
 }
 
@@ -113,9 +111,8 @@ static int judge(struct rf_read *read, const struct auxiliary *auxiliary)
     const char *const type = subtype ? subtype : auxiliary->xmp.value[RF_XMP_APPLE_TYPE];
 
     if (type && (strcmp(type, "disparity") == 0 || strcmp(type, "depth") == 0)) {
-        if (!read->samples.pixels) {
+        if (!read->samples.pixels)
             return take_depth(read, auxiliary, type[1] == 'i');
-        }
         rf_note(read->info, "%s: image %d, a second depth image, passed over", auxiliary->place,
                 auxiliary->number);
     } else if (type && rf_is_matte(type) && read->picture_always && !read->matte.pixels) {
@@ -140,12 +137,10 @@ static int read_image(struct rf_read *read, struct rf_bytes file, const char *pl
     const struct rf_bytes packet = find_xmp(file);
     int status = REFOCUS_OK;
 
-    if (packet.data) {
+    if (packet.data)
         status = rf_xmp_parse(read, packet, &auxiliary.xmp);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = judge(read, &auxiliary);
-    }
     rf_xmp_free(&auxiliary.xmp);
     return status;
 }
@@ -157,9 +152,8 @@ int rf_read_apple(struct rf_read *read, struct rf_bytes file, struct rf_bytes mp
     struct rf_mpf mpf;
     int status = REFOCUS_OK;
 
-    if (read->samples.pixels) {
+    if (read->samples.pixels)
         return REFOCUS_OK;
-    }
     if (!rf_mpf_parse(mpf_tiff, &mpf)) {
         rf_note(read->info, "MPF: damaged, passed over");
         return REFOCUS_OK;
@@ -195,9 +189,8 @@ static size_t jpeg_size(const struct rf_read *read, struct rf_bytes file)
     struct rf_jpeg_walk walk;
     uint32_t segments = 0;
 
-    if (!rf_is_jpeg(file) || !rf_jpeg_walk_begin(&walk, file)) {
+    if (!rf_is_jpeg(file) || !rf_jpeg_walk_begin(&walk, file))
         return 0;
-    }
     do {
         step = rf_jpeg_walk_next(&walk);
     } while (step == RF_JPEG_SEGMENT && ++segments <= read->limits.max_segments);
@@ -210,9 +203,8 @@ int rf_read_companions(struct rf_read *read, struct rf_bytes original)
     size_t at = main_end, size = main_end;
     int status = REFOCUS_OK;
 
-    if (main_end > 0) {
+    if (main_end > 0)
         status = rf_read_gain_map(read, original, (struct rf_bytes){NULL, 0}, main_end);
-    }
     for (int number = 2; status == REFOCUS_OK && size > 0 && number <= RF_MPF_MAX; number++) {
         struct rf_bytes picture = {original.data + at, original.size - at};
 

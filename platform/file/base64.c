@@ -8,15 +8,12 @@
  * other. */
 static int value_of(char c)
 {
-    if (c >= 'A' && c <= 'Z') {
+    if (c >= 'A' && c <= 'Z')
         return c - 'A';
-    }
-    if (c >= 'a' && c <= 'z') {
+    if (c >= 'a' && c <= 'z')
         return c - 'a' + 26;
-    }
-    if (c >= '0' && c <= '9') {
+    if (c >= '0' && c <= '9')
         return c - '0' + 52;
-    }
     switch (c) {
     case '+':
         return 62;
@@ -44,12 +41,10 @@ size_t rf_base64_decode(char *text, size_t length)
     for (size_t i = 0; i < length; i++) {
         const int value = value_of(text[i]);
 
-        if (value == 65) {
+        if (value == 65)
             continue;
-        }
-        if (value == 66 || (ended && value != 64)) {
+        if (value == 66 || (ended && value != 64))
             return (size_t)-1;
-        }
         if (value == 64) {
             ended = true;
             continue;

@@ -14,11 +14,9 @@ void rf_behind_add(struct rf_behind *behind, const char *semantic, const char *u
 
 bool rf_behind_has(const struct rf_behind *behind, const char *semantic)
 {
-    for (int i = 0; i < behind->count; i++) {
-        if (strcmp(behind->item[i].semantic, semantic) == 0) {
+    for (int i = 0; i < behind->count; i++)
+        if (strcmp(behind->item[i].semantic, semantic) == 0)
             return true;
-        }
-    }
     return false;
 }
 
@@ -29,9 +27,8 @@ bool rf_behind_has_gain_map(const struct rf_behind *behind)
 
 void rf_behind_drop_depth(struct rf_behind *behind)
 {
-    while (behind->count > rf_behind_has_gain_map(behind)) {
+    while (behind->count > rf_behind_has_gain_map(behind))
         free(behind->item[--behind->count].bytes.data);
-    }
 }
 
 static void put_item(struct rf_text *text, const char *key, const char *name, double length)
@@ -61,8 +58,7 @@ void rf_behind_put_items(struct rf_text *text, const struct rf_behind *behind, b
 
 void rf_behind_free(struct rf_behind *behind)
 {
-    for (int i = 0; i < behind->count; i++) {
+    for (int i = 0; i < behind->count; i++)
         free(behind->item[i].bytes.data);
-    }
     behind->count = 0;
 }

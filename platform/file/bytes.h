@@ -16,9 +16,8 @@ static inline uint32_t rf_big_endian(const uint8_t *from, size_t bytes)
 {
     uint32_t value = 0;
 
-    for (size_t i = 0; i < bytes; i++) {
+    for (size_t i = 0; i < bytes; i++)
         value = value << 8 | from[i];
-    }
     return value;
 }
 
@@ -26,9 +25,8 @@ static inline uint32_t rf_little_endian(const uint8_t *from, size_t bytes)
 {
     uint32_t value = 0;
 
-    while (bytes-- > 0) {
+    while (bytes-- > 0)
         value = value << 8 | from[bytes];
-    }
     return value;
 }
 

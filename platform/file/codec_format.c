@@ -35,18 +35,16 @@ static const struct rf_codec *try(const char *folder, int length, const char *be
     void *module;
 
     if (snprintf(path, sizeof path, "%.*s%srefocus-%s.so", length, folder, between, name) >=
-        (int)sizeof path) {
+        (int)sizeof path)
         return NULL;
-    }
     module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!module) {
         const char *const error = dlerror();
         const char *const words = error ? error : "";
 
         /* A module that is there and cannot be loaded says more than one that is not there. */
-        if (!why[0] || !strstr(words, path)) {
+        if (!why[0] || !strstr(words, path))
             snprintf(why, size, "%s", words);
-        }
         return NULL;
     }
     return codec_of(module, name);
@@ -63,9 +61,8 @@ static const struct rf_codec *find(const char *name, char *why, size_t size)
         const int length = slash ? (int)(slash + 1 - self.dli_fname) : 0;
 
         found = try(self.dli_fname, length, "refocus/", name, why, size);
-        if (!found) {
+        if (!found)
             found = try(self.dli_fname, length, "", name, why, size);
-        }
     }
     return found ? found : try(RF_MODULES, (int)strlen(RF_MODULES), "", name, why, size);
 }
@@ -77,9 +74,8 @@ static const struct rf_codec *load(struct rf_codec_slot *slot, char *why, size_t
     const struct rf_codec *codec;
 
     pthread_mutex_lock(&lock);
-    if (!slot->codec) {
+    if (!slot->codec)
         slot->codec = find(slot->name, why, size);
-    }
     codec = slot->codec;
     pthread_mutex_unlock(&lock);
     return codec;
@@ -114,14 +110,11 @@ static struct rf_bytes bytes_of(const struct refocus_blob *blob)
 /* TIFF and the raws that are one have the blocks of EXIF strewn over the file. */
 static int exif_of_tiff(const struct rf_read *read, struct rf_bytes file, struct refocus_blob *exif)
 {
-    if (file.size < 8 ||
-        (memcmp(file.data, "II*\0", 4) != 0 && memcmp(file.data, "MM\0*", 4) != 0)) {
+    if (file.size < 8 || (memcmp(file.data, "II*\0", 4) != 0 && memcmp(file.data, "MM\0*", 4) != 0))
         return REFOCUS_OK;
-    }
     exif->data = malloc(RF_EXIF_COPY_ROOM);
-    if (!exif->data) {
+    if (!exif->data)
         return rf_fail_memory(read->reason);
-    }
     exif->size = rf_exif_of_tiff(file, exif->data);
     return REFOCUS_OK;
 }
@@ -133,31 +126,23 @@ int rf_codec_read(const struct rf_format *format, struct rf_codec_slot *slot, st
     int status = REFOCUS_OK;
     const struct rf_codec *const codec = get(format, slot, read->reason, &status);
 
-    if (!codec) {
+    if (!codec)
         return status;
-    }
-    if (strlen(format->name) < sizeof read->info->container) {
+    if (strlen(format->name) < sizeof read->info->container)
         memcpy(read->info->container, format->name, strlen(format->name) + 1);
-    }
     status = codec->read(read, file, &extras);
-    if (status == REFOCUS_OK && !extras.exif.data) {
+    if (status == REFOCUS_OK && !extras.exif.data)
         status = exif_of_tiff(read, file, &extras.exif);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_check_metadata(read, extras.exif.size, "its EXIF");
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_exif_take(read, bytes_of(&extras.exif), !extras.upright);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_check_metadata(read, extras.icc.size, "its ICC profile");
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_icc_take(read, &extras.icc);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_keep(read, RF_KEPT_XMP, bytes_of(&extras.xmp));
-    }
     free_extras(&extras);
     return status;
 }
@@ -169,14 +154,12 @@ static int take_xmp(struct rf_xmp_keep *keep, const struct refocus_photo *photo,
 {
     const int status = rf_keep_xmp(photo, keep, rows->width, rows->height, reason);
 
-    for (int i = 0; status == REFOCUS_OK && i < keep->count && packet->size == 0; i++) {
+    for (int i = 0; status == REFOCUS_OK && i < keep->count && packet->size == 0; i++)
         *packet = rf_xmp_kept(&keep->packet[i]);
-    }
     /* The light of a gain map is in floats as it is. */
     if (status == REFOCUS_OK && rows->format != REFOCUS_FORMAT_RGB_HALF &&
-        rows->format != REFOCUS_FORMAT_RGB_FLOAT) {
+        rows->format != REFOCUS_FORMAT_RGB_FLOAT)
         rf_keep_warn(photo, keep, reason);
-    }
     return status;
 }
 
@@ -184,13 +167,11 @@ static int take_xmp(struct rf_xmp_keep *keep, const struct refocus_photo *photo,
 static int take_exif(const struct refocus_blob *exif, const struct rf_rows *rows,
                      struct refocus_blob *copy, struct refocus_reason *reason)
 {
-    if (!exif || !exif->data || exif->size == 0) {
+    if (!exif || !exif->data || exif->size == 0)
         return REFOCUS_OK;
-    }
     copy->data = malloc(exif->size);
-    if (!copy->data) {
+    if (!copy->data)
         return rf_fail_memory(reason);
-    }
     memcpy(copy->data, exif->data, exif->size);
     copy->size = exif->size;
     rf_exif_set_size(copy->data, copy->size, (uint32_t)rows->width, (uint32_t)rows->height);
@@ -208,26 +189,22 @@ int rf_codec_write(const struct rf_format *format, struct rf_codec_slot *slot,
     int status = REFOCUS_OK;
     const struct rf_codec *const codec = get(format, slot, reason, &status);
 
-    if (!codec) {
+    if (!codec)
         return status;
-    }
     if (options->keep) {
         status = take_xmp(&keep, options->keep, rows, &xmp, reason);
         rf_keep_warn_kind(options->keep, RF_KEPT_XMP, reason);
     }
     if (status == REFOCUS_OK) {
         extras.xmp = (struct refocus_blob){(uint8_t *)(uintptr_t)xmp.data, xmp.size};
-        if (options->icc) {
+        if (options->icc)
             extras.icc = *options->icc;
-        }
         status = take_exif(options->exif, rows, &extras.exif, reason);
     }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = codec->write(&file, rows, &extras, reason);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         rf_store_write(store, file.data, file.size);
-    }
     free(file.data);
     free(extras.exif.data);
     rf_xmp_keep_free(&keep);

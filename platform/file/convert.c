@@ -12,9 +12,8 @@ void rf_dither_thresholds(uint8_t thresholds[64])
         for (int x = 0; x < 8; x++) {
             int value = 0;
 
-            for (int bit = 0; bit < 3; bit++) {
+            for (int bit = 0; bit < 3; bit++)
                 value |= ((x ^ y) >> bit & 1) << (5 - 2 * bit) | (y >> bit & 1) << (4 - 2 * bit);
-            }
             thresholds[8 * y + x] = (uint8_t)value;
         }
     }
@@ -70,15 +69,13 @@ static int spread_to_16(const struct rf_read *read, struct rf_raster *raster)
     uint16_t *to;
     int status;
 
-    if (max == 65535 && channels == 3) {
+    if (max == 65535 && channels == 3)
         return REFOCUS_OK;
-    }
     all.channels = 3;
     all.max_value = 65535;
     status = rf_raster_alloc(read, &all);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     to = (uint16_t *)(void *)all.pixels;
     for (size_t i = 0; i < 3 * (size_t)all.width * (size_t)all.height; i++) {
         const uint64_t v = rf_raster_sample(raster, channels == 3 ? i : i / 3);
@@ -99,21 +96,18 @@ int rf_image_to_rgb8(struct rf_read *read)
     const bool floats = raster->sample == REFOCUS_SAMPLE_F32;
     int status;
 
-    if (raster->sample == REFOCUS_SAMPLE_U8 && channels == 3 && max == 255) {
+    if (raster->sample == REFOCUS_SAMPLE_U8 && channels == 3 && max == 255)
         return REFOCUS_OK;
-    }
     rgb.channels = 3;
     rgb.sample = REFOCUS_SAMPLE_U8;
     rgb.max_value = 255;
     status = rf_raster_alloc(read, &rgb);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
-    if (floats) {
+    if (floats)
         encode_floats(raster, &rgb);
-    } else if (max > 255) {
+    else if (max > 255)
         dither(raster, &rgb);
-    }
     for (size_t i = 0; !floats && max <= 255 && i < count; i++) {
         for (int c = 0; c < 3; c++) {
             const size_t from = i * (size_t)channels + (size_t)(channels == 3 ? c : 0);
@@ -121,11 +115,10 @@ int rf_image_to_rgb8(struct rf_read *read)
             rgb.pixels[3 * i + (size_t)c] = (uint8_t)((v * 255u + max / 2) / max);
         }
     }
-    if (floats || max > 255) {
+    if (floats || max > 255)
         read->deep = *raster;
-    } else {
+    else
         rf_raster_free(raster);
-    }
     *raster = rgb;
     return floats || max <= 255 ? REFOCUS_OK : spread_to_16(read, &read->deep);
 }
@@ -141,14 +134,12 @@ int rf_raster_to_grey(const struct rf_read *read, struct rf_raster *raster)
     const uint32_t tolerance = raster->lossy ? LOSSY_GREY : 0;
     int status;
 
-    if (raster->channels == 1) {
+    if (raster->channels == 1)
         return REFOCUS_OK;
-    }
     grey.channels = 1;
     status = rf_raster_alloc(read, &grey);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     for (size_t i = 0; i < count; i++) {
         const uint32_t r = rf_raster_sample(raster, 3 * i);
         const uint32_t g = rf_raster_sample(raster, 3 * i + 1);
@@ -162,11 +153,10 @@ int rf_raster_to_grey(const struct rf_read *read, struct rf_raster *raster)
             return rf_fail(read->reason, REFOCUS_ERR_NO_DEPTH,
                            "it is a colour picture, not a depth map; give one in grey");
         }
-        if (grey.sample == REFOCUS_SAMPLE_U8) {
+        if (grey.sample == REFOCUS_SAMPLE_U8)
             grey.pixels[i] = (uint8_t)v;
-        } else {
+        else
             ((uint16_t *)(void *)grey.pixels)[i] = (uint16_t)v;
-        }
     }
     rf_raster_free(raster);
     *raster = grey;

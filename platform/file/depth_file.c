@@ -18,20 +18,16 @@ static double metres_in(const char *unit)
     char number[64];
     double per_metre;
 
-    if (strcmp(unit, "m") == 0) {
+    if (strcmp(unit, "m") == 0)
         return 1.0;
-    }
-    if (strcmp(unit, "mm") == 0) {
+    if (strcmp(unit, "mm") == 0)
         return 0.001;
-    }
-    if (length < 3 || length - 2 >= sizeof number || strcmp(unit + length - 2, "/m") != 0) {
+    if (length < 3 || length - 2 >= sizeof number || strcmp(unit + length - 2, "/m") != 0)
         return 0.0;
-    }
     memcpy(number, unit, length - 2);
     number[length - 2] = '\0';
-    if (!rf_parse_number(number, &per_metre) || per_metre <= 0.0 || !isfinite(1.0 / per_metre)) {
+    if (!rf_parse_number(number, &per_metre) || per_metre <= 0.0 || !isfinite(1.0 / per_metre))
         return 0.0;
-    }
     return 1.0 / per_metre;
 }
 
@@ -44,9 +40,8 @@ static void set_float_ends(struct refocus_depth_map *map, bool inverse)
     double low = INFINITY, high = -INFINITY;
 
     map->value_near = map->value_far = 0.0;
-    if (!inverse || !row) {
+    if (!inverse || !row)
         return;
-    }
     for (int32_t y = 0; y < map->height; y++, row += map->stride) {
         for (int32_t x = 0; x < map->width; x++) {
             float value;
@@ -82,9 +77,8 @@ static int set_unit(struct refocus_depth_map *map, const char *unit, double max_
         return REFOCUS_OK;
     }
     metres = metres_in(unit);
-    if (metres <= 0.0) {
+    if (metres <= 0.0)
         return REFOCUS_ERR_ARGUMENT;
-    }
     map->meaning = REFOCUS_DEPTH_DISTANCE;
     map->flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN;
     map->metres_per_unit = metres;
@@ -99,19 +93,16 @@ int refocus_depth_set_unit(struct refocus_depth_map *given, const char *unit)
     struct refocus_depth_map own, *const map = &own;
     int status = refocus_struct_read(&own, sizeof own, first, given);
 
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
-    if (!unit) {
+    if (!unit)
         return REFOCUS_ERR_ARGUMENT;
-    }
     /* Floats are looked at: the ends of the map are its own. */
     if (map->samples && map->sample == REFOCUS_SAMPLE_F32 &&
         (map->width < 1 || map->width > REFOCUS_MAX_SIDE || map->height < 1 ||
          map->height > REFOCUS_MAX_SIDE ||
-         !rf_good_rows(map->stride, 4 * (int64_t)map->width, map->height))) {
+         !rf_good_rows(map->stride, 4 * (int64_t)map->width, map->height)))
         return REFOCUS_ERR_ARGUMENT;
-    }
     status = set_unit(map, unit,
                       map->sample == REFOCUS_SAMPLE_F32   ? 0.0
                       : map->sample == REFOCUS_SAMPLE_U16 ? 65535.0
@@ -129,11 +120,9 @@ static uint32_t code_of(const char *word, size_t length)
                  {"max", REFOCUS_DEPTH_MAX_IS_UNKNOWN},
                  {"2047", REFOCUS_DEPTH_2047_IS_UNKNOWN}};
 
-    for (size_t i = 0; i < sizeof codes / sizeof *codes; i++) {
-        if (strlen(codes[i].name) == length && strncmp(word, codes[i].name, length) == 0) {
+    for (size_t i = 0; i < sizeof codes / sizeof *codes; i++)
+        if (strlen(codes[i].name) == length && strncmp(word, codes[i].name, length) == 0)
             return codes[i].flag;
-        }
-    }
     return 0;
 }
 
@@ -143,16 +132,14 @@ int refocus_depth_set_invalid(struct refocus_depth_map *given, const char *codes
     struct refocus_depth_map map;
     const int status = refocus_struct_read(&map, sizeof map, first, given);
 
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     while (codes && *codes) {
         const size_t length = strcspn(codes, ",");
         const uint32_t flag = code_of(codes, length);
 
-        if (!flag) {
+        if (!flag)
             return REFOCUS_ERR_ARGUMENT;
-        }
         map.flags |= flag;
         codes += length + (codes[length] == ',');
     }
@@ -178,23 +165,20 @@ static int mark_holes(struct rf_read *read)
     unsigned long long holes = 0;
     int status;
 
-    if (!read->holes.pixels) {
+    if (!read->holes.pixels)
         return REFOCUS_OK;
-    }
     floats.sample = REFOCUS_SAMPLE_F32;
     status = rf_raster_alloc(read, &floats);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     for (size_t i = 0; i < count; i++) {
         const bool hole = read->holes.pixels[i] == 0;
         float value = NAN;
 
-        if (!hole && from->sample == REFOCUS_SAMPLE_F32) {
+        if (!hole && from->sample == REFOCUS_SAMPLE_F32)
             memcpy(&value, from->pixels + 4 * i, 4);
-        } else if (!hole) {
+        else if (!hole)
             value = (float)rf_raster_sample(from, i);
-        }
         memcpy(floats.pixels + 4 * i, &value, 4);
         holes += hole;
     }
@@ -248,9 +232,8 @@ static int apply_unit(struct rf_read *read, const char *unit, double max_value)
                            "the depth unit is none of disparity, inverse, m, mm, or a "
                            "number per metre such as 5000/m");
         }
-        if (meaning != map->meaning) {
+        if (meaning != map->meaning)
             map->near_m = map->far_m = 0.0;
-        }
     }
     if (!said) {
         read->info->depth_source = REFOCUS_DEPTH_SOURCE_FILE;
@@ -280,9 +263,8 @@ int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes, s
 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
-    if (!depth) {
+    if (!depth)
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no place for the depth");
-    }
     *depth = NULL;
     status = check_range(near_m, far_m, reason);
     if (status == REFOCUS_OK && unit && set_unit(&probe, unit, 255.0) != REFOCUS_OK) {
@@ -290,24 +272,19 @@ int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes, s
                          "the depth unit is none of disparity, inverse, m, mm, or a "
                          "number per metre such as 5000/m");
     }
-    if (status == REFOCUS_OK && !bytes && size > 0) {
+    if (status == REFOCUS_OK && !bytes && size > 0)
         status = rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no bytes to read");
-    }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     made = rf_photo_new();
-    if (!made) {
+    if (!made)
         return rf_fail_memory(reason);
-    }
     status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, false, false, &made->info,
                            NULL, reason);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = picture_as_samples(&read, &max_value);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = apply_unit(&read, unit, max_value);
-    }
     if (status == REFOCUS_OK) {
         read.depth.near_m = near_m > 0.0 ? near_m : read.depth.near_m;
         read.depth.far_m = far_m > 0.0 ? far_m : read.depth.far_m;
@@ -329,14 +306,12 @@ int refocus_depth_read(struct refocus_photo **depth, const char *path, const cha
 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
-    if (!depth || !path) {
+    if (!depth || !path)
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no depth or no path");
-    }
     *depth = NULL;
     status = rf_read_limits(&own, limits, reason);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_load(path, own.max_bytes, rf_format_is_known, reason, &file);
-    }
     if (status == REFOCUS_OK) {
         status = refocus_depth_read_memory(depth, file.data, file.size, unit, near_m, far_m, limits,
                                            reason);

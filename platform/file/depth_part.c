@@ -16,9 +16,8 @@ int rf_check_parts(const struct rf_read *read, const struct rf_bytes *parts, int
     for (int i = 0; i < count; i++) {
         const uint64_t pixels = parts[i].data ? rf_part_pixels(parts[i]) : 0;
 
-        if (pixels > most) {
+        if (pixels > most)
             return REFOCUS_OK; /* the decoder has better words for that */
-        }
         sum += pixels;
     }
     if (sum > most) {
@@ -65,9 +64,8 @@ int rf_take_confidence(struct rf_read *read, struct rf_bytes part, const char *w
     const size_t count = (size_t)read->samples.width * (size_t)read->samples.height;
     const int status = take_grey(read, part, what, raster);
 
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     if (raster->width != read->samples.width || raster->height != read->samples.height) {
         rf_note(read->info, "confidence: %d x %d samples, not as many as the depth: passed over",
                 (int)raster->width, (int)raster->height);

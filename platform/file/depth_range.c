@@ -11,9 +11,8 @@
 /* Metres in a unit of distance; 0: none that is known. */
 static double metres_in(const char *units)
 {
-    if (units && (strcasecmp(units, "m") == 0 || strcasecmp(units, "meters") == 0)) {
+    if (units && (strcasecmp(units, "m") == 0 || strcasecmp(units, "meters") == 0))
         return 1.0;
-    }
     return units && strcasecmp(units, "mm") == 0 ? 0.001 : 0.0;
 }
 
@@ -39,9 +38,8 @@ static bool take_dioptres(const struct rf_read *read, const char *name,
 {
     const double near = range->near, far = range->far;
 
-    if (!(far >= 0.0 && near > far && isfinite(1.0 / near))) {
+    if (!(far >= 0.0 && near > far && isfinite(1.0 / near)))
         return false;
-    }
     rf_note(read->info, "%s: Near %g, Far %g in dioptres", name, near, far);
     *range = (struct rf_depth_range){1.0 / near, far > 0.0 ? 1.0 / far : (double)INFINITY, 1.0};
     return true;
@@ -61,18 +59,16 @@ static int read_range(const struct rf_read *read, const struct rf_xmp *xmp,
         snprintf(property, sizeof property, "%s:Far", name);
         status = rf_xmp_number(read, xmp, keys->far, property, &has_far, &range->far);
     }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     range->metres = metres_in(units);
     if (!has_near || !has_far) {
         range->near = range->far = 0.0;
         rf_note(read->info, "%s: no Near and Far: distances are unknown", name);
         return REFOCUS_OK;
     }
-    if (units && strcasecmp(units, "diopters") == 0 && take_dioptres(read, name, range)) {
+    if (units && strcasecmp(units, "diopters") == 0 && take_dioptres(read, name, range))
         return REFOCUS_OK;
-    }
     if (range->near < 0.0 || range->far <= range->near) {
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
                        "damaged: its %s:Near %g and %s:Far %g are no range", name, range->near,
@@ -96,9 +92,8 @@ static int linear_to_disparity(struct rf_read *read, const char *name,
     disparity.sample = REFOCUS_SAMPLE_U16;
     disparity.max_value = 65535;
     status = rf_raster_alloc(read, &disparity);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     for (size_t i = 0; i < count; i++) {
         const double z = fmax(range->near + rf_raster_sample(&read->samples, i) * step, near);
         const double d = (1.0 / z - 1.0 / range->far) / (1.0 / near - 1.0 / range->far);
@@ -125,9 +120,8 @@ static int set_linear(struct rf_read *read, const struct rf_range_keys *keys,
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
                        "damaged: its %s is RangeLinear without Near and Far", keys->name);
     }
-    if (range->metres == 0.0) {
+    if (range->metres == 0.0)
         return linear_to_disparity(read, keys->name, range);
-    }
     map->meaning = REFOCUS_DEPTH_DISTANCE;
     map->metres_at_zero = map->near_m;
     map->metres_per_unit = (map->far_m - map->near_m) / read->samples.max_value;
@@ -153,18 +147,16 @@ int rf_set_range(struct rf_read *read, const struct rf_xmp *xmp, const struct rf
     const char *format = xmp->value[keys->format];
     const int status = read_range(read, xmp, keys, range);
 
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     read->depth.near_m = range->metres > 0.0 ? range->near * range->metres : 0.0;
     read->depth.far_m = range->metres > 0.0 ? range->far * range->metres : 0.0;
     if (!format && keys->default_format) {
         format = keys->default_format;
         rf_note(read->info, "%s: no Format: read as %s", keys->name, format);
     }
-    if (format && strcasecmp(format, "RangeInverse") == 0) {
+    if (format && strcasecmp(format, "RangeInverse") == 0)
         return set_inverse(read, keys->name, "RangeInverse: linear in 1/z");
-    }
     if (format && strcasecmp(format, "RangeLinear") == 0) {
         return units && strcasecmp(units, "diopters") == 0 && range->metres > 0.0
                    ? set_inverse(read, keys->name, "RangeLinear: linear in dioptres")

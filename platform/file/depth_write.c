@@ -45,9 +45,8 @@ static bool is_old(struct rf_bytes segment, char guid[33])
 
     if (rf_jpeg_after(segment, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature, &rest) &&
         rf_xmp_is_ours(rest)) {
-        if (rest.size >= before + 32) {
+        if (rest.size >= before + 32)
             memcpy(guid, rest.data + before, 32);
-        }
         return true;
     }
     return guid[0] &&
@@ -87,9 +86,8 @@ static int splice(struct rf_store *store, struct rf_bytes file, const struct rf_
             rf_jpeg_put_extended(store, rf_text_bytes(extended), guid);
             placed = true;
         }
-        if (skip) {
+        if (skip)
             copied = walk.position;
-        }
     }
     if (step != RF_JPEG_END || !placed) {
         return rf_fail(reason, REFOCUS_ERR_FORMAT,
@@ -118,11 +116,10 @@ static int write_all(const char *path, struct rf_bytes file, int orientation,
         rf_md5_hex(rf_text_bytes(&extended), guid);
         make_standard(&standard, depth, orientation, guid);
     }
-    if (standard.failed || extended.failed) {
+    if (standard.failed || extended.failed)
         status = rf_fail_memory(reason);
-    } else if (extended.size > UINT32_MAX) {
+    else if (extended.size > UINT32_MAX)
         status = rf_fail(reason, REFOCUS_ERR_SIZE, "the depth is too large for XMP");
-    }
     if (status == REFOCUS_OK) {
         status = rf_store_open(&store, path, reason);
         if (status == REFOCUS_OK) {
@@ -154,17 +151,15 @@ int refocus_photo_write_depth(const char *path, const char *original,
                                       depth)))
         return rf_fail(reason, status, "the depth is not of a known size of struct");
     depth = &own;
-    if (!path || !original || !rf_gdepth_is_good(depth)) {
+    if (!path || !original || !rf_gdepth_is_good(depth))
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "the depth is out of its range");
-    }
     if (!jpeg->read || !png->write) {
         return rf_fail(reason, REFOCUS_ERR_UNSUPPORTED,
                        "depth in JPEG needs TurboJPEG and libpng, which this build lacks");
     }
     status = rf_load(original, UINT32_MAX, NULL, reason, &file);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     /* Read as a whole: no depth goes into what cannot be opened again. */
     status = refocus_photo_read_memory(&photo, file.data, file.size, NULL, reason);
     if (status == REFOCUS_OK) {

@@ -24,12 +24,10 @@ static int find_item(const struct rf_xmp *xmp, const char *uri, const char *sema
         const struct rf_xmp_item *const item = &xmp->item[i];
         const bool behind = item->directory == xmp->item[i - 1].directory;
 
-        if (behind && uri && strcmp(item->uri, uri) == 0) {
+        if (behind && uri && strcmp(item->uri, uri) == 0)
             return i;
-        }
-        if (behind && strcmp(item->semantic, semantic) == 0) {
+        if (behind && strcmp(item->semantic, semantic) == 0)
             found = i;
-        }
     }
     return found;
 }
@@ -55,19 +53,15 @@ static int locate(const struct rf_read *read, struct rf_bytes file, const struct
     uint64_t begin = main_end, behind = 0; /* sums of 32 items below 2^53 */
     int first = index, last = index;
 
-    while (first > 0 && xmp->item[first - 1].directory == item->directory) {
+    while (first > 0 && xmp->item[first - 1].directory == item->directory)
         first--;
-    }
-    while (last + 1 < xmp->items && xmp->item[last + 1].directory == item->directory) {
+    while (last + 1 < xmp->items && xmp->item[last + 1].directory == item->directory)
         last++;
-    }
     begin += xmp->item[first].padding;
-    for (int i = first + 1; i < index; i++) {
+    for (int i = first + 1; i < index; i++)
         begin += bytes_of(&xmp->item[i]);
-    }
-    for (int i = index; i <= last; i++) {
+    for (int i = index; i <= last; i++)
         behind += bytes_of(&xmp->item[i]);
-    }
     if (!is_picture(file, begin, item->length) && begin + behind <= file.size &&
         is_picture(file, file.size - behind, item->length)) {
         rf_note(read->info, "Dynamic Depth: item %d is found from the end of the file", index + 1);
@@ -134,12 +128,10 @@ static int decode(struct rf_read *read, const struct rf_xmp *xmp, const struct r
                 read->samples.sample == REFOCUS_SAMPLE_U16 ? 16 : 8);
         status = set_meaning(read, xmp);
     }
-    if (status == REFOCUS_OK && parts[1].data) {
+    if (status == REFOCUS_OK && parts[1].data)
         status = rf_take_confidence(read, parts[1], "confidence map");
-    }
-    if (status == REFOCUS_OK && parts[2].data) {
+    if (status == REFOCUS_OK && parts[2].data)
         status = rf_take_original(read, parts[2], "Dynamic Depth");
-    }
     return status;
 }
 
@@ -151,9 +143,8 @@ int rf_read_dynamic(struct rf_read *read, struct rf_bytes file, const struct rf_
     struct rf_bytes parts[3] = {{NULL, 0}, {NULL, 0}, {NULL, 0}};
     int status = REFOCUS_OK;
 
-    if (read->samples.pixels || (found.depth == NONE && !xmp->value[RF_XMP_MAP_URI])) {
+    if (read->samples.pixels || (found.depth == NONE && !xmp->value[RF_XMP_MAP_URI]))
         return REFOCUS_OK;
-    }
     if (file.size == main_end) {
         rf_note(read->info, "Dynamic Depth: nothing is behind the main picture any more, the depth "
                             "is lost");
@@ -164,19 +155,14 @@ int rf_read_dynamic(struct rf_read *read, struct rf_bytes file, const struct rf_
                        "damaged: its Dynamic Depth map \"%.60s\" is in no container directory",
                        xmp->value[RF_XMP_MAP_URI]);
     }
-    for (int i = 0; i < 3 && status == REFOCUS_OK; i++) {
-        if (items[i] != NONE) {
+    for (int i = 0; i < 3 && status == REFOCUS_OK; i++)
+        if (items[i] != NONE)
             status = locate(read, file, xmp, items[i], main_end, &parts[i]);
-        }
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_check_parts(read, parts, 3, "Dynamic Depth pictures");
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = decode(read, xmp, parts);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         read->info->depth_source = REFOCUS_DEPTH_SOURCE_DYNAMIC;
-    }
     return status;
 }

@@ -47,9 +47,8 @@ static int add(struct rf_behind *behind, const struct refocus_depth_write *depth
     struct rf_jpeg_encoded encoded;
     int status;
 
-    if (!samples) {
+    if (!samples)
         return rf_fail_memory(reason);
-    }
     fill(samples, depth, is_confidence);
     rows.top = samples;
     status = rf_jpeg_encode(&encoded, &rows, QUALITY, reason);
@@ -72,18 +71,16 @@ int rf_dynamic_add(struct rf_behind *behind, const struct refocus_depth_write *d
 {
     int status = add(behind, depth, false, reason);
 
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = add(behind, depth, true, reason);
-    }
     return status;
 }
 
 void rf_dynamic_put(struct rf_text *text, const struct rf_behind *behind,
                     const struct refocus_depth_write *depth)
 {
-    if (!rf_behind_has(behind, semantics[0])) {
+    if (!rf_behind_has(behind, semantics[0]))
         return;
-    }
     rf_text_words(text, "<rdf:Description xmlns:rdf=\"" RF_NS_RDF "\" rdf:about=\"\" xmlns:Device="
                         "\"" DD "device/\" xmlns:Profile=\"" DD "profile/\" xmlns:Container=\"" DD
                         "container/\" xmlns:Item=\"" DD "item/\" xmlns:Camera=\"" DD

@@ -74,9 +74,8 @@ static int add_matte(struct rf_editable *editable, const struct refocus_photo *p
         samples.height = photo->matte->height;
         samples.stride = photo->matte->stride;
     }
-    if (!samples.disparity) {
+    if (!samples.disparity)
         return REFOCUS_OK;
-    }
     rf_text_words(&editable->extended, BEGIN NOTE);
     status = rf_gdepth_put_samples(&editable->extended, " Refocus:Matte=\"", &samples, reason);
     rf_text_words(&editable->extended, FINISH);
@@ -99,9 +98,8 @@ static void add_note(struct rf_text *text, const struct refocus_photo *photo,
                    given->own_depth && !moved ? kept->depth_orientation : 1);
     rf_text_number(text, " Refocus:FocusDisparity", given->focus_disparity);
     rf_text_number(text, " Refocus:MaxBlurRadius", given->max_blur_radius);
-    if (given->simulated_f_number > 0) {
+    if (given->simulated_f_number > 0)
         rf_text_number(text, " Refocus:SimulatedFNumber", given->simulated_f_number);
-    }
     rf_text_words(text, FINISH);
 }
 
@@ -116,21 +114,18 @@ int rf_editable_make(struct rf_editable *editable, const struct refocus_write_op
 
     memset(editable, 0, sizeof *editable);
     editable->cut = RF_XMP_CUT_NOTE;
-    if (!photo->info->original_used || moved) {
+    if (!photo->info->original_used || moved)
         status = add_original(editable, photo, reason);
-    }
     if (status == REFOCUS_OK && (!given->own_depth || moved)) {
         status = given->depth ? add_depth(editable, given->depth, reason)
                               : rf_fail(reason, REFOCUS_ERR_ARGUMENT,
                                         "a file of another kind needs the depth itself");
     }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = add_matte(editable, photo, given, reason);
-    }
     add_note(&editable->standard, photo, given, moved);
-    if (status == REFOCUS_OK && (editable->standard.failed || editable->extended.failed)) {
+    if (status == REFOCUS_OK && (editable->standard.failed || editable->extended.failed))
         status = rf_fail_memory(reason);
-    }
     return status;
 }
 

@@ -37,9 +37,8 @@ static double get_rational(const struct rf_tiff *tiff, const struct rf_tiff_entr
 {
     uint32_t below;
 
-    if (entry->type != RF_TIFF_RATIONAL) {
+    if (entry->type != RF_TIFF_RATIONAL)
         return 0.0;
-    }
     below = rf_tiff_get32(tiff, entry->value + 4);
     return below ? rf_tiff_get32(tiff, entry->value) / (double)below : 0.0;
 }
@@ -58,9 +57,8 @@ static bool get_signed_rational(const struct rf_tiff *tiff, const struct rf_tiff
 {
     int32_t above, below;
 
-    if (entry->type != RF_TIFF_SIGNED_RATIONAL) {
+    if (entry->type != RF_TIFF_SIGNED_RATIONAL)
         return false;
-    }
     above = (int32_t)rf_tiff_get32(tiff, entry->value);
     below = (int32_t)rf_tiff_get32(tiff, entry->value + 4);
     *value = below ? above / (double)below : 0;
@@ -72,15 +70,12 @@ static void get_text(const struct rf_tiff *tiff, const struct rf_tiff_entry *ent
 {
     size_t n = 0;
 
-    if (entry->type != RF_TIFF_ASCII) {
+    if (entry->type != RF_TIFF_ASCII)
         return;
-    }
-    for (; n < entry->count && n + 1 < size && tiff->data[entry->value + n]; n++) {
+    for (; n < entry->count && n + 1 < size && tiff->data[entry->value + n]; n++)
         text[n] = (char)tiff->data[entry->value + n];
-    }
-    while (n > 0 && text[n - 1] == ' ') {
+    while (n > 0 && text[n - 1] == ' ')
         n--;
-    }
     text[n] = '\0';
     rf_clean_text(text);
 }
@@ -115,9 +110,8 @@ static int find_held(const struct rf_tiff *note, const struct rf_tiff_entry *ent
         struct rf_tiff_entry one = *entry;
 
         one.value += 8 * i;
-        if (entry->count != 3 || !get_signed_rational(note, &one, &axis[i])) {
+        if (entry->count != 3 || !get_signed_rational(note, &one, &axis[i]))
             return 0;
-        }
     }
     return fabs(axis[1]) <= fabs(axis[0]) ? 0 : axis[1] < 0 ? 6 : 8;
 }
@@ -131,27 +125,23 @@ static void read_maker_note(const struct rf_tiff *tiff, const struct rf_tiff_ent
     double headroom = 0, gain = 0;
     int count;
 
-    if (entry->count < 14 || memcmp(note.data, "Apple iOS\0\0\1MM", 14) != 0) {
+    if (entry->count < 14 || memcmp(note.data, "Apple iOS\0\0\1MM", 14) != 0)
         return;
-    }
     count = rf_tiff_count(&note, 14);
     for (int i = 0; i < count; i++) {
         struct rf_tiff_entry own;
 
-        if (!rf_tiff_entry(&note, 14, i, &own)) {
+        if (!rf_tiff_entry(&note, 14, i, &own))
             continue;
-        }
-        if (own.tag == TAG_APPLE_ACCELERATION) {
+        if (own.tag == TAG_APPLE_ACCELERATION)
             exif->subject.held = find_held(&note, &own);
-        } else if (own.tag == TAG_APPLE_HDR_HEADROOM) {
+        else if (own.tag == TAG_APPLE_HDR_HEADROOM)
             has_headroom = get_signed_rational(&note, &own, &headroom);
-        } else if (own.tag == TAG_APPLE_HDR_GAIN) {
+        else if (own.tag == TAG_APPLE_HDR_GAIN)
             has_gain = get_signed_rational(&note, &own, &gain);
-        }
     }
-    if (has_headroom && has_gain) {
+    if (has_headroom && has_gain)
         exif->apple_headroom = apple_headroom(headroom, gain);
-    }
 }
 
 static void read_settings(struct rf_tiff *tiff, size_t directory, struct rf_exif *exif)
@@ -162,36 +152,33 @@ static void read_settings(struct rf_tiff *tiff, size_t directory, struct rf_exif
     uint32_t custom = 0;
 
     for (int i = 0; i < count; i++) {
-        if (!rf_tiff_entry(tiff, directory, i, &entry)) {
+        if (!rf_tiff_entry(tiff, directory, i, &entry))
             continue;
-        }
-        if (entry.tag == TAG_F_NUMBER) {
+        if (entry.tag == TAG_F_NUMBER)
             exif->f_number = get_rational(tiff, &entry);
-        } else if (entry.tag == TAG_FOCAL_LENGTH) {
+        else if (entry.tag == TAG_FOCAL_LENGTH)
             exif->focal_length_mm = get_rational(tiff, &entry);
-        } else if (entry.tag == TAG_FOCAL_LENGTH_35MM) {
+        else if (entry.tag == TAG_FOCAL_LENGTH_35MM)
             exif->focal_length_35mm = rf_tiff_integer(tiff, &entry, 0);
-        } else if (entry.tag == TAG_CUSTOM_RENDERED) {
+        else if (entry.tag == TAG_CUSTOM_RENDERED)
             custom = rf_tiff_integer(tiff, &entry, 0);
-        } else if (entry.tag == TAG_SUBJECT_DISTANCE) {
+        else if (entry.tag == TAG_SUBJECT_DISTANCE)
             exif->subject_distance = get_distance(tiff, &entry);
-        } else if (entry.tag == TAG_MAKER_NOTE && entry.type == RF_TIFF_UNDEFINED) {
+        else if (entry.tag == TAG_MAKER_NOTE && entry.type == RF_TIFF_UNDEFINED)
             read_maker_note(tiff, &entry, exif);
-        } else if (entry.tag == TAG_WIDTH && entry.type <= RF_TIFF_RATIONAL) {
+        else if (entry.tag == TAG_WIDTH && entry.type <= RF_TIFF_RATIONAL)
             width = entry;
-        } else if (entry.tag == TAG_HEIGHT && entry.type <= RF_TIFF_RATIONAL) {
+        else if (entry.tag == TAG_HEIGHT && entry.type <= RF_TIFF_RATIONAL)
             height = entry;
-        } else if (entry.tag == TAG_LENS_MODEL) {
+        else if (entry.tag == TAG_LENS_MODEL)
             get_text(tiff, &entry, lens, sizeof lens);
-        } else if (entry.tag == RF_EXIF_SUBJECT_AREA) {
+        else if (entry.tag == RF_EXIF_SUBJECT_AREA)
             area = entry;
-        }
     }
     exif->is_portrait = strncmp(exif->camera, "Apple", 5) == 0 &&
                         (custom == APPLE_PORTRAIT || custom == APPLE_PORTRAIT_HDR);
-    if (strstr(lens, "front")) { /* A front camera may mirror its photos. */
+    if (strstr(lens, "front")) /* A front camera may mirror its photos. */
         exif->subject.held = 0;
-    }
     rf_subject_read(tiff, &area, &width, &height, &exif->subject);
     if (exif->orientation >= 5 && width.count == 1 && height.count == 1) {
         /* Exchange the tags, not the values: types may differ. Their order, which TIFF
@@ -201,9 +188,8 @@ static void read_settings(struct rf_tiff *tiff, size_t directory, struct rf_exif
         memcpy(tiff->data + width.place + 2, tiff->data + height.place + 2, 10);
         memcpy(tiff->data + height.place + 2, rest, 10);
     }
-    if (exif->orientation != 1) {
+    if (exif->orientation != 1)
         rf_subject_turn(tiff, directory, &exif->subject);
-    }
 }
 
 bool rf_exif_parse(uint8_t *data, size_t size, struct rf_exif *exif)
@@ -217,19 +203,16 @@ bool rf_exif_parse(uint8_t *data, size_t size, struct rf_exif *exif)
     memset(exif, 0, sizeof *exif);
     exif->orientation = 1;
     exif->subject.x = exif->subject.y = -1.0;
-    if (size < 8 || (memcmp(data, "MM\0*", 4) != 0 && memcmp(data, "II*\0", 4) != 0)) {
+    if (size < 8 || (memcmp(data, "MM\0*", 4) != 0 && memcmp(data, "II*\0", 4) != 0))
         return false;
-    }
     tiff.big_endian = data[0] == 'M';
     directory = rf_tiff_get32(&tiff, 4);
     count = rf_tiff_count(&tiff, directory);
-    if (count < 0) {
+    if (count < 0)
         return false;
-    }
     for (int i = 0; i < count; i++) {
-        if (!rf_tiff_entry(&tiff, directory, i, &entry)) {
+        if (!rf_tiff_entry(&tiff, directory, i, &entry))
             continue;
-        }
         if (entry.tag == TAG_MAKE) {
             get_text(&tiff, &entry, make, sizeof make);
         } else if (entry.tag == TAG_MODEL) {
@@ -244,9 +227,8 @@ bool rf_exif_parse(uint8_t *data, size_t size, struct rf_exif *exif)
     }
     join_camera(exif, make, model);
     exif->subject.orientation = exif->orientation;
-    if (settings != 0) {
+    if (settings != 0)
         read_settings(&tiff, settings, exif);
-    }
     rf_tiff_drop_thumbnail(&tiff, directory);
     return true;
 }
@@ -267,25 +249,22 @@ void rf_exif_set_size(uint8_t *data, size_t size, uint32_t width, uint32_t heigh
     size_t directories[2] = {0, 0};
     struct rf_tiff_entry entry;
 
-    if (size < 8) {
+    if (size < 8)
         return;
-    }
     directories[0] = rf_tiff_get32(&tiff, 4);
     for (int d = 0; d < 2; d++) {
         const int count = directories[d] > 0 ? rf_tiff_count(&tiff, directories[d]) : 0;
         bool same_width = false, same_height = false;
 
         for (int i = 0; i < count; i++) {
-            if (!rf_tiff_entry(&tiff, directories[d], i, &entry)) {
+            if (!rf_tiff_entry(&tiff, directories[d], i, &entry))
                 continue;
-            }
-            if (entry.tag == TAG_SETTINGS && d == 0) {
+            if (entry.tag == TAG_SETTINGS && d == 0)
                 directories[1] = rf_tiff_integer(&tiff, &entry, 0);
-            } else if (entry.tag == (d == 0 ? TAG_MAIN_WIDTH : TAG_WIDTH)) {
+            else if (entry.tag == (d == 0 ? TAG_MAIN_WIDTH : TAG_WIDTH))
                 same_width = set_side(&tiff, &entry, width);
-            } else if (entry.tag == (d == 0 ? TAG_MAIN_HEIGHT : TAG_HEIGHT)) {
+            else if (entry.tag == (d == 0 ? TAG_MAIN_HEIGHT : TAG_HEIGHT))
                 same_height = set_side(&tiff, &entry, height);
-            }
         }
         if (d == 1 && count > 0 && !(same_width && same_height)) {
             rf_tiff_drop(&tiff, directories[1], RF_EXIF_SUBJECT_AREA);
@@ -299,13 +278,11 @@ int rf_exif_take(struct rf_read *read, struct rf_bytes tiff, bool orient)
     struct refocus_photo_info *const info = read->info;
     struct rf_exif exif;
 
-    if (tiff.size == 0 || read->exif.data) {
+    if (tiff.size == 0 || read->exif.data)
         return REFOCUS_OK;
-    }
     read->exif.data = malloc(tiff.size);
-    if (!read->exif.data) {
+    if (!read->exif.data)
         return rf_fail_memory(read->reason);
-    }
     memcpy(read->exif.data, tiff.data, tiff.size);
     read->exif.size = tiff.size;
     if (!rf_exif_parse(read->exif.data, read->exif.size, &exif)) {
@@ -320,13 +297,11 @@ int rf_exif_take(struct rf_read *read, struct rf_bytes tiff, bool orient)
     info->f_number = exif.f_number;
     info->subject_distance = exif.subject_distance;
     read->subject = exif.subject;
-    if (exif.is_portrait) {
+    if (exif.is_portrait)
         rf_note(info, "EXIF: a portrait, blurred by the phone: further blur adds to that");
-    }
     memcpy(info->camera, exif.camera, sizeof info->camera);
     read->apple_headroom = exif.apple_headroom;
-    if (orient) {
+    if (orient)
         read->orientation = exif.orientation;
-    }
     return REFOCUS_OK;
 }

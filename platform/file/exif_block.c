@@ -34,9 +34,8 @@ int rf_tiff_count(const struct rf_tiff *tiff, size_t directory)
 {
     size_t room;
 
-    if (directory > tiff->size || tiff->size - directory < 2) {
+    if (directory > tiff->size || tiff->size - directory < 2)
         return -1;
-    }
     room = (tiff->size - directory - 2) / 12;
     return rf_tiff_get16(tiff, directory) <= room ? (int)rf_tiff_get16(tiff, directory) : (int)room;
 }
@@ -51,9 +50,8 @@ bool rf_tiff_entry(const struct rf_tiff *tiff, size_t directory, int index,
     entry->tag = rf_tiff_get16(tiff, entry->place);
     entry->type = rf_tiff_get16(tiff, entry->place + 2);
     entry->count = rf_tiff_get32(tiff, entry->place + 4);
-    if (entry->type == 0 || entry->type > RF_TIFF_SIGNED_RATIONAL || entry->count == 0) {
+    if (entry->type == 0 || entry->type > RF_TIFF_SIGNED_RATIONAL || entry->count == 0)
         return false;
-    }
     bytes = (uint64_t)entry->count * type_bytes[entry->type];
     entry->value = bytes <= 4 ? entry->place + 8 : rf_tiff_get32(tiff, entry->place + 8);
     return entry->value <= tiff->size && bytes <= tiff->size - entry->value;
@@ -134,18 +132,16 @@ static void erase_thumbnail(struct eraser *eraser, size_t thumbnail)
     const int count = rf_tiff_count(eraser->tiff, thumbnail);
 
     for (int i = 0; i < count; i++) {
-        if (!rf_tiff_entry(eraser->tiff, thumbnail, i, &entry)) {
+        if (!rf_tiff_entry(eraser->tiff, thumbnail, i, &entry))
             continue;
-        }
-        if (entry.tag == TAG_THUMBNAIL) {
+        if (entry.tag == TAG_THUMBNAIL)
             jpeg = entry;
-        } else if (entry.tag == TAG_THUMBNAIL_BYTES) {
+        else if (entry.tag == TAG_THUMBNAIL_BYTES)
             jpeg_bytes = entry;
-        } else if (entry.tag == TAG_STRIPS) {
+        else if (entry.tag == TAG_STRIPS)
             strips = entry;
-        } else if (entry.tag == TAG_STRIP_BYTES) {
+        else if (entry.tag == TAG_STRIP_BYTES)
             strip_bytes = entry;
-        }
     }
     erase_all(eraser, &jpeg, &jpeg_bytes);
     erase_all(eraser, &strips, &strip_bytes);
@@ -163,8 +159,7 @@ void rf_tiff_drop_thumbnail(struct rf_tiff *tiff, size_t directory)
         const size_t thumbnail = rf_tiff_get32(tiff, link);
 
         memset(tiff->data + link, 0, 4);
-        if (thumbnail > 0) {
+        if (thumbnail > 0)
             erase_thumbnail(&eraser, thumbnail);
-        }
     }
 }

@@ -32,9 +32,8 @@ static uint32_t number(const struct copy *copy, const uint8_t *from, size_t size
 
 static void put(const struct copy *copy, uint8_t *to, int size, uint32_t value)
 {
-    for (int i = 0; i < size; i++) {
+    for (int i = 0; i < size; i++)
         to[copy->high_first ? size - 1 - i : i] = (uint8_t)(value >> 8 * i);
-    }
 }
 
 static bool begin(struct copy *copy)
@@ -52,9 +51,8 @@ static uint32_t entries(const struct copy *copy, uint32_t directory)
     uint32_t count;
     size_t room;
 
-    if (directory > copy->from.size || copy->from.size - directory < 2) {
+    if (directory > copy->from.size || copy->from.size - directory < 2)
         return 0;
-    }
     count = number(copy, copy->from.data + directory, 2);
     room = (copy->from.size - directory - 2) / 12;
     return count <= room ? count : (uint32_t)room;
@@ -91,14 +89,11 @@ static bool is_kept(uint32_t tag, bool main)
     static const uint16_t shared[] = {0x10e, 0x10f, 0x110, 0x112,  0x11a,        0x11b,    0x128,
                                       0x131, 0x132, 0x13b, 0x8298, TAG_SETTINGS, TAG_PLACE};
 
-    if (!main) {
+    if (!main)
         return tag != TAG_MAKER_NOTE && tag != TAG_INTEROPERABILITY;
-    }
-    for (size_t i = 0; i < sizeof shared / sizeof *shared; i++) {
-        if (tag == shared[i]) {
+    for (size_t i = 0; i < sizeof shared / sizeof *shared; i++)
+        if (tag == shared[i])
             return true;
-        }
-    }
     return false;
 }
 
@@ -107,15 +102,13 @@ static bool append(struct copy *copy, const uint8_t *bytes, size_t size, uint32_
 {
     const size_t at = copy->size + (copy->size & 1);
 
-    if (size > RF_EXIF_COPY_ROOM || at > RF_EXIF_COPY_ROOM - size) {
+    if (size > RF_EXIF_COPY_ROOM || at > RF_EXIF_COPY_ROOM - size)
         return false;
-    }
     copy->to[copy->size] = 0;
-    if (bytes) {
+    if (bytes)
         memcpy(copy->to + at, bytes, size);
-    } else {
+    else
         memset(copy->to + at, 0, size);
-    }
     copy->size = at + size;
     *offset = (uint32_t)at;
     return true;
@@ -130,16 +123,14 @@ static bool copy_entry(struct copy *copy, const struct entry *entry, uint8_t *pl
 
     memcpy(place, copy->from.data + entry->at, 12);
     if (main && is_directory(entry->tag)) {
-        if (entry->bytes != 4 || !copy_settings(copy, entry->value, &offset)) {
+        if (entry->bytes != 4 || !copy_settings(copy, entry->value, &offset))
             return false;
-        }
         put(copy, place + 2, 2, 4); /* LONG, as EXIF wants it; TIFF has a type of its own, too */
         put(copy, place + 4, 4, 1); /* however four bytes were counted */
         put(copy, place + 8, 4, offset + copy->base);
     } else if (entry->bytes > 4) {
-        if (!append(copy, copy->from.data + entry->value, entry->bytes, &offset)) {
+        if (!append(copy, copy->from.data + entry->value, entry->bytes, &offset))
             return false;
-        }
         put(copy, place + 8, 4, offset + copy->base);
     }
     return true;
@@ -151,17 +142,13 @@ static bool copy_directory(struct copy *copy, uint32_t directory, bool main, uin
     struct entry entry;
     uint32_t most = 0, n = 0;
 
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < count; i++)
         most += get(copy, directory, i, &entry) && is_kept(entry.tag, main);
-    }
-    if (most == 0 || !append(copy, NULL, 2 + 12 * (size_t)most + 4, offset)) {
+    if (most == 0 || !append(copy, NULL, 2 + 12 * (size_t)most + 4, offset))
         return false;
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        if (get(copy, directory, i, &entry) && is_kept(entry.tag, main)) {
+    for (uint32_t i = 0; i < count; i++)
+        if (get(copy, directory, i, &entry) && is_kept(entry.tag, main))
             n += copy_entry(copy, &entry, copy->to + *offset + 2 + 12 * (size_t)n, main);
-        }
-    }
     put(copy, copy->to + *offset, 2, n);
     /* No directory follows; an entry that was left out may have been here. */
     memset(copy->to + *offset + 2 + 12 * (size_t)n, 0, 12 * (size_t)(most - n) + 4);
@@ -178,9 +165,8 @@ size_t rf_exif_of_tiff(struct rf_bytes tiff, uint8_t *to)
     struct copy copy = {.from = tiff, .to = to, .size = 8};
     uint32_t offset;
 
-    if (!begin(&copy) || !copy_directory(&copy, number(&copy, tiff.data + 4, 4), true, &offset)) {
+    if (!begin(&copy) || !copy_directory(&copy, number(&copy, tiff.data + 4, 4), true, &offset))
         return 0;
-    }
     memcpy(to, tiff.data, 4);
     put(&copy, to + 4, 4, offset);
     return copy.size;
@@ -191,16 +177,13 @@ static bool find(struct copy *copy, uint32_t tag, struct entry *entry)
 {
     uint32_t directory, count;
 
-    if (!begin(copy)) {
+    if (!begin(copy))
         return false;
-    }
     directory = number(copy, copy->from.data + 4, 4);
     count = entries(copy, directory);
-    for (uint32_t i = 0; i < count; i++) {
-        if (get(copy, directory, i, entry) && entry->tag == tag) {
+    for (uint32_t i = 0; i < count; i++)
+        if (get(copy, directory, i, entry) && entry->tag == tag)
             return true;
-        }
-    }
     return false;
 }
 
@@ -223,9 +206,8 @@ bool rf_exif_has_maker_note(struct rf_bytes exif)
     uint32_t directory, count;
     bool found = false;
 
-    if (!find(&copy, TAG_SETTINGS, &entry) || entry.bytes != 4) {
+    if (!find(&copy, TAG_SETTINGS, &entry) || entry.bytes != 4)
         return false;
-    }
     directory = entry.value;
     count = entries(&copy, directory);
     for (uint32_t i = 0; i < count; i++) {
@@ -241,9 +223,8 @@ bool rf_exif_text(struct rf_bytes exif, uint32_t tag, char *to, size_t room)
     struct entry entry;
     size_t size;
 
-    if (!find(&copy, tag, &entry) || number(&copy, exif.data + entry.at + 2, 2) != 2) {
+    if (!find(&copy, tag, &entry) || number(&copy, exif.data + entry.at + 2, 2) != 2)
         return false;
-    }
     size = entry.bytes < room - 1 ? entry.bytes : room - 1;
     memcpy(to, exif.data + (entry.bytes > 4 ? entry.value : entry.at + 8), size);
     to[size] = '\0';

@@ -20,14 +20,12 @@ void rf_subject_read(const struct rf_tiff *tiff, const struct rf_tiff_entry *are
 {
     uint32_t x, y;
 
-    if (width->count != 1 || height->count != 1) {
+    if (width->count != 1 || height->count != 1)
         return;
-    }
     subject->width = rf_tiff_integer(tiff, width, 0);
     subject->height = rf_tiff_integer(tiff, height, 0);
-    if (!is_area(area)) {
+    if (!is_area(area))
         return;
-    }
     x = rf_tiff_integer(tiff, area, 0);
     y = rf_tiff_integer(tiff, area, 1);
     if (x < subject->width && y < subject->height) {
@@ -47,9 +45,8 @@ static bool turn_entry(struct rf_tiff *tiff, const struct rf_tiff_entry *entry,
 
     if (!is_area(entry) || rf_tiff_integer(tiff, entry, 0) >= subject->width ||
         rf_tiff_integer(tiff, entry, 1) >= subject->height || width > UINT16_MAX ||
-        height > UINT16_MAX) {
+        height > UINT16_MAX)
         return false;
-    }
     x = (rf_tiff_integer(tiff, entry, 0) + 0.5) / subject->width;
     y = (rf_tiff_integer(tiff, entry, 1) + 0.5) / subject->height;
     rf_orient_point(&x, &y, subject->orientation);
@@ -76,13 +73,11 @@ void rf_subject_turn(struct rf_tiff *tiff, size_t directory, const struct rf_sub
             struct rf_tiff_entry entry;
             const bool whole = rf_tiff_entry(tiff, directory, i, &entry);
 
-            if (entry.tag == tags[t]) {
+            if (entry.tag == tags[t])
                 good = good && whole && turn_entry(tiff, &entry, subject);
-            }
         }
-        if (!good) {
+        if (!good)
             rf_tiff_drop(tiff, directory, tags[t]);
-        }
     }
 }
 
@@ -103,13 +98,11 @@ static int turn_of(const struct rf_read *read)
     const struct refocus_photo_info *const info = read->info;
     const struct rf_subject *const subject = &read->subject;
 
-    if (alike(subject->width, subject->height, info->stored_width, info->stored_height)) {
+    if (alike(subject->width, subject->height, info->stored_width, info->stored_height))
         return info->orientation;
-    }
     if (info->orientation != 1 ||
-        !alike(subject->width, subject->height, info->stored_height, info->stored_width)) {
+        !alike(subject->width, subject->height, info->stored_height, info->stored_width))
         return 0;
-    }
     return subject->orientation >= 5 ? subject->orientation : subject->held;
 }
 
@@ -119,9 +112,8 @@ void rf_subject_settle(struct rf_read *read)
     const struct rf_subject *const subject = &read->subject;
     int turn;
 
-    if (subject->width == 0 || subject->x < 0.0 || info->focus_x >= 0.0) {
+    if (subject->width == 0 || subject->x < 0.0 || info->focus_x >= 0.0)
         return;
-    }
     turn = turn_of(read);
     if (turn == 0) {
         rf_note(info,

@@ -13,11 +13,9 @@ enum { FORMATS = sizeof formats / sizeof *formats };
 
 const struct rf_format *rf_format_of_content(struct rf_bytes file)
 {
-    for (int i = 0; i < FORMATS; i++) {
-        if (formats[i]->recognise(file)) {
+    for (int i = 0; i < FORMATS; i++)
+        if (formats[i]->recognise(file))
             return formats[i];
-        }
-    }
     return NULL;
 }
 
@@ -31,28 +29,23 @@ const struct rf_format *rf_format_of_name(const char *path)
     const char *const dot = strrchr(path, '.');
 
     for (int i = 0; dot && i < FORMATS; i++) {
-        for (const char *const *ending = formats[i]->endings; *ending; ending++) {
-            if (strcasecmp(dot, *ending) == 0) {
+        for (const char *const *ending = formats[i]->endings; *ending; ending++)
+            if (strcasecmp(dot, *ending) == 0)
                 return formats[i];
-            }
-        }
     }
     return NULL;
 }
 
 const char *refocus_file_ending(int depth, int index)
 {
-    if (index < 0) {
+    if (index < 0)
         return NULL;
-    }
     for (int i = 0; i < FORMATS; i++) {
         const bool fits = depth ? formats[i]->writes_depth : formats[i]->writes_pictures;
 
-        for (const char *const *ending = formats[i]->endings; fits && *ending; ending++) {
-            if (index-- == 0) {
+        for (const char *const *ending = formats[i]->endings; fits && *ending; ending++)
+            if (index-- == 0)
                 return *ending;
-            }
-        }
     }
     return NULL;
 }

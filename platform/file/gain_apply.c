@@ -113,9 +113,8 @@ static void shares_of(const struct work *work, const uint8_t code[3], float shar
         share[c] = work->clipped[code[c]];
         most = share[c] > most ? share[c] : most;
     }
-    for (int c = 0; c < 3 && work->map->samples.channels == 1; c++) {
+    for (int c = 0; c < 3 && work->map->samples.channels == 1; c++)
         share[c] = most * work->light[code[c]];
-    }
 }
 
 /* Sum up what the next row of blocks has. */
@@ -151,9 +150,8 @@ static bool clips(const struct work *work, const struct block *block, int c)
 {
     const float least = (float)block->pixels / 64;
 
-    if (work->map->samples.channels == 3) {
+    if (work->map->samples.channels == 3)
         return block->clipped[c] > least;
-    }
     return block->clipped[0] > least || block->clipped[1] > least || block->clipped[2] > least;
 }
 
@@ -230,11 +228,10 @@ static void apply_row(const struct work *work, int y, uint16_t *light)
             const float other =
                 other_light(work, c, work->light[code[c]], a[c] + at->part * (b[c] - a[c]));
 
-            if (!light) {
+            if (!light)
                 block->light[c] += other;
-            } else {
+            else
                 light[3 * x + c] = rf_half_of(other + (block ? block->more[c] * share[c] : 0));
-            }
         }
     }
 }
@@ -260,9 +257,8 @@ static void share_out(const struct work *work, int row, int y0, int y1)
             block->light[c] = 0;
         }
     }
-    for (int y = y0; any && y < y1; y++) {
+    for (int y = y0; any && y < y1; y++)
         apply_row(work, y, NULL);
-    }
     for (int x = 0; any && x < count; x++) {
         for (int c = 0; c < 3; c++) {
             struct block *const block = blocks + x;
@@ -282,13 +278,11 @@ static void advance(struct work *work, int row)
 
     while (work->measured < rows && work->measured <= row + 2) {
         measure(work);
-        if (work->measured > 1) {
+        if (work->measured > 1)
             set_gains(work, work->measured - 2);
-        }
     }
-    if (work->measured == rows) {
+    if (work->measured == rows)
         set_gains(work, rows - 1);
-    }
 }
 
 static void apply(struct work *work, uint16_t *light)
@@ -299,16 +293,14 @@ static void apply(struct work *work, uint16_t *light)
     for (int y = 0; y < height; y = end) {
         const int row = block_at(y, height, rows);
 
-        for (end = y + 1; end < height && block_at(end, height, rows) == row;) {
+        for (end = y + 1; end < height && block_at(end, height, rows) == row;)
             end++;
-        }
         if (work->blocks) {
             advance(work, row);
             share_out(work, row, y, end);
         }
-        for (int own = y; own < end; own++) {
+        for (int own = y; own < end; own++)
             apply_row(work, own, light + (size_t)own * 3 * (size_t)work->base->width);
-        }
     }
 }
 
@@ -320,12 +312,10 @@ static void set_curves(struct work *work)
         work->light[i] = rf_tone_light(i);
         work->clipped[i] = clipped < 0 ? 0 : clipped > 1 ? 1 : clipped;
     }
-    for (int i = 0; i <= FRACTIONS; i++) {
+    for (int i = 0; i <= FRACTIONS; i++)
         work->exp2[i] = exp2f((float)i / FRACTIONS);
-    }
-    for (int i = 0; i < 2 * STOPS; i++) {
+    for (int i = 0; i < 2 * STOPS; i++)
         work->whole[i] = exp2f((float)(i - STOPS));
-    }
 }
 
 static void set_columns(const struct work *work)

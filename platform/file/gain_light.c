@@ -23,34 +23,28 @@ int refocus_light_create(struct refocus_light **light, const struct refocus_phot
     size_t samples;
     int status;
 
-    if (!light) {
+    if (!light)
         return REFOCUS_ERR_ARGUMENT;
-    }
     *light = NULL;
-    if (!photo) {
+    if (!photo)
         return REFOCUS_ERR_ARGUMENT;
-    }
     map = rf_photo_gain_map(photo);
-    if (!map || !photo->image->plane[0]) {
+    if (!map || !photo->image->plane[0])
         return REFOCUS_ERR_UNSUPPORTED;
-    }
     /* A photo has 2^32 pixels at the most. */
     if ((uint64_t)photo->image->width * (uint64_t)photo->image->height >
-        (PTRDIFF_MAX - sizeof(struct refocus_light)) / 6) {
+        (PTRDIFF_MAX - sizeof(struct refocus_light)) / 6)
         return REFOCUS_ERR_MEMORY;
-    }
     samples = 3 * (size_t)photo->image->width * (size_t)photo->image->height;
     made = malloc(sizeof *made + samples * sizeof *made->pixels);
-    if (!made) {
+    if (!made)
         return REFOCUS_ERR_MEMORY;
-    }
     made->photo = photo;
     made->image = refocus_image_packed(REFOCUS_FORMAT_RGB_HALF, made->pixels, photo->image->width,
                                        photo->image->height, 6 * (ptrdiff_t)photo->image->width);
     status = rf_gain_apply(map, photo->image, made->pixels);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_tone_fit(&made->tone, photo->image, &made->image, map->samples.channels == 1);
-    }
     if (status != REFOCUS_OK) {
         free(made);
         return status;
@@ -89,14 +83,12 @@ int refocus_light_to_base(const struct refocus_light *light, const struct refocu
     if (!light || refocus_image_read(&from, refocused) || refocus_image_read(&to, out) ||
         from.format != REFOCUS_FORMAT_RGB_HALF || to.format != REFOCUS_FORMAT_RGB8 ||
         from.width != to.width || from.height != to.height || !from.plane[0] || !to.plane[0] ||
-        dither > 1 || !is_part(&light->image, &from, x, y)) {
+        dither > 1 || !is_part(&light->image, &from, x, y))
         return REFOCUS_ERR_ARGUMENT;
-    }
-    if (dither) {
+    if (dither)
         memset(thresholds, 32, sizeof thresholds); /* half a code */
-    } else {
+    else
         rf_dither_thresholds(thresholds);
-    }
     rf_tone_encode(&light->tone, &(struct rf_tone_part){.own = &light->image,
                                                         .base = light->photo->image,
                                                         .light = &from,

@@ -49,9 +49,8 @@ static void add_base(struct work *work, int y)
     for (int x = 0; x < work->base->width; x++) {
         const int block = block_at(x, work->base->width, work->width);
 
-        for (int c = 0; c < 3; c++) {
+        for (int c = 0; c < 3; c++)
             work->sums[block][0][c] += (double)work->of_code[codes[3 * x + c]];
-        }
         work->counts[block][0]++;
     }
 }
@@ -76,19 +75,16 @@ static void add_light(struct work *work, int y)
 /* Sum up the next row of blocks; from row 0 on they follow each other. */
 static void sum(struct work *work, int row)
 {
-    if (row == 0) {
+    if (row == 0)
         work->y[0] = work->y[1] = 0;
-    }
     memset(work->sums, 0, (size_t)work->width * sizeof *work->sums);
     memset(work->counts, 0, (size_t)work->width * sizeof *work->counts);
     while (work->y[0] < work->base->height &&
-           block_at(work->y[0], work->base->height, work->height) == row) {
+           block_at(work->y[0], work->base->height, work->height) == row)
         add_base(work, work->y[0]++);
-    }
     while (work->y[1] < work->light->height &&
-           block_at(work->y[1], work->light->height, work->height) == row) {
+           block_at(work->y[1], work->light->height, work->height) == row)
         add_light(work, work->y[1]++);
-    }
 }
 
 static double gain_at(const struct work *work, int x, int c)
@@ -123,11 +119,9 @@ static void fill(struct work *work, double least, double greatest, uint8_t *samp
 
     for (int y = 0; y < work->height; y++) {
         sum(work, y);
-        for (int x = 0; x < work->width; x++) {
-            for (int c = 0; c < 3; c++) {
+        for (int x = 0; x < work->width; x++)
+            for (int c = 0; c < 3; c++)
                 *samples++ = (uint8_t)((gain_at(work, x, c) - least) * scale + 0.5);
-            }
-        }
     }
 }
 
@@ -173,14 +167,12 @@ int rf_gain_copy(struct rf_gain_map *copy, const struct rf_gain_map *map)
     float scale;
 
     memset(copy, 0, sizeof *copy);
-    if (!is_of_one_range(map)) {
+    if (!is_of_one_range(map))
         return REFOCUS_ERR_UNSUPPORTED;
-    }
     copy->samples = map->samples;
     copy->samples.pixels = malloc(count);
-    if (!copy->samples.pixels) {
+    if (!copy->samples.pixels)
         return REFOCUS_ERR_MEMORY;
-    }
     for (int i = 0; i < 3 * 256; i++) {
         least = fminf(least, map->gain[i / 256][i % 256]);
         greatest = fmaxf(greatest, map->gain[i / 256][i % 256]);
@@ -215,9 +207,8 @@ int rf_gain_make(struct rf_gain_map *map, const struct rf_rows *base,
     if (work.sums && work.counts && map->samples.pixels) {
         double least, greatest;
 
-        for (int i = 0; i < 256; i++) {
+        for (int i = 0; i < 256; i++)
             work.of_code[i] = rf_tone_light(i);
-        }
         find_range(&work, &least, &greatest);
         fill(&work, least, greatest, map->samples.pixels);
         map->samples.width = work.width;

@@ -27,9 +27,8 @@ static bool sort_segments(const struct rf_read *read, struct candidate *candidat
     struct rf_jpeg_walk walk;
     uint32_t segments = 0;
 
-    if (!rf_is_jpeg(candidate->file) || !rf_jpeg_walk_begin(&walk, candidate->file)) {
+    if (!rf_is_jpeg(candidate->file) || !rf_jpeg_walk_begin(&walk, candidate->file))
         return false;
-    }
     while ((step = rf_jpeg_walk_next(&walk)) == RF_JPEG_SEGMENT &&
            ++segments <= read->limits.max_segments) {
         if (walk.marker == 0xe1 && !candidate->xmp.data) {
@@ -52,9 +51,8 @@ const char *rf_gain_from_apple(const struct rf_read *read, const struct rf_xmp *
     bool found;
 
     quiet.reason = &unused;
-    if (rf_xmp_number(&quiet, xmp, RF_XMP_APPLE_HEADROOM, "headroom", &found, headroom) || !found) {
+    if (rf_xmp_number(&quiet, xmp, RF_XMP_APPLE_HEADROOM, "headroom", &found, headroom) || !found)
         *headroom = read->apple_headroom;
-    }
     return *headroom >= 1 && *headroom <= 65536 ? NULL : "the photo does not say its headroom";
 }
 
@@ -94,19 +92,17 @@ void rf_gain_settle(struct rf_read *read, const char *why, double headroom)
     struct rf_gain_map *const map = read->gain;
     double stops = 0, most = 0;
 
-    if (!why && (map->samples.sample != REFOCUS_SAMPLE_U8 || map->samples.max_value != 255)) {
+    if (!why && (map->samples.sample != REFOCUS_SAMPLE_U8 || map->samples.max_value != 255))
         why = "its samples are not of 8 bits";
-    }
     if (why) {
         rf_note(read->info, "gain map: passed over, %s", why);
         rf_raster_free(&map->samples);
         return;
     }
-    if (headroom > 0) {
+    if (headroom > 0)
         rf_gain_make_apple(map, headroom);
-    } else {
+    else
         rf_gain_make_curves(map);
-    }
     for (int c = 0; c < 3; c++) {
         const struct rf_gain_values *const v = &map->values;
 
@@ -141,9 +137,8 @@ static int try_picture(struct rf_read *read, struct candidate *candidate)
     int status = REFOCUS_OK;
 
     quiet.reason = &unused;
-    if (!sort_segments(read, candidate)) {
+    if (!sort_segments(read, candidate))
         return REFOCUS_OK;
-    }
     status = judge(&quiet, candidate, &is_map, &why, &headroom);
     if (status == REFOCUS_OK && is_map && !why) {
         status = rf_decode_part(&quiet, candidate->file, "gain map", &read->gain->samples);
@@ -152,14 +147,12 @@ static int try_picture(struct rf_read *read, struct candidate *candidate)
             status = REFOCUS_OK;
         }
     }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return rf_fail_memory(read->reason);
-    }
     if (is_map) {
         rf_gain_settle(read, why, headroom);
-        if (read->gain->samples.pixels) {
+        if (read->gain->samples.pixels)
             rf_keep_companion(read, candidate->file);
-        }
     }
     return REFOCUS_OK;
 }
@@ -172,9 +165,8 @@ int rf_read_gain_map(struct rf_read *read, struct rf_bytes file, struct rf_bytes
     int status = REFOCUS_OK;
     bool indexed;
 
-    if (!read->gain || read->info->original_used) {
+    if (!read->gain || read->info->original_used)
         return REFOCUS_OK;
-    }
     indexed = mpf_tiff.data && rf_mpf_parse(mpf_tiff, &mpf);
     for (int i = 1; i < (indexed ? mpf.count : RF_MPF_MAX) && status == REFOCUS_OK &&
                     !read->gain->samples.pixels;

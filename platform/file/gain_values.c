@@ -22,16 +22,13 @@ static const char *check(const struct rf_gain_values *v)
 {
     for (int c = 0; c < 3; c++) {
         if (!is_within(v->least[c], -MOST_STOPS, MOST_STOPS) ||
-            !is_within(v->greatest[c], v->least[c], MOST_STOPS)) {
+            !is_within(v->greatest[c], v->least[c], MOST_STOPS))
             return "its range of gains is out of bounds";
-        }
-        if (!is_within(v->gamma[c], 1.0 / 64, 64)) {
+        if (!is_within(v->gamma[c], 1.0 / 64, 64))
             return "its gamma is out of bounds";
-        }
         if (!is_within(v->base_offset[c], -MOST_OFFSET, MOST_OFFSET) ||
-            !is_within(v->other_offset[c], -MOST_OFFSET, MOST_OFFSET)) {
+            !is_within(v->other_offset[c], -MOST_OFFSET, MOST_OFFSET))
             return "its offsets are out of bounds";
-        }
     }
     return is_within(v->base_headroom, 0, v->other_headroom) &&
                    is_within(v->other_headroom, 0, MOST_STOPS)
@@ -56,9 +53,8 @@ static uint32_t get(struct reading *r, size_t bytes)
         r->short_of = true;
         return 0;
     }
-    for (size_t i = 0; i < bytes; i++) {
+    for (size_t i = 0; i < bytes; i++)
         value = value << 8 | r->left.data[i];
-    }
     r->left.data += bytes;
     r->left.size -= bytes;
     return value;
@@ -85,9 +81,8 @@ const char *rf_gain_from_iso(struct rf_bytes metadata, struct rf_gain_values *va
     get(&r, 2); /* version of the writer */
     flags = get(&r, 1);
     channels = flags & THREE_CHANNELS ? 3 : 1;
-    if (!r.short_of && least_version != 0) {
+    if (!r.short_of && least_version != 0)
         return "its metadata is of a version that is not known";
-    }
     if (flags & COMMON_DENOMINATOR) {
         r.denominator = get(&r, 4);
         r.common = true;
@@ -119,29 +114,24 @@ static bool get_numbers(const char *text, double fallback, double value[3])
     enum { LONGEST = 64 };
     int count = 0;
 
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 3; c++)
         value[c] = fallback;
-    }
-    if (!text) {
+    if (!text)
         return isfinite(fallback);
-    }
     for (text += strspn(text, " \t\r\n"); *text; text += strspn(text, " \t\r\n")) {
         const size_t length = strcspn(text, " \t\r\n");
         char word[LONGEST];
 
-        if (length >= LONGEST || count == 3) {
+        if (length >= LONGEST || count == 3)
             return false;
-        }
         memcpy(word, text, length);
         word[length] = '\0';
-        if (!rf_parse_number(word, &value[count++])) {
+        if (!rf_parse_number(word, &value[count++]))
             return false;
-        }
         text += length;
     }
-    if (count == 1) {
+    if (count == 1)
         value[1] = value[2] = value[0];
-    }
     return count == 1 || count == 3;
 }
 
@@ -157,9 +147,8 @@ const char *rf_gain_from_xmp(const struct rf_xmp *xmp, struct rf_gain_values *va
         !get_numbers(xmp->value[RF_XMP_GAIN_OFFSET_SDR], 1 / 64.0, values->base_offset) ||
         !get_numbers(xmp->value[RF_XMP_GAIN_OFFSET_HDR], 1 / 64.0, values->other_offset) ||
         !get_numbers(xmp->value[RF_XMP_GAIN_CAPACITY_MIN], 0, low) ||
-        !get_numbers(xmp->value[RF_XMP_GAIN_CAPACITY_MAX], NAN, high)) {
+        !get_numbers(xmp->value[RF_XMP_GAIN_CAPACITY_MAX], NAN, high))
         return "its metadata is damaged";
-    }
     values->base_headroom = low[0];
     values->other_headroom = high[0];
     return turned && (turned[0] == 'T' || turned[0] == 't')

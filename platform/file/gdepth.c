@@ -25,9 +25,8 @@ static struct rf_bytes unpack(const struct rf_xmp *xmp, enum rf_xmp_key key)
 {
     struct rf_bytes part = {(const uint8_t *)xmp->value[key], 0};
 
-    if (part.data) {
+    if (part.data)
         part.size = rf_base64_decode(xmp->value[key], xmp->length[key]);
-    }
     return part.size == (size_t)-1 || part.size == 0 ? (struct rf_bytes){NULL, 0} : part;
 }
 
@@ -53,9 +52,8 @@ static int decode_data(struct rf_read *read, struct rf_xmp *xmp, enum rf_xmp_key
 {
     int status;
 
-    if (!part.data) {
+    if (!part.data)
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged: its %s is no base64", name);
-    }
     status = take(read, part, name);
     free(xmp->value[key]);
     xmp->value[key] = NULL;
@@ -88,9 +86,8 @@ static double focus_disparity(const struct rf_read *read)
     const double x = read->info->focus_x * samples->width;
     const double y = read->info->focus_y * samples->height;
 
-    if (map->meaning != REFOCUS_DEPTH_DISPARITY || x < 0.0 || y < 0.0) {
+    if (map->meaning != REFOCUS_DEPTH_DISPARITY || x < 0.0 || y < 0.0)
         return NAN;
-    }
     return (rf_raster_sample(samples,
                              (size_t)fmin(y, samples->height - 1) * (size_t)samples->width +
                                  (size_t)fmin(x, samples->width - 1)) -
@@ -124,9 +121,8 @@ static int read_focus(struct rf_read *read, const struct rf_xmp *xmp,
     int status;
 
     status = rf_xmp_number(read, xmp, RF_XMP_FOCUS_X, "GFocus:FocalPointX", &has_x, &x);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_xmp_number(read, xmp, RF_XMP_FOCUS_Y, "GFocus:FocalPointY", &has_y, &y);
-    }
     if (status == REFOCUS_OK) {
         status = rf_xmp_number(read, xmp, RF_XMP_FOCUS_DISTANCE, "GFocus:FocalDistance", &found,
                                &info->focus_distance);
@@ -141,9 +137,8 @@ static int read_focus(struct rf_read *read, const struct rf_xmp *xmp,
             info->focus_y = y;
         }
         info->own_blur = find_own_blur(read, range);
-        if (range->metres > 0.0) {
+        if (range->metres > 0.0)
             info->focus_distance *= range->metres;
-        }
     }
     return status;
 }
@@ -175,9 +170,8 @@ static int read_note(struct rf_read *read, const struct rf_xmp *xmp)
     info->edited_focus_disparity = noted(xmp, RF_XMP_NOTE_FOCUS);
     info->edited_max_blur_radius = noted(xmp, RF_XMP_NOTE_BLUR);
     info->simulated_f_number = noted(xmp, RF_XMP_NOTE_F_NUMBER);
-    if (info->focus_x >= 0.0) {
+    if (info->focus_x >= 0.0)
         rf_orient_point(&info->focus_x, &info->focus_y, orientation);
-    }
     read->kept.depth_orientation = rf_orient_both(orientation, read->orientation);
     return rf_raster_orient(read, &read->samples, orientation);
 }
@@ -197,9 +191,8 @@ static int read_original(struct rf_read *read, struct rf_xmp *xmp, struct rf_byt
     const int orientation = noted_orientation(xmp, RF_XMP_NOTE_ORIGINAL);
     int status;
 
-    if (!read->picture_always || !xmp->value[RF_XMP_IMAGE_DATA]) {
+    if (!read->picture_always || !xmp->value[RF_XMP_IMAGE_DATA])
         return REFOCUS_OK;
-    }
     if (!ours && xmp->value[RF_XMP_FOCUS_BLUR] && read->info->blur_at_infinity == 0.0) {
         rf_note(read->info, "GImage: original passed over, the main picture has no blur");
         return REFOCUS_OK;
@@ -217,21 +210,18 @@ static int read_original(struct rf_read *read, struct rf_xmp *xmp, struct rf_byt
         }
         status = rf_raster_orient(read, &read->image, orientation);
     }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_raster_orient(read, &read->matte, orientation);
-    }
-    if (status == REFOCUS_OK && read->gain) {
+    if (status == REFOCUS_OK && read->gain)
         status = rf_raster_orient(read, &read->gain->samples, orientation);
-    }
     return status;
 }
 
 /* A matte that was given for an earlier result, upright, in place of the original's own. */
 static int read_matte(struct rf_read *read, struct rf_xmp *xmp, struct rf_bytes part)
 {
-    if (!read->picture_always || !xmp->value[RF_XMP_NOTE_MATTE]) {
+    if (!read->picture_always || !xmp->value[RF_XMP_NOTE_MATTE])
         return REFOCUS_OK;
-    }
     rf_raster_free(&read->matte);
     read->kept.matte = true;
     rf_note(read->info, "Refocus: a matte in the file says how much of a pixel is subject");
@@ -256,26 +246,19 @@ int rf_read_gdepth(struct rf_read *read, struct rf_xmp *xmp)
         return REFOCUS_OK;
     }
     status = unpack_pictures(read, xmp, &pictures);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_samples(read, xmp, &pictures);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_set_range(read, xmp, &keys, &range);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_focus(read, xmp, &range);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_note(read, xmp);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_original(read, xmp, pictures.original);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_matte(read, xmp, pictures.matte);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         read->info->depth_source = REFOCUS_DEPTH_SOURCE_GDEPTH;
-    }
     return status;
 }

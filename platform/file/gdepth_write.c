@@ -35,9 +35,8 @@ static void fill_depth(uint16_t *out, const struct refocus_depth_write *depth)
         const uint16_t *const in =
             (const uint16_t *)((const char *)depth->disparity + y * depth->stride);
 
-        for (int32_t x = 0; x < depth->width; x++) {
+        for (int32_t x = 0; x < depth->width; x++)
             *out++ = (uint16_t)(65535 - in[x]);
-        }
     }
 }
 
@@ -51,11 +50,9 @@ static void fill_samples(uint16_t *out, const struct refocus_depth_write *depth)
 
 static void fill_confidence(uint16_t *out, const struct refocus_depth_write *depth)
 {
-    for (int32_t y = 0; y < depth->height; y++) {
-        for (int32_t x = 0; x < depth->width; x++) {
+    for (int32_t y = 0; y < depth->height; y++)
+        for (int32_t x = 0; x < depth->width; x++)
             *out++ = (uint16_t)(257 * depth->confidence[y * depth->confidence_stride + x]);
-        }
-    }
 }
 
 static int write_png(struct refocus_blob *png, const struct rf_raster *raster,
@@ -69,9 +66,8 @@ static int write_png(struct refocus_blob *png, const struct rf_raster *raster,
     struct rf_store store;
     int status = rf_store_open_memory(&store, reason);
 
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     status = rf_format_of_name(".png")->write(&store, &rows, NULL, reason);
     return rf_store_close_memory(&store, status, png, reason);
 }
@@ -94,14 +90,12 @@ static int put_png(struct rf_text *text, const char *begin,
     read.limits.max_side = REFOCUS_MAX_SIDE;
     read.limits.max_pixels = read.limits.max_bytes = read.limits.max_memory = UINT64_MAX / 16;
     status = rf_raster_alloc(&read, &raster);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     fill((uint16_t *)(void *)raster.pixels, depth);
     status = rf_raster_orient(&read, &raster, rf_orient_inverse(orientation));
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = write_png(&png, &raster, reason);
-    }
     rf_raster_free(&raster);
     if (status == REFOCUS_OK) {
         rf_text_words(text, begin);
@@ -133,9 +127,8 @@ int rf_gdepth_put_data(struct rf_text *text, const struct refocus_depth_write *d
 void rf_gdepth_put(struct rf_text *text, const struct refocus_depth_write *depth, int orientation)
 {
     rf_text_words(text, " GDepth:Format=\"RangeInverse\" GDepth:Mime=\"image/png\"");
-    if (depth->confidence) {
+    if (depth->confidence)
         rf_text_words(text, " GDepth:ConfidenceMime=\"image/png\"");
-    }
     if (depth->near_m > 0 && depth->far_m > depth->near_m) {
         rf_text_number(text, " GDepth:Near", depth->near_m);
         /* Far has to be a number; farther than this no blur can be told from
@@ -150,11 +143,9 @@ void rf_gdepth_put(struct rf_text *text, const struct refocus_depth_write *depth
         rf_text_words(text, GFOCUS);
         rf_text_number(text, " GFocus:FocalPointX", x);
         rf_text_number(text, " GFocus:FocalPointY", y);
-        if (depth->focus_distance > 0 && isfinite(depth->focus_distance)) {
+        if (depth->focus_distance > 0 && isfinite(depth->focus_distance))
             rf_text_number(text, " GFocus:FocalDistance", depth->focus_distance);
-        }
-        if (depth->blur_at_infinity > 0) {
+        if (depth->blur_at_infinity > 0)
             rf_text_number(text, " GFocus:BlurAtInfinity", depth->blur_at_infinity);
-        }
     }
 }

@@ -26,9 +26,8 @@ static bool find_curve(const struct heif_image_handle *handle, int *curve, int *
     struct heif_color_profile_nclx *nclx = NULL;
 
     if (heif_image_handle_get_luma_bits_per_pixel(handle) <= 8 ||
-        heif_image_handle_get_nclx_color_profile(handle, &nclx).code != heif_error_Ok || !nclx) {
+        heif_image_handle_get_nclx_color_profile(handle, &nclx).code != heif_error_Ok || !nclx)
         return false;
-    }
     *curve = (int)nclx->transfer_characteristics;
     *primaries = (int)nclx->color_primaries;
     heif_nclx_color_profile_free(nclx);
@@ -46,12 +45,10 @@ int rf_heic_settle_light(struct rf_read *read, const struct heif_image_handle *h
 {
     int curve, primaries, status;
 
-    if (read->image.max_value <= 255 || !find_curve(handle, &curve, &primaries)) {
+    if (read->image.max_value <= 255 || !find_curve(handle, &curve, &primaries))
         return REFOCUS_OK;
-    }
     status = rf_raster_to_light(read, &read->image, curve, primaries);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         rf_note_curve(read, curve, primaries);
-    }
     return status;
 }

@@ -51,9 +51,8 @@ static bool set_meaning(struct rf_read *read, const struct heif_depth_representa
                 map->far_m);
         return true;
     case heif_depth_representation_type_uniform_Z:
-        if (!has_distance(about)) {
+        if (!has_distance(about))
             return false;
-        }
         map->meaning = REFOCUS_DEPTH_DISTANCE;
         map->metres_at_zero = about->z_near;
         map->metres_per_unit = (about->z_far - about->z_near) / max;
@@ -93,17 +92,14 @@ static int take_depth(struct rf_heic *heic, heif_item_id item,
         heif_image_handle_get_depth_image_handle(heic->primary, item, &handle);
     int status;
 
-    if (error.code != heif_error_Ok) {
+    if (error.code != heif_error_Ok)
         return rf_heic_fail(read, error);
-    }
     status = rf_heic_decode(heic, handle, RF_HEIC_SAMPLES, &read->samples);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_simulated(heic, handle);
-    }
     heif_image_handle_release(handle);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     rf_note(read->info, "HEIC: auxiliary depth image, %d x %d samples of %d bits",
             (int)read->samples.width, (int)read->samples.height,
             read->samples.sample == REFOCUS_SAMPLE_U16 ? 16 : 8);
@@ -127,9 +123,8 @@ int rf_heic_depth(struct rf_heic *heic)
     heif_item_id item;
     int status;
 
-    if (heif_image_handle_get_list_of_depth_image_IDs(heic->primary, &item, 1) < 1) {
+    if (heif_image_handle_get_list_of_depth_image_IDs(heic->primary, &item, 1) < 1)
         return REFOCUS_OK;
-    }
     if (!heif_image_handle_get_depth_image_representation_info(heic->primary, item, &about) ||
         !about) {
         rf_note(read->info, "HEIC: a depth image that does not say which end is near: passed over");

@@ -12,14 +12,11 @@ static bool recognise(struct rf_bytes file)
     static const char brands[][5] = {"heic", "heix", "hevc", "hevx", "heim",
                                      "heis", "mif1", "msf1", "avif", "avis"};
 
-    if (file.size < 12 || memcmp(file.data + 4, "ftyp", 4) != 0) {
+    if (file.size < 12 || memcmp(file.data + 4, "ftyp", 4) != 0)
         return false;
-    }
-    for (size_t i = 0; i < sizeof brands / sizeof *brands; i++) {
-        if (memcmp(file.data + 8, brands[i], 4) == 0) {
+    for (size_t i = 0; i < sizeof brands / sizeof *brands; i++)
+        if (memcmp(file.data + 8, brands[i], 4) == 0)
             return true;
-        }
-    }
     return false;
 }
 

@@ -24,14 +24,11 @@ static void drop_equal_channels(struct rf_raster *samples)
     const size_t pixels = (size_t)samples->width * (size_t)samples->height;
     const uint8_t *const from = samples->pixels;
 
-    for (size_t i = 0; i < pixels; i++) {
-        if (from[3 * i] != from[3 * i + 1] || from[3 * i] != from[3 * i + 2]) {
+    for (size_t i = 0; i < pixels; i++)
+        if (from[3 * i] != from[3 * i + 1] || from[3 * i] != from[3 * i + 2])
             return;
-        }
-    }
-    for (size_t i = 0; i < pixels; i++) {
+    for (size_t i = 0; i < pixels; i++)
         samples->pixels[i] = from[3 * i];
-    }
     samples->channels = 1;
 }
 
@@ -52,13 +49,11 @@ static int take(struct rf_heic *heic, struct rf_bytes file, struct heif_image_ha
     status = rf_heic_decode(&inner, handle, RF_HEIC_COLOUR_8, samples);
     if (status == REFOCUS_OK) {
         drop_equal_channels(samples);
-        if (rf_heif_orientation(file, item) == 1) {
+        if (rf_heif_orientation(file, item) == 1)
             status = rf_raster_orient(&quiet, samples, read->info->orientation);
-        }
     }
-    if (status == REFOCUS_ERR_MEMORY) {
+    if (status == REFOCUS_ERR_MEMORY)
         return rf_fail_memory(read->reason);
-    }
     rf_gain_settle(read,
                    status == REFOCUS_OK         ? NULL
                    : status == REFOCUS_ERR_SIZE ? "it is beyond the limits"
@@ -81,11 +76,10 @@ static int judge(struct rf_heic *heic, const struct heif_image_handle *handle, c
 #else
     (void)handle;
 #endif
-    if (strcmp(type, "urn:com:apple:photo:2020:aux:hdrgainmap") == 0) {
+    if (strcmp(type, "urn:com:apple:photo:2020:aux:hdrgainmap") == 0)
         *why = rf_gain_from_apple(heic->read, &xmp, headroom);
-    } else if (xmp.value[RF_XMP_GAIN_MAP]) {
+    else if (xmp.value[RF_XMP_GAIN_MAP])
         *why = rf_gain_from_xmp(&xmp, &heic->read->gain->values);
-    }
     rf_xmp_free(&xmp);
     return status;
 }
@@ -104,15 +98,13 @@ int rf_heic_gain_auxiliary(struct rf_heic *heic, struct heif_image_handle *handl
     int status;
 
     read->kept.gain_map = true;
-    if (!read->gain || read->gain->samples.pixels) {
+    if (!read->gain || read->gain->samples.pixels)
         return REFOCUS_OK;
-    }
     status = judge(heic, handle, type, &why, &headroom);
-    if (status == REFOCUS_OK && !why) {
+    if (status == REFOCUS_OK && !why)
         status = take(heic, heic->file, handle, item, headroom);
-    } else if (status == REFOCUS_OK) {
+    else if (status == REFOCUS_OK)
         rf_gain_settle(read, why, 0);
-    }
     return status;
 }
 
@@ -130,9 +122,8 @@ static int take_hidden(struct rf_heic *heic, heif_item_id item)
 
     quiet.reason = &unused;
     status = rf_check_memory(&quiet, copy.size);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_heif_with_main_picture(heic->file, item, &changed);
-    }
     if (status == REFOCUS_OK) {
         context = rf_heic_context(&read->limits);
         status = context ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
@@ -141,9 +132,8 @@ static int take_hidden(struct rf_heic *heic, heif_item_id item)
     if (status == REFOCUS_OK &&
         (heif_context_read_from_memory_without_copy(context, changed, copy.size, NULL).code !=
              heif_error_Ok ||
-         heif_context_get_primary_image_handle(context, &handle).code != heif_error_Ok)) {
+         heif_context_get_primary_image_handle(context, &handle).code != heif_error_Ok))
         status = REFOCUS_ERR_FORMAT;
-    }
     if (status == REFOCUS_OK) {
         status = take(heic, copy, handle, item, 0);
         heif_image_handle_release(handle);
@@ -154,9 +144,8 @@ static int take_hidden(struct rf_heic *heic, heif_item_id item)
                        status == REFOCUS_ERR_SIZE ? "it is beyond the limits" : "it is damaged", 0);
         status = REFOCUS_OK;
     }
-    if (context) {
+    if (context)
         heif_context_free(context);
-    }
     free(changed);
     return status;
 }
@@ -167,13 +156,11 @@ int rf_heic_gain_tone_map(struct rf_heic *heic)
     struct rf_heif_tone_map map;
     const char *why;
 
-    if (!rf_heif_find_tone_map(heic->file, &map)) {
+    if (!rf_heif_find_tone_map(heic->file, &map))
         return REFOCUS_OK;
-    }
     read->kept.gain_map = true;
-    if (!read->gain || read->gain->samples.pixels) {
+    if (!read->gain || read->gain->samples.pixels)
         return REFOCUS_OK;
-    }
     if (map.metadata.size < 1 || map.metadata.data[0] != 0) {
         why = "its metadata is of a version that is not known";
     } else {
@@ -181,9 +168,8 @@ int rf_heic_gain_tone_map(struct rf_heic *heic)
         map.metadata.size--;
         why = rf_gain_from_iso(map.metadata, &read->gain->values);
     }
-    if (!why && rf_heic_is_light(heic->primary)) {
+    if (!why && rf_heic_is_light(heic->primary))
         why = "its photo is not the darker rendition";
-    }
     if (why) {
         rf_gain_settle(read, why, 0);
         return REFOCUS_OK;

@@ -21,14 +21,13 @@ static int read_result(struct rf_read *read, struct rf_bytes packet)
     struct rf_xmp xmp = {.items = 0};
     int status = rf_xmp_parse(&quiet, packet, &xmp);
 
-    if (status == REFOCUS_ERR_MEMORY) {
+    if (status == REFOCUS_ERR_MEMORY)
         status = rf_fail_memory(read->reason);
-    } else if (status == REFOCUS_OK && xmp.value[RF_XMP_NOTE_ORIGINAL] &&
-               xmp.value[RF_XMP_DEPTH_DATA]) {
+    else if (status == REFOCUS_OK && xmp.value[RF_XMP_NOTE_ORIGINAL] &&
+             xmp.value[RF_XMP_DEPTH_DATA])
         status = rf_read_gdepth(read, &xmp);
-    } else {
+    else
         status = REFOCUS_OK;
-    }
     rf_xmp_free(&xmp);
     return status;
 #else
@@ -52,13 +51,11 @@ int rf_heic_keep(struct rf_read *read, const struct heif_image_handle *primary)
 
         packet.size = heif_image_handle_get_metadata_size(primary, items[i]);
         if (!type || strcmp(type, "application/rdf+xml") != 0 || packet.size == 0 ||
-            rf_check_metadata(read, packet.size, "its XMP") != REFOCUS_OK) {
+            rf_check_metadata(read, packet.size, "its XMP") != REFOCUS_OK)
             continue;
-        }
         packet.data = malloc(packet.size);
-        if (!packet.data) {
+        if (!packet.data)
             return rf_fail_memory(read->reason);
-        }
         if (heif_image_handle_get_metadata(primary, items[i], packet.data).code == heif_error_Ok) {
             const struct rf_bytes whole = {packet.data, packet.size};
 

@@ -15,15 +15,14 @@ int rf_heic_fail(const struct rf_read *read, struct heif_error error)
         length--;
     if (error.subcode == heif_suberror_End_of_data)
         return rf_fail(read->reason, status, "damaged HEIC: it ends too early; copy it again");
-    if (error.subcode == heif_suberror_Security_limit_exceeded) {
+    if (error.subcode == heif_suberror_Security_limit_exceeded)
         status = REFOCUS_ERR_SIZE;
-    } else if (error.code == heif_error_Memory_allocation_error) {
+    else if (error.code == heif_error_Memory_allocation_error)
         status = REFOCUS_ERR_MEMORY;
-    } else if (error.code == heif_error_Unsupported_feature ||
-               error.code == heif_error_Unsupported_filetype ||
-               error.subcode == heif_suberror_Unsupported_codec) {
+    else if (error.code == heif_error_Unsupported_feature ||
+             error.code == heif_error_Unsupported_filetype ||
+             error.subcode == heif_suberror_Unsupported_codec)
         status = REFOCUS_ERR_UNSUPPORTED;
-    }
     return rf_fail(read->reason, status, "HEIC: %.*s", length < 200 ? (int)length : 200,
                    error.message);
 }
@@ -83,9 +82,8 @@ int rf_heic_decode(struct rf_heic *heic, struct heif_image_handle *handle, enum 
                                            (uint64_t)heif_image_handle_get_height(handle) *
                                            (deep ? 18 : 9));
     }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     heic->options->convert_hdr_to_8bit = !deep;
     error =
         heif_decode_image(handle, &image, colour ? heif_colorspace_RGB : heif_colorspace_undefined,
@@ -93,14 +91,12 @@ int rf_heic_decode(struct rf_heic *heic, struct heif_image_handle *handle, enum 
                           : colour ? heif_chroma_interleaved_RGB
                                    : heif_chroma_undefined,
                           heic->options);
-    if (error.code != heif_error_Ok) {
+    if (error.code != heif_error_Ok)
         return rf_heic_fail(read, error);
-    }
-    if (colour) {
+    if (colour)
         channel = heif_channel_interleaved;
-    } else if (!heif_image_has_channel(image, heif_channel_Y)) {
+    else if (!heif_image_has_channel(image, heif_channel_Y))
         channel = heif_channel_R; /* a grid of tiles becomes R, G, B, which are alike */
-    }
     bits = colour && !deep ? 8 : heif_image_get_bits_per_pixel_range(image, channel);
     raster->channels = colour ? 3 : 1;
     raster->sample = bits > 8 ? REFOCUS_SAMPLE_U16 : REFOCUS_SAMPLE_U8;

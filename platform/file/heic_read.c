@@ -28,9 +28,8 @@ static int take_matte(struct rf_heic *heic, struct heif_image_handle *handle, he
     if (status == REFOCUS_OK) {
         rf_note(read->info, "HEIC: auxiliary image is the portrait matte: how much of a pixel is "
                             "subject");
-        if (rf_heif_orientation(heic->file, item) == 1) {
+        if (rf_heif_orientation(heic->file, item) == 1)
             status = rf_raster_orient(read, &read->matte, read->info->orientation);
-        }
     }
     return status;
 }
@@ -42,9 +41,8 @@ static int read_auxiliary(struct rf_heic *heic, struct heif_image_handle *handle
     int status = REFOCUS_OK;
     const char *type = NULL;
 
-    if (heif_image_handle_get_auxiliary_type(handle, &type).code != heif_error_Ok) {
+    if (heif_image_handle_get_auxiliary_type(handle, &type).code != heif_error_Ok)
         return REFOCUS_OK;
-    }
     if (rf_is_matte(type) && heic->read->picture_always && !heic->read->matte.pixels) {
         status = take_matte(heic, handle, item);
     } else if (rf_heic_is_gain_map(type)) {
@@ -88,24 +86,20 @@ static int read_exif(struct rf_heic *heic)
     uint8_t *block;
     int status;
 
-    if (heif_image_handle_get_list_of_metadata_block_IDs(heic->primary, "Exif", &item, 1) < 1) {
+    if (heif_image_handle_get_list_of_metadata_block_IDs(heic->primary, "Exif", &item, 1) < 1)
         return REFOCUS_OK;
-    }
     size = heif_image_handle_get_metadata_size(heic->primary, item);
     status = rf_check_metadata(read, size, "its EXIF");
-    if (status != REFOCUS_OK || size < 4) {
+    if (status != REFOCUS_OK || size < 4)
         return status;
-    }
     block = malloc(size);
-    if (!block) {
+    if (!block)
         return rf_fail_memory(read->reason);
-    }
     if (heif_image_handle_get_metadata(heic->primary, item, block).code == heif_error_Ok) {
         /* ISO/IEC 23008-12, A.2.1: the offset of the TIFF header, counted from behind this. */
         skip = rf_big_endian(block, 4);
-        if (skip < size - 4) {
+        if (skip < size - 4)
             tiff = (struct rf_bytes){block + 4 + skip, size - 4 - skip};
-        }
     }
     status = rf_exif_take(read, tiff, false);
     free(block);
@@ -120,22 +114,17 @@ static int read_icc(struct rf_heic *heic)
         heif_image_handle_get_color_profile_type(heic->primary);
     int status;
 
-    if (type != heif_color_profile_type_rICC && type != heif_color_profile_type_prof) {
+    if (type != heif_color_profile_type_rICC && type != heif_color_profile_type_prof)
         return REFOCUS_OK;
-    }
     profile.size = heif_image_handle_get_raw_color_profile_size(heic->primary);
     status = rf_check_metadata(read, profile.size, "its ICC profile");
-    if (status != REFOCUS_OK || profile.size == 0) {
+    if (status != REFOCUS_OK || profile.size == 0)
         return status;
-    }
     profile.data = malloc(profile.size);
-    if (!profile.data) {
+    if (!profile.data)
         return rf_fail_memory(read->reason);
-    }
-    if (heif_image_handle_get_raw_color_profile(heic->primary, profile.data).code !=
-        heif_error_Ok) {
+    if (heif_image_handle_get_raw_color_profile(heic->primary, profile.data).code != heif_error_Ok)
         profile.size = 0;
-    }
     return rf_icc_take(read, &profile);
 }
 
@@ -186,12 +175,10 @@ static int run(struct rf_heic *heic)
     heic->options->strict_decoding = 1;
     error = heif_context_read_from_memory_without_copy(heic->context, heic->file.data,
                                                        heic->file.size, NULL);
-    if (error.code == heif_error_Ok) {
+    if (error.code == heif_error_Ok)
         error = heif_context_get_primary_image_handle(heic->context, &heic->primary);
-    }
-    if (error.code != heif_error_Ok) {
+    if (error.code != heif_error_Ok)
         return rf_heic_fail(read, error);
-    }
     if (read->second) {
         status = take_second(heic);
         return status == REFOCUS_OK
@@ -201,24 +188,18 @@ static int run(struct rf_heic *heic)
     read->info->stored_bits = heif_image_handle_get_luma_bits_per_pixel(heic->primary);
     status = read_exif(heic);
     say_orientation(heic);
-    if (rf_heif_is_stereo(heic->file)) {
+    if (rf_heif_is_stereo(heic->file))
         rf_note_view(read->info, "HEIC", 2);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_icc(heic);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_heic_keep(read, heic->primary);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_auxiliaries(heic);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_heic_gain_tone_map(heic);
-    }
-    if (status == REFOCUS_OK && !read->samples.pixels) {
+    if (status == REFOCUS_OK && !read->samples.pixels)
         status = rf_heic_depth(heic);
-    }
     if (status == REFOCUS_OK && !read->image.pixels &&
         (read->picture_always || !read->samples.pixels)) {
         status = rf_heic_decode(heic, heic->primary, RF_HEIC_COLOUR, &read->image);
@@ -239,15 +220,12 @@ int rf_read_heic(struct rf_read *read, struct rf_bytes file)
     heic.options = heif_decoding_options_alloc();
     status = status == REFOCUS_OK && heic.context && heic.options ? run(&heic)
                                                                   : rf_fail_memory(read->reason);
-    if (heic.primary) {
+    if (heic.primary)
         heif_image_handle_release(heic.primary);
-    }
-    if (heic.options) {
+    if (heic.options)
         heif_decoding_options_free(heic.options);
-    }
-    if (heic.context) {
+    if (heic.context)
         heif_context_free(heic.context);
-    }
     free(changed);
     return status;
 }

@@ -32,9 +32,8 @@ struct writer {
 
 static int check(const struct writer *writer, struct heif_error error)
 {
-    if (error.code == heif_error_Ok) {
+    if (error.code == heif_error_Ok)
         return REFOCUS_OK;
-    }
     return error.code == heif_error_Memory_allocation_error
                ? rf_fail_memory(writer->reason)
                : rf_fail(writer->reason, REFOCUS_ERR_UNSUPPORTED, "libheif cannot write it: %.160s",
@@ -56,9 +55,8 @@ static int copy_pixels(struct writer *writer)
         status = check(writer, heif_image_add_plane(writer->image, heif_channel_interleaved,
                                                     rows->width, rows->height, 8));
     }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     plane = heif_image_get_plane(writer->image, heif_channel_interleaved, &stride);
     for (int32_t y = 0; y < rows->height; y++) {
         const uint8_t *in = rows->top + y * rows->stride;
@@ -83,9 +81,8 @@ static int encode(struct writer *writer)
         status = check(
             writer, heif_image_set_raw_color_profile(writer->image, "prof", icc->data, icc->size));
     }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = check(writer, heif_encoder_set_lossy_quality(writer->encoder, quality));
-    }
     if (status == REFOCUS_OK) {
         status = check(writer, heif_context_encode_image(writer->context, writer->image,
                                                          writer->encoder, NULL, &writer->handle));
@@ -99,13 +96,11 @@ static int add_exif(struct writer *writer)
     uint8_t *own;
     int status;
 
-    if (!exif || !exif->data || exif->size == 0 || exif->size > INT_MAX) {
+    if (!exif || !exif->data || exif->size == 0 || exif->size > INT_MAX)
         return REFOCUS_OK;
-    }
     own = malloc(exif->size);
-    if (!own) {
+    if (!own)
         return rf_fail_memory(writer->reason);
-    }
     memcpy(own, exif->data, exif->size);
     rf_exif_set_size(own, exif->size, (uint32_t)writer->rows->width,
                      (uint32_t)writer->rows->height);
@@ -143,9 +138,8 @@ static int add_xmp(struct writer *writer)
     struct rf_bytes packet = {NULL, 0};
     int status;
 
-    if (!photo) {
+    if (!photo)
         return REFOCUS_OK;
-    }
     status = make_editable(writer);
     if (status == REFOCUS_OK) {
         writer->keep.insert = rf_text_bytes(&writer->insert);
@@ -162,12 +156,10 @@ static int add_xmp(struct writer *writer)
         status = check(writer, heif_context_add_XMP_metadata(writer->context, writer->handle,
                                                              packet.data, (int)packet.size));
     }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         rf_keep_warn_kind(photo, RF_KEPT_XMP, writer->reason);
-    }
-    if (status == REFOCUS_OK && !writer->options->editable) {
+    if (status == REFOCUS_OK && !writer->options->editable)
         rf_keep_warn(photo, &writer->keep, writer->reason);
-    }
     return status;
 }
 
@@ -192,15 +184,12 @@ static int run(struct writer *writer)
                        "a JPEG");
     }
     status = encode(writer);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = add_exif(writer);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = add_xmp(writer);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = check(writer, heif_context_write(writer->context, &out, writer->store));
-    }
     return status;
 }
 
@@ -217,17 +206,13 @@ int rf_write_heic(struct rf_store *store, const struct rf_rows *rows,
 
     rf_xmp_keep_free(&writer.keep);
     free(writer.insert.data);
-    if (writer.handle) {
+    if (writer.handle)
         heif_image_handle_release(writer.handle);
-    }
-    if (writer.image) {
+    if (writer.image)
         heif_image_release(writer.image);
-    }
-    if (writer.encoder) {
+    if (writer.encoder)
         heif_encoder_release(writer.encoder);
-    }
-    if (writer.context) {
+    if (writer.context)
         heif_context_free(writer.context);
-    }
     return status;
 }

@@ -17,24 +17,19 @@ int rf_heic_parse_xmp(const struct rf_read *read, const struct heif_image_handle
     int status = REFOCUS_OK;
 
     *xmp = (struct rf_xmp){.items = 0};
-    if (heif_image_handle_get_list_of_metadata_block_IDs(handle, "mime", &item, 1) < 1) {
+    if (heif_image_handle_get_list_of_metadata_block_IDs(handle, "mime", &item, 1) < 1)
         return REFOCUS_OK;
-    }
     packet.size = heif_image_handle_get_metadata_size(handle, item);
-    if (packet.size == 0 || rf_check_metadata(&quiet, packet.size, "its XMP") != REFOCUS_OK) {
+    if (packet.size == 0 || rf_check_metadata(&quiet, packet.size, "its XMP") != REFOCUS_OK)
         return REFOCUS_OK;
-    }
     packet.data = bytes = malloc(packet.size);
-    if (!bytes) {
+    if (!bytes)
         return rf_fail_memory(read->reason);
-    }
-    if (heif_image_handle_get_metadata(handle, item, bytes).code == heif_error_Ok) {
+    if (heif_image_handle_get_metadata(handle, item, bytes).code == heif_error_Ok)
         status = rf_xmp_parse(&quiet, packet, xmp);
-    }
     free(bytes);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         return status;
-    }
     rf_xmp_free(xmp);
     return status == REFOCUS_ERR_MEMORY ? rf_fail_memory(read->reason) : REFOCUS_OK;
 }

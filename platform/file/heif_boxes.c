@@ -13,24 +13,21 @@ bool rf_heif_next(struct rf_bytes *rest, struct rf_heif_box *box)
 {
     uint64_t size, head = 8;
 
-    if (rest->size < 8) {
+    if (rest->size < 8)
         return false;
-    }
     size = rf_big_endian(rest->data, 4);
     memcpy(box->type, rest->data + 4, 4);
     box->type[4] = '\0';
     if (size == 0) {
         size = rest->size;
     } else if (size == 1) {
-        if (rest->size < 16) {
+        if (rest->size < 16)
             return false;
-        }
         size = (uint64_t)rf_big_endian(rest->data + 8, 4) << 32 | rf_big_endian(rest->data + 12, 4);
         head = 16;
     }
-    if (size < head || size > rest->size) {
+    if (size < head || size > rest->size)
         return false;
-    }
     box->content.data = rest->data + head;
     box->content.size = (size_t)(size - head);
     rf_heif_skip(rest, (size_t)size);
@@ -52,9 +49,8 @@ bool rf_heif_find(struct rf_bytes rest, const char *type, struct rf_bytes *conte
 
 bool rf_heif_meta(struct rf_bytes file, struct rf_bytes *boxes)
 {
-    if (!rf_heif_find(file, "meta", boxes) || boxes->size < 4) {
+    if (!rf_heif_find(file, "meta", boxes) || boxes->size < 4)
         return false;
-    }
     rf_heif_skip(boxes, 4);
     return true;
 }
@@ -63,14 +59,12 @@ bool rf_heif_primary(struct rf_bytes meta, struct rf_bytes *number)
 {
     size_t size;
 
-    if (!rf_heif_find(meta, "pitm", number) || number->size < 6) {
+    if (!rf_heif_find(meta, "pitm", number) || number->size < 6)
         return false;
-    }
     size = number->data[0] > 0 ? 4 : 2;
     rf_heif_skip(number, 4);
-    if (number->size < size) {
+    if (number->size < size)
         return false;
-    }
     number->size = size;
     return true;
 }

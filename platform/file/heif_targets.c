@@ -26,9 +26,8 @@ static bool box_at(const uint8_t *data, size_t at, size_t end, struct span *box)
 {
     uint32_t size;
 
-    if (at > end || end - at < 8) {
+    if (at > end || end - at < 8)
         return false;
-    }
     size = rf_big_endian(data + at, 4);
     *box = (struct span){at, at + 8, at + size};
     return size >= 8 && size <= end - at;
@@ -37,11 +36,9 @@ static bool box_at(const uint8_t *data, size_t at, size_t end, struct span *box)
 /* The first box of a type from `at` on. */
 static bool find(const uint8_t *data, size_t at, size_t end, const char *type, struct span *box)
 {
-    for (; box_at(data, at, end, box); at = box->end) {
-        if (memcmp(data + box->begin + 4, type, 4) == 0) {
+    for (; box_at(data, at, end, box); at = box->end)
+        if (memcmp(data + box->begin + 4, type, 4) == 0)
             return true;
-        }
-    }
     return false;
 }
 
@@ -59,9 +56,8 @@ static bool find_boxes(const uint8_t *data, size_t size, struct boxes *boxes)
         !find(data, meta.content + 4, meta.end, "pitm", &boxes->primary) ||
         !find(data, boxes->primary.end, meta.end, "iref", &boxes->references) ||
         boxes->primary.end - boxes->primary.content < 8 - 2 * !data[boxes->primary.content] ||
-        boxes->references.end - boxes->references.content < 4) {
+        boxes->references.end - boxes->references.content < 4)
         return false;
-    }
     boxes->id_bytes = data[boxes->references.content] ? 4 : 2;
     return true;
 }
@@ -80,18 +76,16 @@ static size_t copy_references(const uint8_t *data, const struct boxes *boxes, ui
         const size_t head = 8 + id + 2;
         uint32_t count, target;
 
-        if (box.end - box.begin < head) {
+        if (box.end - box.begin < head)
             return 0;
-        }
         count = rf_big_endian(data + box.begin + 8 + id, 2);
         if (memcmp(data + box.begin + 4, "cdsc", 4) != 0 || count < 2) {
             memcpy(out + length, data + box.begin, box.end - box.begin);
             length += box.end - box.begin;
             continue;
         }
-        if (box.end - box.begin != head + count * id) {
+        if (box.end - box.begin != head + count * id)
             return 0;
-        }
         target = rf_big_endian(data + box.begin + head, id);
         for (uint32_t i = 1; i < count; i++) {
             target =
@@ -130,13 +124,11 @@ int rf_heif_single_targets(struct rf_bytes file, uint8_t **changed)
     size_t length;
 
     *changed = NULL;
-    if (!find_boxes(file.data, file.size, &boxes)) {
+    if (!find_boxes(file.data, file.size, &boxes))
         return REFOCUS_OK;
-    }
     references = malloc(boxes.references.end - boxes.references.begin);
-    if (!references) {
+    if (!references)
         return REFOCUS_ERR_MEMORY;
-    }
     length = copy_references(file.data, &boxes, references);
     if (length == 0 || length == boxes.references.end - boxes.references.content - 4) {
         free(references);

@@ -82,15 +82,12 @@ static bool find_item(struct rf_bytes meta, const char *type, uint32_t number, s
 {
     struct fields iinf = {{NULL, 0}, false};
 
-    if (!rf_heif_find(meta, "iinf", &iinf.left)) {
+    if (!rf_heif_find(meta, "iinf", &iinf.left))
         return false;
-    }
     take(&iinf, take_version(&iinf) == 0 ? 2 : 4); /* the count is passed over: the boxes tell */
-    while (next_item(&iinf.left, item)) {
-        if (type ? strcmp(item->type, type) == 0 : item->number == number) {
+    while (next_item(&iinf.left, item))
+        if (type ? strcmp(item->type, type) == 0 : item->number == number)
             return true;
-        }
-    }
     return false;
 }
 
@@ -101,9 +98,8 @@ static bool find_sources(struct rf_bytes meta, uint32_t number, uint32_t source[
     struct rf_heif_box box;
     size_t bytes;
 
-    if (!rf_heif_find(meta, "iref", &iref.left)) {
+    if (!rf_heif_find(meta, "iref", &iref.left))
         return false;
-    }
     bytes = take_version(&iref) == 0 ? 2 : 4;
     while (rf_heif_next(&iref.left, &box)) {
         struct fields fields = {box.content, false};
@@ -160,9 +156,8 @@ static bool find_location(struct rf_bytes meta, uint32_t wanted, struct location
     struct location_sizes sizes;
     uint32_t version, packed;
 
-    if (!rf_heif_find(meta, "iloc", &iloc.left)) {
+    if (!rf_heif_find(meta, "iloc", &iloc.left))
         return false;
-    }
     version = take_version(&iloc);
     packed = (uint32_t)take(&iloc, 2);
     sizes = (struct location_sizes){.number = version < 2 ? 2 : 4,
@@ -171,11 +166,9 @@ static bool find_location(struct rf_bytes meta, uint32_t wanted, struct location
                                     .index = version == 0 ? 0 : packed & 15,
                                     .offset = packed >> 12,
                                     .length = packed >> 8 & 15};
-    for (uint64_t left = take(&iloc, sizes.number); left > 0 && !iloc.short_of; left--) {
-        if (take_location(&iloc, &sizes, wanted, location)) {
+    for (uint64_t left = take(&iloc, sizes.number); left > 0 && !iloc.short_of; left--)
+        if (take_location(&iloc, &sizes, wanted, location))
             return true;
-        }
-    }
     return false;
 }
 
@@ -187,9 +180,8 @@ static bool find_data(struct rf_bytes file, struct rf_bytes meta, uint32_t numbe
     *data = file;
     if (!find_location(meta, number, &at) || at.method > 1 ||
         (at.method == 1 && !rf_heif_find(meta, "idat", data)) || at.offset > data->size ||
-        at.length > data->size - at.offset) {
+        at.length > data->size - at.offset)
         return false;
-    }
     data->data += at.offset;
     data->size = (size_t)at.length;
     return true;
@@ -203,9 +195,8 @@ bool rf_heif_find_tone_map(struct rf_bytes file, struct rf_heif_tone_map *map)
 
     if (!rf_heif_meta(file, &meta) || !rf_heif_primary(meta, &primary) ||
         !find_item(meta, "tmap", 0, &item) || !find_sources(meta, item.number, source) ||
-        source[0] != rf_big_endian(primary.data, primary.size) || source[1] == source[0]) {
+        source[0] != rf_big_endian(primary.data, primary.size) || source[1] == source[0])
         return false;
-    }
     map->item = source[1];
     return find_data(file, meta, item.number, &map->metadata);
 }
@@ -217,13 +208,11 @@ int rf_heif_with_main_picture(struct rf_bytes file, uint32_t item, uint8_t **cha
 
     *changed = NULL;
     if (!rf_heif_meta(file, &meta) || !rf_heif_primary(meta, &primary) ||
-        !find_item(meta, NULL, item, &found) || (primary.size == 2 && item > UINT16_MAX)) {
+        !find_item(meta, NULL, item, &found) || (primary.size == 2 && item > UINT16_MAX))
         return REFOCUS_ERR_FORMAT;
-    }
     *changed = malloc(file.size);
-    if (!*changed) {
+    if (!*changed)
         return REFOCUS_ERR_MEMORY;
-    }
     memcpy(*changed, file.data, file.size);
     (*changed)[found.flags - file.data] &= 0xfe;
     for (size_t i = 0; i < primary.size; i++) {

@@ -16,14 +16,11 @@ static void apply_property(struct turn *turn, struct rf_bytes properties, uint32
     const struct turn old = *turn;
     struct rf_heif_box box = {.type = ""};
 
-    for (uint32_t i = 0; i < index; i++) {
-        if (!rf_heif_next(&properties, &box)) {
+    for (uint32_t i = 0; i < index; i++)
+        if (!rf_heif_next(&properties, &box))
             return;
-        }
-    }
-    if (index == 0 || box.content.size < 1) {
+    if (index == 0 || box.content.size < 1)
         return;
-    }
     if (strcmp(box.type, "irot") == 0) {
         /* Quarter turns anticlockwise: the step right was the step down before. */
         for (int i = box.content.data[0] & 3; i > 0; i--) {
@@ -31,11 +28,10 @@ static void apply_property(struct turn *turn, struct rf_bytes properties, uint32
             *turn = (struct turn){before.down_x, before.down_y, -before.right_x, -before.right_y};
         }
     } else if (strcmp(box.type, "imir") == 0) {
-        if (box.content.data[0] & 1) { /* left and right are exchanged */
+        if (box.content.data[0] & 1) /* left and right are exchanged */
             *turn = (struct turn){-old.right_x, -old.right_y, old.down_x, old.down_y};
-        } else { /* top and bottom */
+        else /* top and bottom */
             *turn = (struct turn){old.right_x, old.right_y, -old.down_x, -old.down_y};
-        }
     }
 }
 
@@ -47,9 +43,8 @@ static bool apply_associations(struct turn *turn, struct rf_bytes ipma, struct r
     size_t id_bytes, index_bytes;
     uint32_t entries;
 
-    if (ipma.size < 8) {
+    if (ipma.size < 8)
         return false;
-    }
     id_bytes = ipma.data[0] < 1 ? 2 : 4;
     index_bytes = ipma.data[3] & 1 ? 2 : 1;
     entries = rf_big_endian(ipma.data + 4, 4);
@@ -67,9 +62,8 @@ static bool apply_associations(struct turn *turn, struct rf_bytes ipma, struct r
             }
             rf_heif_skip(&ipma, index_bytes);
         }
-        if (wanted) {
+        if (wanted)
             return true;
-        }
     }
     return false;
 }
@@ -81,11 +75,9 @@ static int orientation_of(struct turn turn)
         {0, 1, 1, 0}, {0, -1, 1, 0}, {0, -1, -1, 0}, {0, 1, -1, 0},
     };
 
-    for (int orientation = 1; orientation <= 8; orientation++) {
-        if (memcmp(&turns[orientation], &turn, sizeof turn) == 0) {
+    for (int orientation = 1; orientation <= 8; orientation++)
+        if (memcmp(&turns[orientation], &turn, sizeof turn) == 0)
             return orientation;
-        }
-    }
     return 1;
 }
 
@@ -95,23 +87,18 @@ int rf_heif_orientation(struct rf_bytes file, uint32_t item)
     struct turn turn = {1, 0, 0, 1};
     struct rf_heif_box box;
 
-    if (!rf_heif_meta(file, &meta)) {
+    if (!rf_heif_meta(file, &meta))
         return 1;
-    }
     if (item == 0) {
-        if (!rf_heif_primary(meta, &primary)) {
+        if (!rf_heif_primary(meta, &primary))
             return 1;
-        }
         item = rf_big_endian(primary.data, primary.size);
     }
-    if (!rf_heif_find(meta, "iprp", &iprp) || !rf_heif_find(iprp, "ipco", &properties)) {
+    if (!rf_heif_find(meta, "iprp", &iprp) || !rf_heif_find(iprp, "ipco", &properties))
         return 1;
-    }
-    while (rf_heif_next(&iprp, &box)) {
+    while (rf_heif_next(&iprp, &box))
         if (strcmp(box.type, "ipma") == 0 &&
-            apply_associations(&turn, box.content, properties, item)) {
+            apply_associations(&turn, box.content, properties, item))
             break;
-        }
-    }
     return orientation_of(turn);
 }

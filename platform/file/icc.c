@@ -13,9 +13,8 @@ int rf_icc_take(struct rf_read *read, struct refocus_blob *profile)
         memcmp(profile->data + 36, "acsp", 4) == 0) {
         read->icc = *profile;
     } else {
-        if (profile->data) {
+        if (profile->data)
             rf_note(read->info, "ICC profile: not for RGB or damaged, passed over");
-        }
         free(profile->data);
     }
     profile->data = NULL;

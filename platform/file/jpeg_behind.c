@@ -27,14 +27,12 @@ static int make_gain_map(struct rf_behind *behind, const struct rf_rows *rows,
     struct rf_gain_map map;
     int status = rf_gain_make(&map, rows, options->light, headroom_of(options->keep));
 
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return rf_fail_memory(reason);
-    }
     status = rf_gain_write(&jpeg, &map, reason);
     rf_raster_free(&map.samples);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         rf_behind_add(behind, rf_gain_map_semantic, "android/gainmap", jpeg);
-    }
     return status;
 }
 
@@ -43,9 +41,8 @@ int rf_behind_make(struct rf_behind *behind, const struct rf_rows *rows,
 {
     int status = options->light ? make_gain_map(behind, rows, options, reason) : REFOCUS_OK;
 
-    if (status == REFOCUS_OK && options->editable && options->editable->depth) {
+    if (status == REFOCUS_OK && options->editable && options->editable->depth)
         status = rf_dynamic_add(behind, options->editable->depth, reason);
-    }
     return status;
 }
 
@@ -59,16 +56,14 @@ void rf_behind_put_xmp(struct rf_text *text, const struct rf_behind *behind,
         rf_behind_put_items(text, behind, true);
         rf_text_words(text, "</rdf:Description>");
     }
-    if (options->editable) {
+    if (options->editable)
         rf_dynamic_put(text, behind, options->editable->depth);
-    }
 }
 
 static uint8_t *put_number(uint8_t *to, uint64_t value, int bytes)
 {
-    for (int i = bytes - 1; i >= 0; i--) {
+    for (int i = bytes - 1; i >= 0; i--)
         *to++ = (uint8_t)(value >> 8 * i);
-    }
     return to;
 }
 
@@ -87,9 +82,8 @@ void rf_behind_put_index(struct rf_store *store, const struct rf_behind *behind,
     uint8_t tiff[SIZE], *to = tiff;
     uint64_t header, size;
 
-    if (!rf_behind_has_gain_map(behind)) {
+    if (!rf_behind_has_gain_map(behind))
         return;
-    }
     /* Two versions alone: the whole metadata lies with the map. */
     rf_jpeg_put_segment(store, RF_JPEG_APP2, rf_jpeg_gain_signature, sizeof rf_jpeg_gain_signature,
                         "\0\0\0", 4);
@@ -115,7 +109,6 @@ void rf_behind_put_index(struct rf_store *store, const struct rf_behind *behind,
 
 void rf_behind_put(struct rf_store *store, const struct rf_behind *behind)
 {
-    for (int i = 0; i < behind->count; i++) {
+    for (int i = 0; i < behind->count; i++)
         rf_store_write(store, behind->item[i].bytes.data, behind->item[i].bytes.size);
-    }
 }

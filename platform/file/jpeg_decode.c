@@ -86,9 +86,8 @@ static int read_header(const struct rf_read *read, tjhandle jpeg, struct rf_byte
      * rest. */
     tjDecompressHeader3(jpeg, file.data, (unsigned long)file.size, &width, &height, &sampling,
                         &space);
-    if (width < 1 || height < 1 || space < 0) {
+    if (width < 1 || height < 1 || space < 0)
         return fail_jpeg(read, jpeg);
-    }
     raster->width = width;
     raster->height = height;
     raster->channels = space == TJCS_GRAY ? 1 : space == TJCS_CMYK || space == TJCS_YCCK ? 4 : 3;
@@ -157,13 +156,11 @@ static int read_half(const struct rf_read *read, tjhandle jpeg, struct rf_bytes 
     uint8_t *memory;
     int status = rf_check_memory(read, work + luma + 2 * samples);
 
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     memory = malloc((size_t)(work + luma + 2 * samples));
-    if (!memory) {
+    if (!memory)
         return rf_fail_memory(read->reason);
-    }
     planes.plane[0] = memory + work;
     planes.plane[1] = planes.plane[0] + luma;
     planes.plane[2] = planes.plane[1] + samples;
@@ -189,9 +186,8 @@ static void cmyk_to_rgb(struct rf_raster *raster, bool adobe)
     for (size_t i = 0; i < count; i++, in += 4) {
         const unsigned black = in[3] ^ flip;
 
-        for (int c = 0; c < 3; c++) {
+        for (int c = 0; c < 3; c++)
             *out++ = (uint8_t)(((in[c] ^ flip) * black + 127) / 255);
-        }
     }
     raster->channels = 3;
 }
@@ -204,30 +200,24 @@ int rf_jpeg_decode(const struct rf_read *read, struct rf_bytes file, struct rf_r
     int status;
 
     memset(raster, 0, sizeof *raster);
-    if ((status = survey(read, file, &scans, &adobe)) != REFOCUS_OK) {
+    if ((status = survey(read, file, &scans, &adobe)) != REFOCUS_OK)
         return status;
-    }
     jpeg = tjInitDecompress();
-    if (!jpeg) {
+    if (!jpeg)
         return rf_fail_memory(read->reason);
-    }
     status = read_header(read, jpeg, file, raster, &half);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = check_work(read, raster, scans);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_raster_alloc(read, raster);
-    }
     if (status == REFOCUS_OK) {
         status = half ? read_half(read, jpeg, file, raster)
                       : read_pixels(read, jpeg, file, raster, NULL);
     }
-    if (status == REFOCUS_OK && raster->channels == 4) {
+    if (status == REFOCUS_OK && raster->channels == 4)
         cmyk_to_rgb(raster, adobe);
-    }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         rf_raster_free(raster);
-    }
     tjDestroy(jpeg);
     return status;
 }

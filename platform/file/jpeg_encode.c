@@ -48,9 +48,8 @@ static unsigned long find_insertion(const unsigned char *bytes, unsigned long si
 {
     unsigned long length;
 
-    if (size < 6 || bytes[2] != 0xff || bytes[3] != 0xe0) {
+    if (size < 6 || bytes[2] != 0xff || bytes[3] != 0xe0)
         return 2;
-    }
     length = 4 + ((unsigned long)bytes[4] << 8 | bytes[5]);
     return length <= size ? length : 2;
 }
@@ -71,9 +70,8 @@ int rf_jpeg_encode(struct rf_jpeg_encoded *encoded, const struct rf_rows *rows, 
                        "rows lie too far apart in memory for a JPEG; write a PNG");
     }
     jpeg = tjInitCompress();
-    if (!jpeg) {
+    if (!jpeg)
         return rf_fail_memory(reason);
-    }
     if (compress(jpeg, rows, quality, &encoded->bytes, &encoded->size) != 0) {
         status = rf_fail(reason, REFOCUS_ERR_MEMORY, "the JPEG encoder gave up: %s",
                          tjGetErrorStr2(jpeg));

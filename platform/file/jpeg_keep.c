@@ -50,12 +50,10 @@ static void put_packet(struct rf_store *store, const struct rf_xmp_packet *packe
         rf_leave_out(reason, "XMP of more than 65,504 bytes does not fit into a JPEG: left out");
         return;
     }
-    if (standard.size > 0) {
+    if (standard.size > 0)
         rf_jpeg_put_xmp(store, standard);
-    }
-    if (packet->edit_extended.outcome == RF_XMP_CHANGED) {
+    if (packet->edit_extended.outcome == RF_XMP_CHANGED)
         rf_jpeg_put_extended(store, rf_text_bytes(&packet->edit_extended.packet), packet->new_guid);
-    }
 }
 
 /* Write a segment of XMP, if it is one. Chunks of an extended packet that changed are left out:
@@ -66,21 +64,17 @@ static bool put_xmp(struct rf_store *store, const struct rf_xmp_keep *keep, stru
     struct rf_bytes rest;
 
     if (rf_jpeg_after(segment, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature, &rest)) {
-        if (*packets < keep->count) {
+        if (*packets < keep->count)
             put_packet(store, &keep->packet[(*packets)++], reason);
-        }
         return true;
     }
     if (!rf_jpeg_after(segment, rf_jpeg_extended_signature, sizeof rf_jpeg_extended_signature,
-                       &rest)) {
+                       &rest))
         return false;
-    }
-    for (int i = 0; i < keep->count; i++) {
+    for (int i = 0; i < keep->count; i++)
         if (keep->packet[i].guid[0] && keep->packet[i].edit_extended.outcome != RF_XMP_SAME &&
-            rest.size >= 32 && memcmp(rest.data, keep->packet[i].guid, 32) == 0) {
+            rest.size >= 32 && memcmp(rest.data, keep->packet[i].guid, 32) == 0)
             return true;
-        }
-    }
     return keep->count == 0; /* without expat nobody knows what it holds */
 }
 
@@ -91,16 +85,14 @@ static void put_segments(struct rf_store *store, const struct rf_xmp_keep *keep,
     int packets = 0;
 
     /* A photo without XMP gets a packet of its own. */
-    if (keep->count > 0 && keep->packet[0].standard.size == 0) {
+    if (keep->count > 0 && keep->packet[0].standard.size == 0)
         put_packet(store, &keep->packet[packets++], reason);
-    }
     if (rf_jpeg_walk_begin(&walk, jpeg)) {
         while (rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT) {
             if (is_of_the_file(walk.marker, walk.segment) ||
                 (walk.marker == RF_JPEG_APP1 &&
-                 put_xmp(store, keep, walk.segment, &packets, reason))) {
+                 put_xmp(store, keep, walk.segment, &packets, reason)))
                 continue;
-            }
             rf_jpeg_put_segment(store, walk.marker, NULL, 0, walk.segment.data, walk.segment.size);
         }
     }
@@ -123,9 +115,8 @@ static int edit_xmp(struct rf_xmp_keep *keep, const struct refocus_write_options
 {
     int status = rf_keep_xmp(options->keep, keep, rows->width, rows->height, reason);
 
-    if (status != REFOCUS_OK || !*editable || is_editable(keep)) {
+    if (status != REFOCUS_OK || !*editable || is_editable(keep))
         return status;
-    }
     rf_leave_out(reason, "the XMP of the photo leaves no room to make it editable: the original "
                          "and its depth are left out");
     *editable = false;
@@ -145,22 +136,17 @@ static int put_kept(struct rf_store *store, struct rf_xmp_keep *keep,
     bool editable = options->editable;
     const int status = edit_xmp(keep, options, rows, behind, xmp, &editable, reason);
 
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
-    if (kept && kept->kind == RF_KEPT_JPEG) {
+    if (kept && kept->kind == RF_KEPT_JPEG)
         put_segments(store, keep, (struct rf_bytes){kept->bytes.data, kept->bytes.size}, reason);
-    } else if (keep->count > 0) {
+    else if (keep->count > 0)
         put_packet(store, &keep->packet[0], reason);
-    }
-    if (kept) {
+    if (kept)
         rf_keep_warn_kind(options->keep, RF_KEPT_JPEG, reason);
-    }
     /* In an editable picture the gain map lies behind the original, if it could be read. */
-    if (kept && !(editable && rf_photo_gain_map(options->keep)) &&
-        !rf_behind_has_gain_map(behind)) {
+    if (kept && !(editable && rf_photo_gain_map(options->keep)) && !rf_behind_has_gain_map(behind))
         rf_keep_warn(options->keep, keep, reason);
-    }
     return REFOCUS_OK;
 }
 
@@ -179,12 +165,10 @@ int rf_jpeg_put_kept(struct rf_store *store, const struct refocus_write_options 
     rf_behind_put_xmp(&editable.standard, behind, options);
     keep.insert = rf_text_bytes(&editable.standard);
     keep.insert_extended = rf_text_bytes(&editable.extended);
-    if (status == REFOCUS_OK && editable.standard.failed) {
+    if (status == REFOCUS_OK && editable.standard.failed)
         status = rf_fail_memory(reason);
-    }
-    if (status == REFOCUS_OK && (options->keep || behind->count > 0)) {
+    if (status == REFOCUS_OK && (options->keep || behind->count > 0))
         status = put_kept(store, &keep, options, rows, behind, &editable.standard, reason);
-    }
     rf_xmp_keep_free(&keep);
     rf_editable_free(&editable);
     return status;
@@ -201,7 +185,6 @@ void rf_jpeg_keep_density(const struct refocus_write_options *options, uint8_t *
     const struct rf_kept *const kept = options->keep ? rf_kept_of(options->keep) : NULL;
 
     if (kept && kept->kind == RF_KEPT_JPEG && is_jfif(kept->bytes.data, kept->bytes.size) &&
-        is_jfif(jpeg, size)) {
+        is_jfif(jpeg, size))
         memcpy(jpeg + 6 + DENSITY_AT, kept->bytes.data + 6 + DENSITY_AT, DENSITY_BYTES);
-    }
 }

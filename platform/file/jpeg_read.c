@@ -55,24 +55,21 @@ static void take_segment(struct parts *parts, int marker, struct rf_bytes segmen
     struct rf_bytes rest;
 
     if (marker == MARKER_APP1) {
-        if (!parts->exif.data && rf_jpeg_after(segment, rf_jpeg_exif_signature, 6, &rest)) {
+        if (!parts->exif.data && rf_jpeg_after(segment, rf_jpeg_exif_signature, 6, &rest))
             parts->exif = rest;
-        } else if (!parts->xmp.data && rf_jpeg_after(segment, rf_jpeg_xmp_signature,
-                                                     sizeof rf_jpeg_xmp_signature, &rest)) {
+        else if (!parts->xmp.data &&
+                 rf_jpeg_after(segment, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature, &rest))
             parts->xmp = rest;
-        } else if (parts->xmp.data && !parts->older_xmp.data && rf_xmp_is_ours(parts->xmp) &&
-                   rf_jpeg_after(segment, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature,
-                                 &rest)) {
+        else if (parts->xmp.data && !parts->older_xmp.data && rf_xmp_is_ours(parts->xmp) &&
+                 rf_jpeg_after(segment, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature, &rest))
             parts->older_xmp = rest;
-        }
     } else if (marker == MARKER_APP2) {
         if (!parts->mpf.data &&
-            rf_jpeg_after(segment, rf_jpeg_mpf_signature, sizeof rf_jpeg_mpf_signature, &rest)) {
+            rf_jpeg_after(segment, rf_jpeg_mpf_signature, sizeof rf_jpeg_mpf_signature, &rest))
             parts->mpf = rest;
-        } else if (parts->icc_count >= 0 && rf_jpeg_after(segment, rf_jpeg_icc_signature,
-                                                          sizeof rf_jpeg_icc_signature, &rest)) {
+        else if (parts->icc_count >= 0 &&
+                 rf_jpeg_after(segment, rf_jpeg_icc_signature, sizeof rf_jpeg_icc_signature, &rest))
             take_icc(parts, rest);
-        }
     }
 }
 
@@ -113,15 +110,13 @@ static int join_icc(struct rf_read *read, const struct parts *parts)
         profile.size += parts->icc[i].size;
     }
     if (profile.size == 0) {
-        if (parts->icc_count != 0) {
+        if (parts->icc_count != 0)
             rf_note(read->info, "ICC profile: damaged, passed over");
-        }
         return REFOCUS_OK;
     }
     profile.data = malloc(profile.size);
-    if (!profile.data) {
+    if (!profile.data)
         return rf_fail_memory(read->reason);
-    }
     for (int i = 0; i < parts->icc_count; i++) {
         memcpy(profile.data + position, parts->icc[i].data, parts->icc[i].size);
         position += parts->icc[i].size;
@@ -134,11 +129,9 @@ static bool mentions(struct rf_bytes packet, const char *name)
 {
     const size_t n = strlen(name);
 
-    for (size_t i = 0; i + n <= packet.size; i++) {
-        if (packet.data[i] == (uint8_t)*name && memcmp(packet.data + i, name, n) == 0) {
+    for (size_t i = 0; i + n <= packet.size; i++)
+        if (packet.data[i] == (uint8_t)*name && memcmp(packet.data + i, name, n) == 0)
             return true;
-        }
-    }
     return false;
 }
 
@@ -154,9 +147,8 @@ static bool pass_over(struct rf_read *read, int status, struct rf_bytes standard
                       struct rf_bytes packet)
 {
     if ((status != REFOCUS_ERR_FORMAT && status != REFOCUS_ERR_SIZE) || mentions_depth(standard) ||
-        mentions_depth(packet)) {
+        mentions_depth(packet))
         return false;
-    }
     rf_note(read->info, "XMP: %s and without depth, passed over",
             status == REFOCUS_ERR_SIZE ? "beyond the limits" : "damaged");
     return true;
@@ -169,21 +161,17 @@ static int read_xmp(struct rf_read *read, struct rf_bytes file, struct rf_bytes 
     struct refocus_blob extended = {NULL, 0};
     int status = rf_xmp_parse(read, packet, xmp);
 
-    if (pass_over(read, status, packet, packet)) {
+    if (pass_over(read, status, packet, packet))
         return REFOCUS_OK;
-    }
-    if (status != REFOCUS_OK || !xmp->value[RF_XMP_EXTENDED]) {
+    if (status != REFOCUS_OK || !xmp->value[RF_XMP_EXTENDED])
         return status;
-    }
     status = rf_xmp_extended(read, file, xmp->value[RF_XMP_EXTENDED], xmp->length[RF_XMP_EXTENDED],
                              &extended);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_xmp_parse(read, (struct rf_bytes){extended.data, extended.size}, xmp);
-    }
     if (status == REFOCUS_ERR_SIZE &&
-        pass_over(read, status, packet, (struct rf_bytes){extended.data, extended.size})) {
+        pass_over(read, status, packet, (struct rf_bytes){extended.data, extended.size}))
         status = REFOCUS_OK;
-    }
     free(extended.data);
     return status;
 }
@@ -227,29 +215,24 @@ static int read_depth(struct rf_read *read, struct rf_bytes file, const struct p
 
     if (parts->xmp.data) {
         status = read_xmp(read, main_picture, parts->xmp, &xmp);
-        if (status == REFOCUS_OK && parts->older_xmp.data) {
+        if (status == REFOCUS_OK && parts->older_xmp.data)
             status = read_older(read, main_picture, parts->older_xmp, &xmp);
-        }
-        if (status == REFOCUS_OK) {
+        if (status == REFOCUS_OK)
             status = rf_read_gdepth(read, &xmp);
-        }
-        if (status == REFOCUS_OK) {
+        if (status == REFOCUS_OK)
             status = rf_read_dynamic(read, file, &xmp, parts->end);
-        }
     }
     rf_xmp_free(&xmp);
-    if (status == REFOCUS_OK && parts->mpf.data) {
+    if (status == REFOCUS_OK && parts->mpf.data)
         status = rf_read_apple(read, file, parts->mpf, parts->end);
-    }
     return status;
 }
 #else
 static int read_depth(struct rf_read *read, struct rf_bytes file, const struct parts *parts)
 {
     (void)file;
-    if (parts->xmp.data || parts->mpf.data) {
+    if (parts->xmp.data || parts->mpf.data)
         rf_note(read->info, "XMP: passed over, this build has no expat");
-    }
     return REFOCUS_OK;
 }
 #endif
@@ -262,9 +245,8 @@ static struct rf_bytes find_behind(struct rf_bytes file, size_t end)
     for (size_t begin = end; begin <= end + NUMBERS && begin < file.size; begin++) {
         const struct rf_bytes behind = {file.data + begin, file.size - begin};
 
-        if (rf_is_jpeg(behind)) {
+        if (rf_is_jpeg(behind))
             return behind;
-        }
     }
     return (struct rf_bytes){NULL, 0};
 }
@@ -282,9 +264,8 @@ static int read_second(struct rf_read *read, struct rf_bytes file, const struct 
             const uint64_t size = mpf.image[i].size;
 
             if (begin < parts->end || begin > file.size || size > file.size - begin || size < 4 ||
-                !rf_is_jpeg((struct rf_bytes){file.data + begin, (size_t)size})) {
+                !rf_is_jpeg((struct rf_bytes){file.data + begin, (size_t)size}))
                 continue;
-            }
             read->second = false;
             return rf_read_jpeg(read, (struct rf_bytes){file.data + begin, (size_t)size});
         }
@@ -307,33 +288,25 @@ int rf_read_jpeg(struct rf_read *read, struct rf_bytes file)
 
     memcpy(read->info->container, "JPEG", 5);
     status = find_parts(read, file, &parts);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
-    if (read->second) {
+    if (read->second)
         return read_second(read, file, &parts);
-    }
     status = rf_exif_take(read, parts.exif, true);
     read->kept.original_orientation = read->kept.depth_orientation = read->orientation;
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = join_icc(read, &parts);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_depth(read, file, &parts);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_read_trailer(read, file, parts.end);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_read_gain_map(read, file, parts.mpf, parts.end);
-    }
     /* A reader of depth may have put the all-in-focus original there already. */
     if (status == REFOCUS_OK && !read->image.pixels &&
-        (read->picture_always || !read->samples.pixels)) {
+        (read->picture_always || !read->samples.pixels))
         status = rf_jpeg_decode(read, (struct rf_bytes){file.data, parts.end}, &read->image);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_keep(read, RF_KEPT_JPEG, (struct rf_bytes){file.data, parts.end});
-    }
     return status;
 }

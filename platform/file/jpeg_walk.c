@@ -35,16 +35,13 @@ static int next_marker(struct rf_jpeg_walk *walk)
 
     while (walk->position < size) {
         const uint8_t *const found = memchr(data + walk->position, 0xff, size - walk->position);
-        if (!found) {
+        if (!found)
             return 0;
-        }
         walk->position = (size_t)(found - data);
-        while (walk->position < size && data[walk->position] == 0xff) {
+        while (walk->position < size && data[walk->position] == 0xff)
             walk->position++;
-        }
-        if (walk->position < size && data[walk->position] != 0) {
+        if (walk->position < size && data[walk->position] != 0)
             return data[walk->position++];
-        }
     }
     return 0;
 }
@@ -57,17 +54,14 @@ enum rf_jpeg_step rf_jpeg_walk_next(struct rf_jpeg_walk *walk)
         walk->marker = next_marker(walk);
     } while (walk->marker == MARKER_TEM ||
              (walk->marker >= MARKER_RST0 && walk->marker <= MARKER_RST7));
-    if (walk->marker == MARKER_EOI) {
+    if (walk->marker == MARKER_EOI)
         return RF_JPEG_END;
-    }
     room = walk->file.size - walk->position;
-    if (walk->marker == 0 || walk->marker == MARKER_SOI || room < 2) {
+    if (walk->marker == 0 || walk->marker == MARKER_SOI || room < 2)
         return RF_JPEG_DAMAGED;
-    }
     length = (size_t)walk->file.data[walk->position] << 8 | walk->file.data[walk->position + 1];
-    if (length < 2 || length > room) {
+    if (length < 2 || length > room)
         return RF_JPEG_DAMAGED;
-    }
     walk->segment.data = walk->file.data + walk->position + 2;
     walk->segment.size = length - 2;
     walk->position += length;
@@ -77,9 +71,8 @@ enum rf_jpeg_step rf_jpeg_walk_next(struct rf_jpeg_walk *walk)
 bool rf_jpeg_after(struct rf_bytes segment, const char *signature, size_t size,
                    struct rf_bytes *rest)
 {
-    if (segment.size < size || memcmp(segment.data, signature, size) != 0) {
+    if (segment.size < size || memcmp(segment.data, signature, size) != 0)
         return false;
-    }
     rest->data = segment.data + size;
     rest->size = segment.size - size;
     return true;

@@ -23,18 +23,16 @@ static int write_exif(struct rf_store *store, const struct refocus_blob *exif,
 {
     uint8_t *own;
 
-    if (!exif || !exif->data || exif->size == 0) {
+    if (!exif || !exif->data || exif->size == 0)
         return REFOCUS_OK;
-    }
     if (exif->size > RF_JPEG_SEGMENT_MAX - 6) {
         rf_leave_out(reason, "EXIF of %zu bytes does not fit into a JPEG: left out; PNG takes it",
                      exif->size);
         return REFOCUS_OK;
     }
     own = malloc(exif->size);
-    if (!own) {
+    if (!own)
         return rf_fail_memory(reason);
-    }
     memcpy(own, exif->data, exif->size);
     rf_exif_set_size(own, exif->size, (uint32_t)rows->width, (uint32_t)rows->height);
     rf_jpeg_put_segment(store, RF_JPEG_APP1, rf_jpeg_exif_signature, 6, own, exif->size);
@@ -47,9 +45,8 @@ static void write_icc(struct rf_store *store, const struct refocus_blob *icc,
 {
     size_t count;
 
-    if (!icc || !icc->data || icc->size == 0) {
+    if (!icc || !icc->data || icc->size == 0)
         return;
-    }
     count = (icc->size + ICC_CHUNK - 1) / ICC_CHUNK;
     if (count > 255) {
         rf_leave_out(reason, "ICC profile of %zu bytes does not fit into a JPEG: left out",
@@ -76,18 +73,14 @@ int rf_write_jpeg(struct rf_store *store, const struct rf_rows *rows,
     struct rf_jpeg_encoded jpeg;
     int status = rf_jpeg_encode(&jpeg, rows, quality, reason);
 
-    if (options && status == REFOCUS_OK) {
+    if (options && status == REFOCUS_OK)
         status = rf_behind_make(&behind, rows, options, reason);
-    }
-    if (options && status == REFOCUS_OK) {
+    if (options && status == REFOCUS_OK)
         rf_jpeg_keep_density(options, jpeg.bytes, jpeg.split);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         rf_store_write(store, jpeg.bytes, jpeg.split);
-    }
-    if (options && status == REFOCUS_OK) {
+    if (options && status == REFOCUS_OK)
         status = write_exif(store, options->exif, rows, reason);
-    }
     if (options && status == REFOCUS_OK) {
         status = rf_jpeg_put_kept(store, options, rows, &behind, reason);
         write_icc(store, options->icc, reason);

@@ -36,9 +36,8 @@ static bool is_damaged(const struct rf_read *read, struct rf_bytes packet)
 
 void rf_keep_companion(struct rf_read *read, struct rf_bytes picture)
 {
-    if (read->companions < (int)(sizeof read->companion / sizeof *read->companion)) {
+    if (read->companions < (int)(sizeof read->companion / sizeof *read->companion))
         read->companion[read->companions++] = picture;
-    }
 }
 
 int rf_keep(struct rf_read *read, enum rf_kept_kind kind, struct rf_bytes bytes)
@@ -49,20 +48,16 @@ int rf_keep(struct rf_read *read, enum rf_kept_kind kind, struct rf_bytes bytes)
     int status;
 
     if (!read->picture_always || bytes.size == 0 || read->kept.bytes.data ||
-        (kind == RF_KEPT_XMP && is_damaged(read, bytes))) {
+        (kind == RF_KEPT_XMP && is_damaged(read, bytes)))
         return REFOCUS_OK;
-    }
-    for (int i = 0; i < companions; i++) {
+    for (int i = 0; i < companions; i++)
         size += read->companion[i].size;
-    }
     status = rf_check_memory(read, size);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     to = malloc((size_t)size);
-    if (!to) {
+    if (!to)
         return rf_fail_memory(read->reason);
-    }
     read->kept.bytes.data = to;
     read->kept.bytes.size = (size_t)size;
     read->kept.kind = kind;
@@ -85,9 +80,8 @@ void rf_kept_read(const struct refocus_photo *photo, struct rf_read *read,
 {
     memset(read, 0, sizeof *read);
     memset(info, 0, sizeof *info);
-    if (photo) {
+    if (photo)
         read->limits = ((const struct rf_photo *)(const void *)photo)->limits;
-    }
     read->info = info;
     read->reason = reason;
     read->orientation = 1;
@@ -97,9 +91,8 @@ unsigned rf_xmp_keep_found(const struct rf_xmp_keep *keep)
 {
     unsigned found = 0;
 
-    for (int i = 0; i < keep->count; i++) {
+    for (int i = 0; i < keep->count; i++)
         found |= keep->packet[i].edit.found | keep->packet[i].edit_extended.found;
-    }
     return found;
 }
 
@@ -157,9 +150,8 @@ static void warn_segments(struct rf_bytes jpeg, struct refocus_reason *reason)
     struct rf_jpeg_walk walk;
     struct rf_bytes rest;
 
-    if (!rf_jpeg_walk_begin(&walk, jpeg)) {
+    if (!rf_jpeg_walk_begin(&walk, jpeg))
         return;
-    }
     while (rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT && walk.marker != RF_JPEG_SOS) {
         comments |= walk.marker == RF_JPEG_COM;
         iptc |= walk.marker == RF_JPEG_APP13 &&
@@ -178,9 +170,8 @@ void rf_keep_warn_kind(const struct refocus_photo *photo, enum rf_kept_kind writ
     const struct rf_kept *const kept = rf_kept_of(photo);
     const struct rf_bytes bytes = {kept->bytes.data, kept->bytes.size};
 
-    if (kept->kind == RF_KEPT_JPEG && written != RF_KEPT_JPEG) {
+    if (kept->kind == RF_KEPT_JPEG && written != RF_KEPT_JPEG)
         warn_segments(bytes, reason);
-    }
     if (kept->kind == RF_KEPT_PNG && written != RF_KEPT_PNG) {
         const struct rf_png_colour colour = rf_png_colour_of(bytes, photo->icc.data != NULL);
 
@@ -196,7 +187,6 @@ void rf_keep_warn_kind(const struct refocus_photo *photo, enum rf_kept_kind writ
 void rf_keep_warn(const struct refocus_photo *photo, const struct rf_xmp_keep *keep,
                   struct refocus_reason *reason)
 {
-    if (rf_kept_of(photo)->gain_map || rf_xmp_keep_found(keep) & RF_XMP_CUT_GAIN_MAP) {
+    if (rf_kept_of(photo)->gain_map || rf_xmp_keep_found(keep) & RF_XMP_CUT_GAIN_MAP)
         rf_leave_out(reason, "it is written without an HDR gain map, which the photo has");
-    }
 }

@@ -54,12 +54,10 @@ static void change_primaries(float *light, const float matrix[3][3])
 {
     float out[3];
 
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 3; c++)
         out[c] = matrix[c][0] * light[0] + matrix[c][1] * light[1] + matrix[c][2] * light[2];
-    }
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 3; c++)
         light[c] = out[c] > 0 ? out[c] : 0;
-    }
 }
 
 static float float_at(const struct rf_raster *raster, size_t index)
@@ -80,17 +78,15 @@ int rf_raster_to_light(const struct rf_read *read, struct rf_raster *raster, int
     made.sample = REFOCUS_SAMPLE_F32;
     made.max_value = 0;
     status = rf_raster_alloc(read, &made);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     table = malloc((codes + 1) * sizeof *table);
     if (!table) {
         rf_raster_free(&made);
         return rf_fail_memory(read->reason);
     }
-    for (size_t i = 0; i < codes; i++) {
+    for (size_t i = 0; i < codes; i++)
         table[i] = light_of((float)i / (float)raster->max_value, curve);
-    }
     light = (float *)(void *)made.pixels;
     for (size_t i = 0; i < samples; i++) {
         const uint32_t code = floats ? 0 : rf_raster_sample(raster, i);
@@ -99,12 +95,10 @@ int rf_raster_to_light(const struct rf_read *read, struct rf_raster *raster, int
                    : code < codes ? table[code]
                                   : table[codes - 1];
     }
-    for (size_t i = 0; i < samples && primaries == RF_PRIMARIES_BT2020; i += 3) {
+    for (size_t i = 0; i < samples && primaries == RF_PRIMARIES_BT2020; i += 3)
         change_primaries(light + i, from_2020);
-    }
-    for (size_t i = 0; i < samples && primaries == RF_PRIMARIES_P3; i += 3) {
+    for (size_t i = 0; i < samples && primaries == RF_PRIMARIES_P3; i += 3)
         change_primaries(light + i, from_p3);
-    }
     free(table);
     rf_raster_free(raster);
     *raster = made;

@@ -26,20 +26,17 @@ static int check_file(int file, uint64_t max_bytes, struct refocus_reason *reaso
 {
     struct stat facts;
 
-    if (fstat(file, &facts) != 0) {
+    if (fstat(file, &facts) != 0)
         return rf_fail_errno(reason, errno, "cannot read it");
-    }
-    if (S_ISDIR(facts.st_mode)) {
+    if (S_ISDIR(facts.st_mode))
         return rf_fail(reason, REFOCUS_ERR_IO, "it is a folder; give the name of a file");
-    }
     if (!S_ISREG(facts.st_mode)) {
         return rf_fail(reason, REFOCUS_ERR_IO,
                        "it is a pipe, socket or device; give the name of a file");
     }
     if (facts.st_size < 0 || (uint64_t)facts.st_size > max_bytes ||
-        (uint64_t)facts.st_size >= SIZE_MAX) {
+        (uint64_t)facts.st_size >= SIZE_MAX)
         return fail_large(reason, max_bytes);
-    }
     *room = (size_t)facts.st_size + 1;
     return REFOCUS_OK;
 }
@@ -52,25 +49,19 @@ static int read_all(FILE *stream, size_t whole, uint64_t max_bytes,
 
     for (;;) {
         uint8_t *const grown = realloc(blob->data, room);
-        if (!grown) {
+        if (!grown)
             return rf_fail_memory(reason);
-        }
         blob->data = grown;
         errno = 0;
         blob->size += fread(blob->data + blob->size, 1, room - blob->size, stream);
-        if (ferror(stream)) {
+        if (ferror(stream))
             return rf_fail_errno(reason, errno ? errno : EIO, "cannot read it");
-        }
-        if (blob->size > max_bytes) {
+        if (blob->size > max_bytes)
             return fail_large(reason, max_bytes);
-        }
-        if (blob->size < room ||
-            (is_known && !is_known((struct rf_bytes){blob->data, blob->size}))) {
+        if (blob->size < room || (is_known && !is_known((struct rf_bytes){blob->data, blob->size})))
             return REFOCUS_OK;
-        }
-        if (room > SIZE_MAX / 2) {
+        if (room > SIZE_MAX / 2)
             return rf_fail_memory(reason);
-        }
         room = whole > room ? whole : 2 * room;
     }
 }
@@ -86,20 +77,18 @@ int rf_load(const char *path, uint64_t max_bytes, bool (*is_known)(struct rf_byt
 
     blob->data = NULL;
     blob->size = 0;
-    if (file < 0) {
+    if (file < 0)
         return rf_fail_errno(reason, errno, "cannot open it");
-    }
     status = check_file(file, max_bytes, reason, &room);
     if (status == REFOCUS_OK) {
         stream = fdopen(file, "rb");
         status = stream ? read_all(stream, room, max_bytes, is_known, reason, blob)
                         : rf_fail_errno(reason, errno, "cannot open it");
     }
-    if (stream) {
+    if (stream)
         fclose(stream);
-    } else {
+    else
         close(file);
-    }
     if (status != REFOCUS_OK) {
         free(blob->data);
         blob->data = NULL;
@@ -115,8 +104,7 @@ int refocus_file_read(const char *path, uint64_t max_bytes, struct refocus_blob 
 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
-    if (!path || !blob) {
+    if (!path || !blob)
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "there is no name or no place for it");
-    }
     return rf_load(path, max_bytes, NULL, reason, blob);
 }

@@ -55,19 +55,15 @@ void rf_md5_hex(struct rf_bytes bytes, char hex[33])
     uint8_t last[128] = {0};
     const size_t last_size = rest < 56 ? 64 : 128;
 
-    for (size_t i = 0; i < whole; i += 64) {
+    for (size_t i = 0; i < whole; i += 64)
         take_block(state, bytes.data + i);
-    }
-    if (rest > 0) {
+    if (rest > 0)
         memcpy(last, bytes.data + whole, rest);
-    }
     last[rest] = 0x80;
-    for (int i = 0; i < 8; i++) {
+    for (int i = 0; i < 8; i++)
         last[last_size - 8 + (size_t)i] = (uint8_t)(bits >> (8 * i));
-    }
-    for (size_t i = 0; i < last_size; i += 64) {
+    for (size_t i = 0; i < last_size; i += 64)
         take_block(state, last + i);
-    }
     for (int i = 0; i < 16; i++) {
         const uint8_t byte = (uint8_t)(state[i / 4] >> (8 * (i % 4)));
 

@@ -13,17 +13,14 @@ bool rf_mpf_parse(struct rf_bytes tiff, struct rf_mpf *mpf)
 
     memset(mpf, 0, sizeof *mpf);
     if (tiff.size < 10 ||
-        (memcmp(tiff.data, "MM\0*", 4) != 0 && memcmp(tiff.data, "II*\0", 4) != 0)) {
+        (memcmp(tiff.data, "MM\0*", 4) != 0 && memcmp(tiff.data, "II*\0", 4) != 0))
         return false;
-    }
     directory = rf_tiff_number(tiff, 4, 4);
-    if (directory > tiff.size - 2) {
+    if (directory > tiff.size - 2)
         return false;
-    }
     tags = rf_tiff_number(tiff, directory, 2);
-    if (tags > (tiff.size - directory - 2) / 12) {
+    if (tags > (tiff.size - directory - 2) / 12)
         return false;
-    }
     for (uint32_t i = 0; i < tags; i++) {
         const size_t at = directory + 2 + (size_t)i * 12;
         if (rf_tiff_number(tiff, at, 2) == TAG_ENTRIES) {
@@ -31,9 +28,8 @@ bool rf_mpf_parse(struct rf_bytes tiff, struct rf_mpf *mpf)
             entries = rf_tiff_number(tiff, at + 8, 4);
         }
     }
-    if (size < ENTRY_BYTES || entries > tiff.size || size > tiff.size - entries) {
+    if (size < ENTRY_BYTES || entries > tiff.size || size > tiff.size - entries)
         return false;
-    }
     for (; size >= ENTRY_BYTES && mpf->count < RF_MPF_MAX; size -= ENTRY_BYTES) {
         mpf->image[mpf->count].type = rf_tiff_number(tiff, entries, 4) & 0xffffff;
         mpf->image[mpf->count].size = rf_tiff_number(tiff, entries + 4, 4);

@@ -17,12 +17,10 @@
 /* Leave two sides: batches of one map and maps of one channel have more. */
 static void drop_ones(struct rf_npy_header *header)
 {
-    while (header->sides > 2 && header->side[0] == 1) {
+    while (header->sides > 2 && header->side[0] == 1)
         memmove(header->side, header->side + 1, (size_t)--header->sides * sizeof *header->side);
-    }
-    while (header->sides > 2 && header->side[header->sides - 1] == 1) {
+    while (header->sides > 2 && header->side[header->sides - 1] == 1)
         header->sides--;
-    }
 }
 
 /* Bytes of a sample; 0: it is no number. */
@@ -31,12 +29,9 @@ static size_t bytes_of(const struct rf_npy_header *header)
     static const char *const numbers[] = {"u1", "i1", "u2", "i2", "f2", "u4",
                                           "i4", "f4", "u8", "i8", "f8"};
 
-    for (size_t i = 0; strchr("<>|", header->descr[0]) && i < sizeof numbers / sizeof *numbers;
-         i++) {
-        if (strcmp(header->descr + 1, numbers[i]) == 0) {
+    for (size_t i = 0; strchr("<>|", header->descr[0]) && i < sizeof numbers / sizeof *numbers; i++)
+        if (strcmp(header->descr + 1, numbers[i]) == 0)
             return (size_t)(numbers[i][1] - '0');
-        }
-    }
     return 0;
 }
 
@@ -64,16 +59,14 @@ static float value_of(char kind, size_t bytes, uint64_t bits)
     double eight;
     float four;
 
-    if (kind == 'u') {
+    if (kind == 'u')
         return (float)bits;
-    }
     if (kind == 'i') {
         const unsigned unused = 64 - 8 * (unsigned)bytes;
         return (float)((int64_t)(bits << unused) / (INT64_C(1) << unused));
     }
-    if (bytes == 2) {
+    if (bytes == 2)
         return half_of((uint16_t)bits);
-    }
     if (bytes == 4) {
         memcpy(&four, &low, sizeof four);
         return four;
@@ -88,16 +81,14 @@ static void put_sample(struct rf_raster *raster, size_t index, const struct rf_n
     const bool high_first = header->descr[0] == '>';
     uint64_t bits = 0;
 
-    for (size_t i = 0; i < bytes; i++) {
+    for (size_t i = 0; i < bytes; i++)
         bits = bits << 8 | from[high_first ? i : bytes - 1 - i];
-    }
-    if (raster->sample == REFOCUS_SAMPLE_U8) {
+    if (raster->sample == REFOCUS_SAMPLE_U8)
         raster->pixels[index] = (uint8_t)bits;
-    } else if (raster->sample == REFOCUS_SAMPLE_U16) {
+    else if (raster->sample == REFOCUS_SAMPLE_U16)
         ((uint16_t *)(void *)raster->pixels)[index] = (uint16_t)bits;
-    } else {
+    else
         ((float *)(void *)raster->pixels)[index] = value_of(header->descr[1], bytes, bits);
-    }
 }
 
 static int fail_short(const struct rf_read *read)
@@ -120,30 +111,25 @@ static int pull_header(struct rf_read *read, rf_npy_pull pull, void *from, char 
     size_t length, given;
     int status;
 
-    if (!pull(from, begin, 8) || !rf_is_npy((struct rf_bytes){begin, 8})) {
+    if (!pull(from, begin, 8) || !rf_is_npy((struct rf_bytes){begin, 8}))
         return fail_header(read);
-    }
     if (begin[6] < 1 || begin[6] > 3) {
         return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
                        "it is NPY of version %d; 1 to 3 are read", begin[6]);
     }
     given = begin[6] == 1 ? 2 : 4;
-    if (!pull(from, begin + 8, given)) {
+    if (!pull(from, begin + 8, given))
         return fail_header(read);
-    }
     length = rf_little_endian(begin + 8, given);
     status = rf_check_metadata(read, length, "its header");
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
-    if (8 + given + length > *bytes) {
+    if (8 + given + length > *bytes)
         return fail_header(read);
-    }
     *bytes -= 8 + given + length;
     *text = calloc(1, length + 1);
-    if (!*text) {
+    if (!*text)
         return rf_fail_memory(read->reason);
-    }
     return pull(from, (uint8_t *)*text, length) ? REFOCUS_OK : fail_header(read);
 }
 
@@ -166,15 +152,13 @@ static int pull_samples(struct rf_read *read, rf_npy_pull pull, void *from,
     uint8_t *const line = malloc(length * bytes);
     size_t done = 0;
 
-    if (!line) {
+    if (!line)
         return rf_fail_memory(read->reason);
-    }
     for (; done < lines && pull(from, line, length * bytes); done++) {
         const size_t first = header->columns ? done : done * width;
 
-        for (size_t i = 0; i < length; i++) {
+        for (size_t i = 0; i < length; i++)
             put_sample(raster, first + i * to_next, header, bytes, line + i * bytes);
-        }
     }
     free(line);
     return done == lines ? REFOCUS_OK : fail_short(read);
@@ -192,16 +176,13 @@ static int read_samples(struct rf_read *read, rf_npy_pull pull, void *from,
                        "its array holds neither integers nor floats of 16 to 64 bits");
     }
     drop_ones(header);
-    if (header->sides != 2) {
+    if (header->sides != 2)
         return fail_sides(read, header);
-    }
     status = rf_check_size(read, header->side[1], header->side[0], bytes);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
-    if (left < header->side[0] * header->side[1] * bytes) {
+    if (left < header->side[0] * header->side[1] * bytes)
         return fail_short(read);
-    }
     raster->width = (int32_t)header->side[1];
     raster->height = (int32_t)header->side[0];
     raster->channels = 1;
@@ -226,13 +207,11 @@ int rf_npy_read(struct rf_read *read, rf_npy_pull pull, void *from, uint64_t byt
                        "it is a depth map, not a photo; give it as the depth");
     }
     status = pull_header(read, pull, from, &text, &bytes);
-    if (status == REFOCUS_OK && !rf_npy_scan(text, &header)) {
+    if (status == REFOCUS_OK && !rf_npy_scan(text, &header))
         status = fail_header(read);
-    }
     free(text);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_samples(read, pull, from, &header, bytes);
-    }
     if (status == REFOCUS_OK) {
         rf_note(read->info, "NPY: samples %s, %s by %s", header.descr,
                 header.columns ? "column" : "row", header.columns ? "column" : "row");

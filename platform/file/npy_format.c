@@ -9,9 +9,8 @@ static bool pull_file(void *from, uint8_t *bytes, size_t count)
 {
     struct rf_bytes *const file = from;
 
-    if (file->size < count) {
+    if (file->size < count)
         return false;
-    }
     memcpy(bytes, file->data, count);
     file->data += count;
     file->size -= count;

@@ -14,9 +14,8 @@ struct scan {
 
 static void skip_blanks(struct scan *scan)
 {
-    while (*scan->at == ' ' || (*scan->at >= '\t' && *scan->at <= '\r')) {
+    while (*scan->at == ' ' || (*scan->at >= '\t' && *scan->at <= '\r'))
         scan->at++;
-    }
 }
 
 /* Whether the next thing is that text, which is passed by then. */
@@ -25,9 +24,8 @@ static bool take(struct scan *scan, const char *text)
     const size_t length = strlen(text);
 
     skip_blanks(scan);
-    if (strncmp(scan->at, text, length) != 0) {
+    if (strncmp(scan->at, text, length) != 0)
         return false;
-    }
     scan->at += length;
     return true;
 }
@@ -38,14 +36,12 @@ static bool take_string(struct scan *scan, char *string, size_t size)
     const char quote = take(scan, "'") ? '\'' : '"';
     size_t length;
 
-    if (quote == '"' && !take(scan, "\"")) {
+    if (quote == '"' && !take(scan, "\""))
         return false;
-    }
     for (length = 0; scan->at[length] && scan->at[length] != quote; length++) {
     }
-    if (!scan->at[length] || length >= size) {
+    if (!scan->at[length] || length >= size)
         return false;
-    }
     memcpy(string, scan->at, length);
     string[length] = '\0';
     scan->at += length + 1;
@@ -61,30 +57,25 @@ static bool take_side(struct scan *scan, uint64_t *side)
     begin = scan->at;
     for (*side = 0; *scan->at >= '0' && *scan->at <= '9'; scan->at++) {
         *side = 10 * *side + (uint64_t)(*scan->at - '0');
-        if (*side > UINT32_MAX) {
+        if (*side > UINT32_MAX)
             return false;
-        }
     }
-    if (scan->at == begin) {
+    if (scan->at == begin)
         return false;
-    }
     take(scan, "L");
     return true;
 }
 
 static bool take_shape(struct scan *scan, struct rf_npy_header *header)
 {
-    if (!take(scan, "(")) {
+    if (!take(scan, "("))
         return false;
-    }
     for (header->sides = 0; !take(scan, ")");) {
-        if (header->sides == RF_NPY_SIDES || !take_side(scan, &header->side[header->sides])) {
+        if (header->sides == RF_NPY_SIDES || !take_side(scan, &header->side[header->sides]))
             return false;
-        }
         header->sides++;
-        if (!take(scan, ",")) {
+        if (!take(scan, ","))
             return take(scan, ")");
-        }
     }
     return true;
 }
@@ -93,12 +84,10 @@ static bool take_entry(struct scan *scan, struct rf_npy_header *header)
 {
     char key[16];
 
-    if (!take_string(scan, key, sizeof key) || !take(scan, ":")) {
+    if (!take_string(scan, key, sizeof key) || !take(scan, ":"))
         return false;
-    }
-    if (strcmp(key, "descr") == 0) {
+    if (strcmp(key, "descr") == 0)
         return take_string(scan, header->descr, sizeof header->descr);
-    }
     if (strcmp(key, "fortran_order") == 0) {
         header->columns = take(scan, "True");
         return header->columns || take(scan, "False");
@@ -112,13 +101,10 @@ bool rf_npy_scan(const char *text, struct rf_npy_header *header)
 
     memset(header, 0, sizeof *header);
     header->sides = -1;
-    if (!take(&scan, "{")) {
+    if (!take(&scan, "{"))
         return false;
-    }
-    while (!take(&scan, "}")) {
-        if (!take_entry(&scan, header) || (!take(&scan, ",") && scan.at[0] != '}')) {
+    while (!take(&scan, "}"))
+        if (!take_entry(&scan, header) || (!take(&scan, ",") && scan.at[0] != '}'))
             return false;
-        }
-    }
     return header->descr[0] && header->sides >= 0;
 }

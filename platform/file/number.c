@@ -32,15 +32,12 @@ static const char *read_exponent(const char *text, int *exponent)
     int sign = 1, value = 0;
 
     text++;
-    if (*text == '+' || *text == '-') {
+    if (*text == '+' || *text == '-')
         sign = *text++ == '-' ? -1 : 1;
-    }
-    if (*text < '0' || *text > '9') {
+    if (*text < '0' || *text > '9')
         return begin;
-    }
-    for (; *text >= '0' && *text <= '9'; text++) {
+    for (; *text >= '0' && *text <= '9'; text++)
         value = value < 100000 ? value * 10 + (*text - '0') : value;
-    }
     *exponent += sign * value;
     return text;
 }
@@ -49,15 +46,12 @@ static const char *read_exponent(const char *text, int *exponent)
  * that doubles have few digits for them are taken in two halves. */
 static double scale(double value, int exponent)
 {
-    if (value == 0.0) {
+    if (value == 0.0)
         return 0.0;
-    }
-    if (exponent < 0 && exponent >= -22) {
+    if (exponent < 0 && exponent >= -22)
         return value / pow(10.0, -exponent);
-    }
-    if (exponent < -290) {
+    if (exponent < -290)
         return value * pow(10.0, -290) * pow(10.0, exponent + 290);
-    }
     return value * pow(10.0, exponent);
 }
 
@@ -68,30 +62,23 @@ bool rf_parse_number(const char *text, double *value)
     bool negative;
 
     /* A text long enough to overflow the exponent is no number of a sane file. */
-    if (strlen(text) > 4096) {
+    if (strlen(text) > 4096)
         return false;
-    }
     text = skip_blanks(text);
     negative = *text == '-';
-    if (*text == '+' || *text == '-') {
+    if (*text == '+' || *text == '-')
         text++;
-    }
     text = read_digits(text, &mantissa, &exponent, 0, &digits);
-    if (*text == '.') {
+    if (*text == '.')
         text = read_digits(text + 1, &mantissa, &exponent, -1, &digits);
-    }
-    if (digits == 0) {
+    if (digits == 0)
         return false;
-    }
-    if (*text == 'e' || *text == 'E') {
+    if (*text == 'e' || *text == 'E')
         text = read_exponent(text, &exponent);
-    }
-    if (*skip_blanks(text) != '\0') {
+    if (*skip_blanks(text) != '\0')
         return false;
-    }
     *value = scale((double)mantissa, exponent);
-    if (negative) {
+    if (negative)
         *value = -*value;
-    }
     return isfinite(*value);
 }

@@ -41,17 +41,15 @@ int rf_raster_orient(const struct rf_read *read, struct rf_raster *raster, int o
     uint8_t *to;
     int status;
 
-    if (orientation <= 1 || !raster->pixels) {
+    if (orientation <= 1 || !raster->pixels)
         return REFOCUS_OK;
-    }
     if (orientation >= 5) {
         upright.width = raster->height;
         upright.height = raster->width;
     }
     status = rf_raster_alloc(read, &upright);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     to = upright.pixels;
     for (int32_t y = 0; y < upright.height; y++) {
         ptrdiff_t from = steps.origin + y * steps.down;
@@ -118,9 +116,8 @@ int rf_orient_both(int first, int second)
         rf_orient_point(&x, &y, first);
         rf_orient_point(&x, &y, second);
         rf_orient_point(&u, &v, orientation);
-        if (x == u && y == v) {
+        if (x == u && y == v)
             break;
-        }
     }
     return orientation;
 }

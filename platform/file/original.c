@@ -45,9 +45,8 @@ static void put_plain(struct rf_text *out, struct rf_bytes jpeg, int orientation
     size_t copied = 0, end = 2;
     bool told = orientation == 1, in_scans = false;
 
-    if (!rf_jpeg_walk_begin(&walk, jpeg)) {
+    if (!rf_jpeg_walk_begin(&walk, jpeg))
         return;
-    }
     while (rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT) {
         const size_t begin = (size_t)(walk.segment.data - jpeg.data) - 4;
         const bool needed = is_needed(walk.marker, walk.segment);
@@ -119,9 +118,8 @@ static int put_rows(struct rf_store *store, const struct rf_rows *rows, bool is_
 
     if (status == REFOCUS_OK) {
         rf_store_write(store, jpeg.bytes, jpeg.split);
-        if (is_matte) {
+        if (is_matte)
             put_matte_xmp(store);
-        }
         rf_store_write(store, jpeg.bytes + jpeg.split, jpeg.size - jpeg.split);
     }
     rf_jpeg_encoded_free(&jpeg);
@@ -140,9 +138,8 @@ static int put_matte(struct rf_store *store, const struct refocus_depth_map *mat
     uint8_t *out = samples;
     int status;
 
-    if (!samples) {
+    if (!samples)
         return rf_fail_memory(reason);
-    }
     for (int32_t y = 0; y < rows.height; y++) {
         const uint8_t *const row = (const uint8_t *)matte->samples + y * matte->stride;
 
@@ -172,9 +169,8 @@ static int put_gain_map(struct rf_store *store, const struct rf_gain_map *map,
                              "channels differ");
         return REFOCUS_OK;
     }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return rf_fail_memory(reason);
-    }
     status = rf_gain_write(&jpeg, &copy, reason);
     rf_store_write(store, jpeg.data, jpeg.size);
     rf_raster_free(&copy.samples);
@@ -192,16 +188,13 @@ static int put_jpeg(struct rf_text *out, const struct refocus_photo *photo,
     struct rf_store store;
     int status = rf_store_open_memory(&store, reason);
 
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     status = put_rows(&store, &rows, false, reason);
-    if (status == REFOCUS_OK && map) {
+    if (status == REFOCUS_OK && map)
         status = put_gain_map(&store, map, reason);
-    }
-    if (status == REFOCUS_OK && photo->matte->samples) {
+    if (status == REFOCUS_OK && photo->matte->samples)
         status = put_matte(&store, photo->matte, reason);
-    }
     status = rf_store_close_memory(&store, status, &jpeg, reason);
     rf_text_put(out, jpeg.data, jpeg.size);
     free(jpeg.data);
@@ -223,9 +216,8 @@ int rf_original_put(struct rf_text *out, const struct refocus_photo *photo, bool
                   photo->info->orientation);
         return REFOCUS_OK;
     }
-    if (strcmp(photo->info->container, "HEIC") == 0 || (is_used && !is_deep)) {
+    if (strcmp(photo->info->container, "HEIC") == 0 || (is_used && !is_deep))
         return put_jpeg(out, photo, reason);
-    }
     *is_png = true;
     return put_png(out, is_deep ? photo->deep : photo->image, reason);
 }

@@ -11,11 +11,9 @@ static bool is_of_a_result(struct rf_bytes packet)
     static const char name[] = RF_NS_REFOCUS;
     const size_t n = sizeof name - 1;
 
-    for (size_t i = 0; i + n <= packet.size; i++) {
-        if (packet.data[i] == 'u' && memcmp(packet.data + i, name, n) == 0) {
+    for (size_t i = 0; i + n <= packet.size; i++)
+        if (packet.data[i] == 'u' && memcmp(packet.data + i, name, n) == 0)
             return true;
-        }
-    }
     return false;
 }
 

@@ -32,9 +32,8 @@ int rf_decode_part(const struct rf_read *read, struct rf_bytes part, const char 
     for (size_t i = 0; i < sizeof decoders / sizeof *decoders; i++) {
         int status;
 
-        if (!decoders[i].recognise(part)) {
+        if (!decoders[i].recognise(part))
             continue;
-        }
         status = decoders[i].decode
                      ? decoders[i].decode(read, part, raster)
                      : rf_fail_absent(read->reason, decoders[i].name, decoders[i].library);
@@ -59,9 +58,8 @@ uint64_t rf_part_pixels(struct rf_bytes part)
 {
     struct rf_jpeg_walk walk;
 
-    if (rf_is_png(part) && part.size >= 24) {
+    if (rf_is_png(part) && part.size >= 24)
         return (uint64_t)rf_big_endian(part.data + 16, 4) * rf_big_endian(part.data + 20, 4);
-    }
     if (rf_jpeg_walk_begin(&walk, part)) {
         while (rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT) {
             if (begins_frame(walk.marker) && walk.segment.size >= 5) {

@@ -25,13 +25,11 @@ static bool scan_word(struct rf_bytes file, size_t *position, char *word, size_t
 {
     size_t n = 0;
 
-    while (*position < file.size && is_blank(file.data[*position])) {
+    while (*position < file.size && is_blank(file.data[*position]))
         ++*position;
-    }
     while (*position < file.size && !is_blank(file.data[*position])) {
-        if (n + 1 >= size) {
+        if (n + 1 >= size)
             return false;
-        }
         word[n++] = (char)file.data[(*position)++];
     }
     word[n] = '\0';
@@ -44,9 +42,8 @@ static bool scan_side(struct rf_bytes file, size_t *position, uint64_t *side)
     double value;
 
     if (!scan_word(file, position, word, sizeof word) || !rf_parse_number(word, &value) ||
-        value < 0 || value > 4294967295.0 || value != floor(value)) {
+        value < 0 || value > 4294967295.0 || value != floor(value))
         return false;
-    }
     *side = (uint64_t)value;
     return true;
 }
@@ -88,15 +85,13 @@ static int read_pfm(struct rf_read *read, struct rf_bytes file)
                        "damaged: its PFM header holds no width, height and scale");
     }
     status = rf_check_size(read, width, height, 4 * channels);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     /* One blank ends the header; programs of Windows end a line with two, where there is a byte
      * more for it. */
     if (position + 1 < file.size && memcmp(file.data + position, "\r\n", 2) == 0 &&
-        file.size - position - 1 > width * height * 4 * channels) {
+        file.size - position - 1 > width * height * 4 * channels)
         position++;
-    }
     if (position >= file.size || file.size - position - 1 < width * height * 4 * channels) {
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
                        "damaged: it ends in the middle of the %s; copy it again",
@@ -107,22 +102,19 @@ static int read_pfm(struct rf_read *read, struct rf_bytes file)
     raster->channels = (int32_t)channels;
     raster->sample = REFOCUS_SAMPLE_F32;
     status = rf_raster_alloc(read, raster);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     stride = (size_t)width * 4 * channels;
     for (size_t y = 0; y < height; y++) {
         const uint8_t *const from = file.data + position + 1 + (height - 1 - y) * stride;
         float *const to = (float *)(void *)(raster->pixels + y * stride);
-        for (size_t x = 0; x < width * channels; x++) {
+        for (size_t x = 0; x < width * channels; x++)
             to[x] = load_float(from + 4 * x, scale < 0);
-        }
     }
     rf_note(read->info, "PFM: 32-bit floats, %s byte first, bottom row first",
             scale < 0 ? "low" : "high");
-    if (fabs(scale) != 1.0) {
+    if (fabs(scale) != 1.0)
         rf_note(read->info, "PFM: its scale factor %g is not applied", fabs(scale));
-    }
     return REFOCUS_OK;
 }
 
@@ -140,9 +132,8 @@ static float sample_of(const struct rf_rows *rows, const uint8_t *row, int64_t x
         memcpy(&sample, row + 2 * x, 2);
         return (float)(sample / 65535.0);
     }
-    if (rows->format == REFOCUS_FORMAT_BGR8 || rows->format == REFOCUS_FORMAT_BGRA8) {
+    if (rows->format == REFOCUS_FORMAT_BGR8 || rows->format == REFOCUS_FORMAT_BGRA8)
         x += 2 - 2 * (x % 3);
-    }
     value = (float)row[x / 3 * rf_format_bytes(rows->format) + x % 3] / 255;
     return value <= 0.04045f ? value / 12.92f : powf((value + 0.055f) / 1.055f, 2.4f);
 }
@@ -157,9 +148,8 @@ static int write_pfm(struct rf_store *store, const struct rf_rows *rows,
     int length;
 
     (void)options;
-    if (!row) {
+    if (!row)
         return rf_fail_memory(reason);
-    }
     length = snprintf(header, sizeof header, "P%c\n%d %d\n-1.0\n", grey ? 'f' : 'F',
                       (int)rows->width, (int)rows->height);
     rf_store_write(store, header, (size_t)length);
@@ -170,9 +160,8 @@ static int write_pfm(struct rf_store *store, const struct rf_rows *rows,
             uint32_t bits;
 
             memcpy(&bits, &value, 4);
-            for (int i = 0; i < 4; i++) {
+            for (int i = 0; i < 4; i++)
                 row[4 * x + i] = (uint8_t)(bits >> (8 * i));
-            }
         }
         rf_store_write(store, row, (size_t)n * 4);
     }

@@ -17,13 +17,11 @@ bool rf_png_next_chunk(struct rf_bytes *rest, struct rf_png_chunk *chunk)
     const uint8_t *const b = rest->data;
     size_t size;
 
-    if (rest->size < AROUND) {
+    if (rest->size < AROUND)
         return false;
-    }
     size = rf_big_endian(b, 4);
-    if (size > rest->size - AROUND) {
+    if (size > rest->size - AROUND)
         return false;
-    }
     chunk->type = b + 4;
     chunk->content = (struct rf_bytes){b + 8, size};
     rest->data += size + AROUND;
@@ -33,11 +31,9 @@ bool rf_png_next_chunk(struct rf_bytes *rest, struct rf_png_chunk *chunk)
 
 static bool is_one_of(const uint8_t *type, const char *types)
 {
-    for (; *types; types += 4) {
-        if (memcmp(type, types, 4) == 0) {
+    for (; *types; types += 4)
+        if (memcmp(type, types, 4) == 0)
             return true;
-        }
-    }
     return false;
 }
 
@@ -45,9 +41,8 @@ static bool is_one_of(const uint8_t *type, const char *types)
  * Chunks that nobody here knows say by their fourth letter whether they hold for other pixels. */
 static bool holds(const struct rf_png_chunk *chunk, bool is_light)
 {
-    if (is_light && is_one_of(chunk->type, "sRGBgAMAcHRMcICPmDCVmDCvcLLIcLLi")) {
+    if (is_light && is_one_of(chunk->type, "sRGBgAMAcHRMcICPmDCVmDCvcLLIcLLi"))
         return false;
-    }
     return is_one_of(chunk->type, "tEXtzTXtiTXttIMEpHYssRGBgAMAcHRMcICPmDCVcLLIoFFssCALpCAL") ||
            (chunk->type[0] & LOWER_CASE && chunk->type[3] & LOWER_CASE &&
             !is_one_of(chunk->type, "eXIfiCCPbKGDhISTtRNSsBITacTLfcTLfdAT"));
@@ -64,9 +59,8 @@ static size_t gather(struct rf_bytes file, bool is_light, uint8_t *out)
         if (holds(&chunk, is_light)) {
             const size_t n = chunk.content.size + AROUND;
 
-            if (out) {
+            if (out)
                 memcpy(out + size, chunk.content.data - 8, n);
-            }
             size += n;
         }
     }
@@ -79,17 +73,14 @@ int rf_png_keep(struct rf_read *read, struct rf_bytes file)
     const size_t size = gather(file, is_light, NULL);
     int status;
 
-    if (!read->picture_always || size == 0) {
+    if (!read->picture_always || size == 0)
         return REFOCUS_OK;
-    }
     status = rf_check_memory(read, size);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     read->kept.bytes.data = malloc(size);
-    if (!read->kept.bytes.data) {
+    if (!read->kept.bytes.data)
         return rf_fail_memory(read->reason);
-    }
     gather(file, is_light, read->kept.bytes.data);
     read->kept.bytes.size = size;
     read->kept.kind = RF_KEPT_PNG;
@@ -101,9 +92,8 @@ struct rf_bytes rf_png_xmp_of(const struct rf_png_chunk *chunk)
     const struct rf_bytes text = chunk->content;
 
     if (memcmp(chunk->type, "iTXt", 4) != 0 || text.size < RF_PNG_XMP_HEAD ||
-        memcmp(text.data, rf_png_xmp_head, RF_PNG_XMP_HEAD) != 0) {
+        memcmp(text.data, rf_png_xmp_head, RF_PNG_XMP_HEAD) != 0)
         return (struct rf_bytes){NULL, 0};
-    }
     return (struct rf_bytes){text.data + RF_PNG_XMP_HEAD, text.size - RF_PNG_XMP_HEAD};
 }
 
@@ -112,8 +102,7 @@ struct rf_bytes rf_png_xmp(struct rf_bytes chunks)
     struct rf_bytes packet = {NULL, 0};
     struct rf_png_chunk chunk;
 
-    while (packet.size == 0 && rf_png_next_chunk(&chunks, &chunk)) {
+    while (packet.size == 0 && rf_png_next_chunk(&chunks, &chunk))
         packet = rf_png_xmp_of(&chunk);
-    }
     return packet;
 }

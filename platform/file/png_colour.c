@@ -23,9 +23,8 @@ static bool are_other_primaries(struct rf_bytes content)
     static const int64_t srgb[] = {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000};
     bool other = false;
 
-    for (size_t i = 0; content.size == 32 && i < 8; i++) {
+    for (size_t i = 0; content.size == 32 && i < 8; i++)
         other |= llabs((int64_t)rf_big_endian(content.data + 4 * i, 4) - srgb[i]) > 100;
-    }
     return other;
 }
 

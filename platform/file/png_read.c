@@ -47,12 +47,10 @@ static void on_read(png_structp png, png_bytep to, size_t size)
 {
     struct reader *const reader = png_get_io_ptr(png);
 
-    if (reader->file.size - reader->position < size) {
+    if (reader->file.size - reader->position < size)
         png_error(png, "it ends too early; copy it again");
-    }
-    if (reader->most > 0 && reader->position + size > reader->most) {
+    if (reader->most > 0 && reader->position + size > reader->most)
         png_error(png, "it has more data than pixels");
-    }
     memcpy(to, reader->file.data + reader->position, size);
     reader->position += size;
 }
@@ -62,9 +60,8 @@ static png_voidp on_malloc(png_structp png, png_alloc_size_t size)
     struct reader *const reader = png_get_mem_ptr(png);
     void *const memory = malloc(size);
 
-    if (!memory && reader->status == REFOCUS_OK) {
+    if (!memory && reader->status == REFOCUS_OK)
         reader->status = rf_fail_memory(reader->read->reason);
-    }
     return memory;
 }
 
@@ -82,11 +79,10 @@ static void choose_samples(struct reader *reader)
     const int type = png_get_color_type(png, reader->info);
     const uint16_t one = 1;
 
-    if (type == PNG_COLOR_TYPE_PALETTE) {
+    if (type == PNG_COLOR_TYPE_PALETTE)
         png_set_palette_to_rgb(png);
-    } else if (type == PNG_COLOR_TYPE_GRAY && bits < 8) {
+    else if (type == PNG_COLOR_TYPE_GRAY && bits < 8)
         png_set_expand_gray_1_2_4_to_8(png);
-    }
     if (reader->alpha &&
         (type & PNG_COLOR_MASK_ALPHA || png_get_valid(png, reader->info, PNG_INFO_tRNS))) {
         png_set_tRNS_to_alpha(png);
@@ -94,9 +90,8 @@ static void choose_samples(struct reader *reader)
         reader->alpha = false;
         png_set_strip_alpha(png); /* a palette brings its transparency with it */
     }
-    if (bits == 16 && *(const uint8_t *)&one == 1) {
+    if (bits == 16 && *(const uint8_t *)&one == 1)
         png_set_swap(png);
-    }
     reader->raster.channels = (type & PNG_COLOR_MASK_COLOR ? 3 : 1) + reader->alpha;
     reader->raster.sample = bits == 16 ? REFOCUS_SAMPLE_U16 : REFOCUS_SAMPLE_U8;
     reader->raster.max_value = bits == 16 ? 65535 : 255;
@@ -116,9 +111,8 @@ static void read_picture(struct reader *reader)
     reader->raster.width = (int32_t)width;
     reader->raster.height = (int32_t)height;
     stride = rf_raster_stride(&reader->raster);
-    if (png_get_rowbytes(png, reader->info) != stride) {
+    if (png_get_rowbytes(png, reader->info) != stride)
         png_error(png, "rows of an unknown layout");
-    }
     status = rf_raster_alloc(reader->read, &reader->raster);
     if (status != REFOCUS_OK) {
         reader->status = status;
@@ -128,9 +122,8 @@ static void read_picture(struct reader *reader)
         for (png_uint_32 y = 0; y < height; y++) {
             /* With the last row libpng unpacks all that follows it, which may be a thousand times
              * as large as the file: a row of noise needs no more than this. */
-            if (passes == 1 && y == height - 1) {
+            if (passes == 1 && y == height - 1)
                 reader->most = reader->position + 2 * stride + 65536;
-            }
             png_read_row(png, reader->raster.pixels + y * stride, NULL);
         }
     }
@@ -141,9 +134,8 @@ static void read_picture(struct reader *reader)
 static void copy_blob(struct reader *reader, struct refocus_blob *blob, const uint8_t *data,
                       size_t size)
 {
-    if (size == 0) {
+    if (size == 0)
         return;
-    }
     blob->data = malloc(size);
     if (!blob->data) {
         reader->status = rf_fail_memory(reader->read->reason);
@@ -160,12 +152,10 @@ static void read_extras(struct reader *reader)
     png_charp name;
     int method;
 
-    if (png_get_eXIf_1(reader->png, reader->info, &size, &data) & PNG_INFO_eXIf) {
+    if (png_get_eXIf_1(reader->png, reader->info, &size, &data) & PNG_INFO_eXIf)
         copy_blob(reader, &reader->exif, data, size);
-    }
-    if (png_get_iCCP(reader->png, reader->info, &name, &method, &data, &size) & PNG_INFO_iCCP) {
+    if (png_get_iCCP(reader->png, reader->info, &name, &method, &data, &size) & PNG_INFO_iCCP)
         copy_blob(reader, &reader->icc, data, size);
-    }
 }
 
 /* Chunks that nobody asks for are skipped as they are: unpacked, each may be a thousand times as
@@ -185,9 +175,8 @@ static bool run(struct reader *reader)
     const uint64_t chunk = limits->max_metadata < most ? limits->max_metadata : most;
     int status;
 
-    if (setjmp(png_jmpbuf(reader->png))) {
+    if (setjmp(png_jmpbuf(reader->png)))
         return false;
-    }
     png_set_read_fn(reader->png, reader, on_read);
     skip_extras(reader->png);
     png_set_user_limits(reader->png, 0x7fffffff, 0x7fffffff);
@@ -215,9 +204,8 @@ static int decode(const struct rf_read *read, struct rf_bytes file, struct rf_ra
 
     reader.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning,
                                           &reader, on_malloc, on_free);
-    if (!reader.png) {
+    if (!reader.png)
         return rf_fail_memory(read->reason);
-    }
     reader.info = png_create_info_struct(reader.png);
     if (!reader.info) {
         reader.status = rf_fail_memory(read->reason);
@@ -257,9 +245,8 @@ static int settle_colour(struct rf_read *read, struct rf_bytes file, struct refo
     const struct rf_png_colour colour = rf_png_colour_of(chunks, icc->data != NULL);
     int status;
 
-    if (!colour.by || !read->picture_always) {
+    if (!colour.by || !read->picture_always)
         return REFOCUS_OK;
-    }
     if (!rf_curve_is_hdr(colour.curve) || !colour.whole_range ||
         read->image.sample != REFOCUS_SAMPLE_U16 || read->image.channels != 3) {
         rf_note(read->info, "PNG: other colours than sRGB by %s, which results in PNG keep",
@@ -284,25 +271,19 @@ int rf_read_png(struct rf_read *read, struct rf_bytes file)
 
     memcpy(read->info->container, "PNG", 4);
     status = decode(read, file, &read->image, &alpha, &exif, &icc);
-    if (status == REFOCUS_OK && alpha) {
+    if (status == REFOCUS_OK && alpha)
         status = rf_part_alpha(read);
-    }
     /* IHDR comes first: its colour type is byte 25 of the file. */
-    if (status == REFOCUS_OK && !read->holes.pixels && file.data[25] & PNG_COLOR_MASK_ALPHA) {
+    if (status == REFOCUS_OK && !read->holes.pixels && file.data[25] & PNG_COLOR_MASK_ALPHA)
         rf_note(read->info, "PNG: transparency is dropped");
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_exif_take(read, (struct rf_bytes){exif.data, exif.size}, true);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = settle_colour(read, file, &icc);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_icc_take(read, &icc);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_png_keep(read, file);
-    }
     free(exif.data);
     free(icc.data);
     return status;

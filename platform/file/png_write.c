@@ -57,9 +57,8 @@ static png_voidp on_malloc(png_structp png, png_alloc_size_t size)
     struct writer *const writer = png_get_mem_ptr(png);
     void *const memory = malloc(size);
 
-    if (!memory && writer->status == REFOCUS_OK) {
+    if (!memory && writer->status == REFOCUS_OK)
         writer->status = rf_fail_memory(writer->reason);
-    }
     return memory;
 }
 
@@ -74,9 +73,8 @@ static uint8_t *own_bytes(struct writer *writer, size_t size)
 {
     free(writer->own);
     writer->own = on_malloc(writer->png, size);
-    if (!writer->own) {
+    if (!writer->own)
         png_error(writer->png, "no memory");
-    }
     return writer->own;
 }
 
@@ -96,9 +94,8 @@ static void set_header(struct writer *writer)
     if (options && options->icc && options->icc->data) {
         png_set_iCCP(writer->png, writer->info, "ICC", PNG_COMPRESSION_TYPE_BASE,
                      options->icc->data, (png_uint_32)options->icc->size);
-        if (!png_get_valid(writer->png, writer->info, PNG_INFO_iCCP)) {
+        if (!png_get_valid(writer->png, writer->info, PNG_INFO_iCCP))
             rf_leave_out(writer->reason, "the ICC profile is damaged: left out");
-        }
     }
     if (options && options->exif && options->exif->data) {
         const size_t size = options->exif->size;
@@ -143,11 +140,10 @@ static void write_kept(struct writer *writer, const struct rf_kept *kept)
     while (rf_png_next_chunk(&rest, &chunk)) {
         const struct rf_bytes packet = rf_png_xmp_of(&chunk);
 
-        if (writer->keep.count > 0 && packet.data == writer->keep.packet[0].standard.data) {
+        if (writer->keep.count > 0 && packet.data == writer->keep.packet[0].standard.data)
             write_xmp(writer, rf_xmp_kept(&writer->keep.packet[0]));
-        } else {
+        else
             png_write_chunk(writer->png, chunk.type, chunk.content.data, chunk.content.size);
-        }
     }
 }
 
@@ -156,9 +152,8 @@ static void run(struct writer *writer)
     const struct rf_rows *const rows = writer->rows;
     const uint16_t one = 1;
 
-    if (setjmp(png_jmpbuf(writer->png))) {
+    if (setjmp(png_jmpbuf(writer->png)))
         return;
-    }
     png_set_write_fn(writer->png, writer, on_write, on_flush);
     png_set_benign_errors(writer->png, 1);
     png_set_user_limits(writer->png, REFOCUS_MAX_SIDE, REFOCUS_MAX_SIDE);
@@ -166,22 +161,17 @@ static void run(struct writer *writer)
     png_set_compression_level(writer->png, 4);
     set_header(writer);
     png_write_info(writer->png, writer->info);
-    if (writer->options && writer->options->keep) {
+    if (writer->options && writer->options->keep)
         write_kept(writer, rf_kept_of(writer->options->keep));
-    }
-    if (rows->format == REFOCUS_FORMAT_BGR8 || rows->format == REFOCUS_FORMAT_BGRA8) {
+    if (rows->format == REFOCUS_FORMAT_BGR8 || rows->format == REFOCUS_FORMAT_BGRA8)
         png_set_bgr(writer->png);
-    }
     if ((rows->format == REFOCUS_FORMAT_NONE || rows->format == REFOCUS_FORMAT_RGB16) &&
-        *(const uint8_t *)&one == 1) {
+        *(const uint8_t *)&one == 1)
         png_set_swap(writer->png);
-    }
-    for (int32_t y = 0; y < rows->height && writer->store->error == 0; y++) {
+    for (int32_t y = 0; y < rows->height && writer->store->error == 0; y++)
         png_write_row(writer->png, rows->top + y * rows->stride);
-    }
-    if (writer->store->error == 0) {
+    if (writer->store->error == 0)
         png_write_end(writer->png, NULL); /* all that the info has stands before the pixels */
-    }
 }
 
 static void encode(struct writer *writer)
@@ -189,11 +179,10 @@ static void encode(struct writer *writer)
     writer->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, writer, on_error, on_warning,
                                             writer, on_malloc, on_free);
     writer->info = writer->png ? png_create_info_struct(writer->png) : NULL;
-    if (writer->info) {
+    if (writer->info)
         run(writer);
-    } else {
+    else
         writer->status = rf_fail_memory(writer->reason);
-    }
     png_destroy_write_struct(&writer->png, &writer->info);
     free(writer->own);
 }

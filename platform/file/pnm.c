@@ -38,15 +38,13 @@ static void skip_blanks(struct scan *scan)
 {
     while (scan->position < scan->file.size) {
         const uint8_t c = scan->file.data[scan->position];
-        if (c == '#') {
-            while (scan->position < scan->file.size && scan->file.data[scan->position] != '\n') {
+        if (c == '#')
+            while (scan->position < scan->file.size && scan->file.data[scan->position] != '\n')
                 scan->position++;
-            }
-        } else if (is_blank(c)) {
+        else if (is_blank(c))
             scan->position++;
-        } else {
+        else
             return;
-        }
     }
 }
 
@@ -59,13 +57,11 @@ static bool scan_number(struct scan *scan, uint64_t *value)
     begin = scan->position;
     for (*value = 0; scan->position < scan->file.size; scan->position++) {
         const uint8_t byte = scan->file.data[scan->position];
-        if (byte < '0' || byte > '9') {
+        if (byte < '0' || byte > '9')
             break;
-        }
         *value = *value * 10 + (uint8_t)(byte - '0');
-        if (*value > UINT32_MAX) {
+        if (*value > UINT32_MAX)
             return false;
-        }
     }
     return scan->position > begin;
 }
@@ -89,27 +85,23 @@ static int scan_header(struct rf_read *read, struct scan *scan, struct rf_raster
     raster->sample = max > 255 ? REFOCUS_SAMPLE_U16 : REFOCUS_SAMPLE_U8;
     raster->max_value = (uint32_t)max;
     status = rf_check_size(read, width, height, (uint64_t)raster->channels * (max > 255 ? 2 : 1));
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     raster->width = (int32_t)width;
     raster->height = (int32_t)height;
-    if (!raw) {
+    if (!raw)
         return REFOCUS_OK;
-    }
-    if (scan->position >= scan->file.size || !is_blank(scan->file.data[scan->position++])) {
+    if (scan->position >= scan->file.size || !is_blank(scan->file.data[scan->position++]))
         return fail_short(read);
-    }
     return REFOCUS_OK;
 }
 
 static void put_sample(struct rf_raster *raster, size_t index, uint32_t value)
 {
-    if (raster->sample == REFOCUS_SAMPLE_U8) {
+    if (raster->sample == REFOCUS_SAMPLE_U8)
         raster->pixels[index] = (uint8_t)value;
-    } else {
+    else
         ((uint16_t *)(void *)raster->pixels)[index] = (uint16_t)value;
-    }
 }
 
 static int fail_value(const struct rf_read *read)
@@ -126,15 +118,13 @@ static int scan_raw(struct rf_read *read, struct scan *scan, struct rf_raster *r
     int status;
 
     /* This comes before memory is asked for: a header alone must not cost a gigabyte. */
-    if (scan->file.size - scan->position < count * bytes) {
+    if (scan->file.size - scan->position < count * bytes)
         return fail_short(read);
-    }
     status = rf_raster_alloc(read, raster);
     for (size_t i = 0; status == REFOCUS_OK && i < count; i++, from += bytes) {
         const uint32_t value = bytes == 1 ? from[0] : (uint32_t)(from[0] << 8 | from[1]);
-        if (value > raster->max_value) {
+        if (value > raster->max_value)
             return fail_value(read);
-        }
         put_sample(raster, i, value);
     }
     return status;
@@ -146,18 +136,15 @@ static int scan_plain(struct rf_read *read, struct scan *scan, struct rf_raster 
     int status;
 
     /* A sample takes a digit and a blank; only the last needs no blank. */
-    if ((scan->file.size - scan->position + 1) / 2 < count) {
+    if ((scan->file.size - scan->position + 1) / 2 < count)
         return fail_short(read);
-    }
     status = rf_raster_alloc(read, raster);
     for (size_t i = 0; status == REFOCUS_OK && i < count; i++) {
         uint64_t value;
-        if (!scan_number(scan, &value)) {
+        if (!scan_number(scan, &value))
             return fail_short(read);
-        }
-        if (value > raster->max_value) {
+        if (value > raster->max_value)
             return fail_value(read);
-        }
         put_sample(raster, i, (uint32_t)value);
     }
     return status;
@@ -174,9 +161,8 @@ static int read_pnm(struct rf_read *read, struct rf_bytes file)
     snprintf(read->info->container, sizeof read->info->container, "%s",
              raster->channels == 3 ? "PPM" : "PGM");
     status = scan_header(read, &scan, raster, raw);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     return raw ? scan_raw(read, &scan, raster) : scan_plain(read, &scan, raster);
 }
 
@@ -211,9 +197,8 @@ static int write_pnm(struct rf_store *store, const struct rf_rows *rows,
     int n;
 
     (void)options;
-    if (!row) {
+    if (!row)
         return rf_fail_memory(reason);
-    }
     n = snprintf(header, sizeof header, "P%d\n%d %d\n%d\n", grey ? 5 : 6, (int)rows->width,
                  (int)rows->height, grey ? 65535 : 255);
     rf_store_write(store, header, (size_t)n);

@@ -26,9 +26,8 @@ static void take_entry(struct rf_bytes file, size_t at, struct first *first)
         first->mosaic = value == 32803 || value == 34892;
         break;
     case 274: /* Orientation */
-        if (value >= 1 && value <= 8) {
+        if (value >= 1 && value <= 8)
             first->orientation = (int)value;
-        }
         break;
     case 330: /* SubIFDs */
         first->parts = true;
@@ -47,28 +46,23 @@ static struct first look(struct rf_bytes file)
     struct first first = {.orientation = 1};
     uint32_t at, count;
 
-    if (file.size < 8 || (memcmp(file.data, "II", 2) != 0 && memcmp(file.data, "MM", 2) != 0)) {
+    if (file.size < 8 || (memcmp(file.data, "II", 2) != 0 && memcmp(file.data, "MM", 2) != 0))
         return first;
-    }
     at = rf_tiff_number(file, 4, 4);
-    if (at > file.size || file.size - at < 2) {
+    if (at > file.size || file.size - at < 2)
         return first;
-    }
     count = rf_tiff_number(file, at, 2);
-    for (uint32_t i = 0; i < count && file.size - at - 2 >= 12 * ((size_t)i + 1); i++) {
+    for (uint32_t i = 0; i < count && file.size - at - 2 >= 12 * ((size_t)i + 1); i++)
         take_entry(file, (size_t)at + 2 + 12 * (size_t)i, &first);
-    }
     return first;
 }
 
 /* Whether a file begins so; a dot stands for any byte. */
 static bool begins(struct rf_bytes file, const char *text, size_t size)
 {
-    for (size_t i = 0; i < size; i++) {
-        if (i >= file.size || (text[i] != '.' && file.data[i] != (uint8_t)text[i])) {
+    for (size_t i = 0; i < size; i++)
+        if (i >= file.size || (text[i] != '.' && file.data[i] != (uint8_t)text[i]))
             return false;
-        }
-    }
     return true;
 }
 
@@ -80,12 +74,10 @@ static bool recognise(struct rf_bytes file)
     if (begins(file, "FUJIFILMCCD-RAW", 15) || begins(file, "IIRO", 4) || begins(file, "IIRS", 4) ||
         begins(file, "MMOR", 4) || begins(file, "IIU\0", 4) || begins(file, "FOVb", 4) ||
         begins(file, "\0MRM", 4) || begins(file, "....ftypcrx ", 12) ||
-        begins(file, "II*\0....CR", 10)) {
+        begins(file, "II*\0....CR", 10))
         return true;
-    }
-    if (!begins(file, "II*\0", 4) && !begins(file, "MM\0*", 4)) {
+    if (!begins(file, "II*\0", 4) && !begins(file, "MM\0*", 4))
         return false;
-    }
     /* DNG, and those that have a thumbnail in front and the photo in a directory below */
     first = look(file);
     return first.dng || first.mosaic || (first.reduced && first.parts);
@@ -98,9 +90,8 @@ static uint64_t jpeg_pixels(const struct rf_read *read, struct rf_bytes jpeg, si
     struct rf_jpeg_walk walk;
     uint64_t pixels = 0;
 
-    if (!rf_jpeg_walk_begin(&walk, jpeg)) {
+    if (!rf_jpeg_walk_begin(&walk, jpeg))
         return 0;
-    }
     for (uint32_t i = 0; i < read->limits.max_segments && walk.position < *budget &&
                          rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT;
          i++) {
@@ -130,9 +121,8 @@ static struct rf_bytes find_preview(const struct rf_read *read, struct rf_bytes 
     for (int tried = 0; tried < 64 && file.size - at > 3;) {
         const uint8_t *const next = memchr(file.data + at, 0xff, file.size - at - 2);
 
-        if (!next || budget == 0) {
+        if (!next || budget == 0)
             break;
-        }
         at = (size_t)(next - file.data) + 1;
         if (next[1] == 0xd8 && next[2] == 0xff) {
             const struct rf_bytes jpeg = {next, file.size - at + 1};
@@ -176,9 +166,8 @@ static int develop(struct rf_read *read, struct rf_bytes file)
     const int status = read_raw(read, file);
     struct refocus_reason first = *read->reason;
 
-    if (status != REFOCUS_ERR_UNSUPPORTED && status != REFOCUS_ERR_FORMAT) {
+    if (status != REFOCUS_ERR_UNSUPPORTED && status != REFOCUS_ERR_FORMAT)
         return status;
-    }
     rf_raster_free(&read->image);
     if (read_preview(read, file) == REFOCUS_OK) {
         rf_note(read->info, "raw: it is not developed: %.120s", first.text);

@@ -25,16 +25,14 @@ static int read_container(struct rf_read *read, struct rf_bytes file)
         return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
                        "it is no stereo file; give an MPO, a stereo HEIC, or two pictures");
     }
-    if (!format && file.size == 0) {
+    if (!format && file.size == 0)
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "it is empty");
-    }
     if (!format) {
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
                        "its content is of no known format; known are %s", RF_FORMATS);
     }
-    if (!format->read) {
+    if (!format->read)
         return rf_fail_absent(read->reason, format->name, format->library);
-    }
     return format->read(read, file);
 }
 
@@ -118,12 +116,10 @@ int rf_read_begin(struct rf_read *read, struct rf_bytes file,
     info->orientation = 1;
     info->focus_x = info->focus_y = -1.0;
     status = rf_read_limits(&read->limits, limits, reason);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_check_bytes(read, file.size, "it");
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_container(read, file);
-    }
     if (status == REFOCUS_OK) {
         const struct rf_raster *const stored = read->image.pixels ? &read->image : &read->samples;
         /* HEIC says its own size: its picture is upright already. */
@@ -135,9 +131,8 @@ int rf_read_begin(struct rf_read *read, struct rf_bytes file,
             info->orientation = read->orientation;
             rf_note(info, "EXIF: orientation %d is applied to photo and depth", read->orientation);
         }
-        if (info->focus_x >= 0.0) {
+        if (info->focus_x >= 0.0)
             rf_orient_point(&info->focus_x, &info->focus_y, read->orientation);
-        }
         rf_subject_settle(read);
     }
     return status;
@@ -203,38 +198,29 @@ int rf_read_finish(struct rf_read *read, int status, struct rf_photo **photo)
     if (status == REFOCUS_OK && read->info->stored_bits == 0) {
         const uint32_t max = read->image.pixels ? read->image.max_value : read->samples.max_value;
 
-        while (max >> read->info->stored_bits) {
+        while (max >> read->info->stored_bits)
             read->info->stored_bits++;
-        }
     }
     rf_raster_free(&read->holes);
-    if (status == REFOCUS_OK && read->image.pixels) {
+    if (status == REFOCUS_OK && read->image.pixels)
         status = rf_image_to_rgb8(read);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_raster_orient(read, &read->image, read->orientation);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_raster_orient(read, &read->deep, read->orientation);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_raster_orient(read, &read->samples, read->orientation);
-    }
-    if (status == REFOCUS_OK && read->gain) {
+    if (status == REFOCUS_OK && read->gain)
         status = rf_raster_orient(read, &read->gain->samples, read->orientation);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_raster_orient(read, &read->confidence, read->orientation);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_raster_orient(read, &read->matte, read->orientation);
-    }
     if (status == REFOCUS_OK) {
         hand_over(read, *photo);
     } else {
-        if (read->gain) {
+        if (read->gain)
             rf_raster_free(&read->gain->samples);
-        }
         free(*photo);
         *photo = NULL;
     }
@@ -260,17 +246,14 @@ static int read_memory(struct refocus_photo **photo, const void *bytes, size_t s
 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
-    if (!photo) {
+    if (!photo)
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no place for the photo");
-    }
     *photo = NULL;
-    if (!bytes && size > 0) {
+    if (!bytes && size > 0)
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no bytes to read");
-    }
     made = rf_photo_new();
-    if (!made) {
+    if (!made)
         return rf_fail_memory(reason);
-    }
     status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, true, second, &made->info,
                            &made->gain, reason);
     status = rf_read_finish(&read, status, &made);
@@ -289,14 +272,12 @@ static int read_path(struct refocus_photo **photo, const char *path,
 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
-    if (!photo || !path) {
+    if (!photo || !path)
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "no photo or no path");
-    }
     *photo = NULL;
     status = rf_read_limits(&own, limits, reason);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_load(path, own.max_bytes, rf_format_is_known, reason, &file);
-    }
     if (status == REFOCUS_OK) {
         status = read_memory(photo, file.data, file.size, limits, second, reason);
         free(file.data);
@@ -335,9 +316,8 @@ void refocus_photo_free(struct refocus_photo **photo)
 {
     struct rf_photo *owner;
 
-    if (!photo || !*photo) {
+    if (!photo || !*photo)
         return;
-    }
     owner = (struct rf_photo *)(void *)*photo;
     free(owner->pixels);
     free(owner->deep_pixels);

@@ -72,12 +72,10 @@ int rf_raster_alloc(const struct rf_read *read, struct rf_raster *raster)
     int status = rf_check_size(read, (uint64_t)raster->width, (uint64_t)raster->height, bytes);
 
     raster->pixels = NULL;
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_check_memory(read, (uint64_t)raster->width * (uint64_t)raster->height * bytes);
-    }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     raster->pixels = malloc((size_t)raster->width * (size_t)raster->height * bytes);
     return raster->pixels ? REFOCUS_OK : rf_fail_memory(read->reason);
 }
@@ -102,9 +100,8 @@ int rf_part_alpha(struct rf_read *read)
     const int status = rf_raster_alloc(read, &holes);
     bool any = false;
 
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     for (size_t i = 0; i < count; i++) {
         const uint8_t *const from = raster->pixels + i * (colour + sample);
         const bool hole = memcmp(from + colour, zero, sample) == 0;
@@ -114,10 +111,9 @@ int rf_part_alpha(struct rf_read *read)
         memmove(raster->pixels + i * colour, from, colour);
     }
     raster->channels--;
-    if (any) {
+    if (any)
         read->holes = holes;
-    } else {
+    else
         rf_raster_free(&holes);
-    }
     return REFOCUS_OK;
 }

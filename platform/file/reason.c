@@ -8,11 +8,9 @@
 
 void rf_clean_text(char *text)
 {
-    for (; *text; text++) {
-        if (*text < 0x20 || *text > 0x7e) {
+    for (; *text; text++)
+        if (*text < 0x20 || *text > 0x7e)
             *text = '?';
-        }
-    }
 }
 
 static void write_line(char *line, size_t size, const char *format, va_list arguments)
@@ -41,12 +39,10 @@ int rf_fail_errno(struct refocus_reason *reason, int error, const char *what)
 {
     char words[128];
 
-    if (error == ENOMEM) {
+    if (error == ENOMEM)
         return rf_fail_memory(reason);
-    }
-    if (strerror_r(error, words, sizeof words) != 0) {
+    if (strerror_r(error, words, sizeof words) != 0)
         snprintf(words, sizeof words, "error %d", error);
-    }
     return rf_fail(reason, REFOCUS_ERR_IO, "%s: %s", what, words);
 }
 
@@ -60,9 +56,8 @@ void rf_note(struct refocus_photo_info *info, const char *format, ...)
 {
     va_list arguments;
 
-    if (info->evidence_count >= REFOCUS_INFO_LINES) {
+    if (info->evidence_count >= REFOCUS_INFO_LINES)
         return;
-    }
     va_start(arguments, format);
     write_line(info->evidence[info->evidence_count++], REFOCUS_INFO_LENGTH, format, arguments);
     va_end(arguments);

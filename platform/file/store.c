@@ -30,18 +30,16 @@ char *refocus_file_place(const char *path)
     const size_t size = path ? strlen(path) + 1 : 0;
     char *place = path ? malloc(size) : NULL, target[PATH_MAX];
 
-    if (place) {
+    if (place)
         memcpy(place, path, size);
-    }
 
     for (int i = 0; i < MOST && place; i++) {
         const ssize_t length = readlink(place, target, sizeof target);
         const size_t folder = folder_of(place);
         char *next;
 
-        if (length <= 0 || length == sizeof target) {
+        if (length <= 0 || length == sizeof target)
             break;
-        }
         next = malloc(folder + (size_t)length + 1);
         if (next) {
             const size_t kept = target[0] == '/' ? 0 : folder;
@@ -73,9 +71,8 @@ static int open_temporary(struct rf_store *store, size_t folder, const char *end
                  (unsigned long)now.tv_nsec ^ ((unsigned long)(uintptr_t)store << 4),
                  (unsigned)attempt, ending);
         file = open(store->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-        if (file >= 0 || errno != EEXIST) {
+        if (file >= 0 || errno != EEXIST)
             return file;
-        }
     }
     return -1;
 }
@@ -90,9 +87,8 @@ static int check_place(const char *place, struct refocus_reason *reason)
         return errno == ENOENT ? REFOCUS_OK
                                : rf_fail_errno(reason, errno, "cannot write in its folder");
     }
-    if (S_ISDIR(old.st_mode)) {
+    if (S_ISDIR(old.st_mode))
         return rf_fail(reason, REFOCUS_ERR_IO, "it is a folder; give the name of a file");
-    }
     if (!S_ISREG(old.st_mode)) {
         return rf_fail(reason, REFOCUS_ERR_IO,
                        "it is a pipe, socket or device; give the name of a file");
@@ -113,32 +109,27 @@ static int take_over(int file, const char *path, struct refocus_reason *reason)
         return errno == ENOENT ? REFOCUS_OK
                                : rf_fail_errno(reason, errno, "cannot see whose it is");
     }
-    if (fstat(file, &new) != 0) {
+    if (fstat(file, &new) != 0)
         return rf_fail_errno(reason, errno, "cannot write in its folder");
-    }
     mode = old.st_mode & 0777;
     if (new.st_uid != old.st_uid && fchown(file, old.st_uid, (gid_t)-1) != 0) {
         return rf_fail(reason, REFOCUS_ERR_IO,
                        "it belongs to another user, which replacing it would change; remove it "
                        "first or give another name");
     }
-    if (new.st_gid != old.st_gid && fchown(file, (uid_t)-1, old.st_gid) != 0) {
+    if (new.st_gid != old.st_gid && fchown(file, (uid_t)-1, old.st_gid) != 0)
         mode &= (mode & 07) << 3 | 0707;
-    }
-    if ((new.st_mode & 0777) != mode && fchmod(file, mode) != 0) {
+    if ((new.st_mode & 0777) != mode && fchmod(file, mode) != 0)
         return rf_fail_errno(reason, errno, "cannot keep its mode");
-    }
     return REFOCUS_OK;
 }
 
 /* Returns 0 or errno. A file that cannot be synced, such as a pipe, is not on a disk. */
 static int sync_file(int file)
 {
-    while (fsync(file) != 0) {
-        if (errno != EINTR) {
+    while (fsync(file) != 0)
+        if (errno != EINTR)
             return errno == EINVAL || errno == EROFS || errno == ENOTSUP ? 0 : errno;
-        }
-    }
     return 0;
 }
 
@@ -168,9 +159,8 @@ static int begin(struct rf_store *store, const char *path, const char *ending, i
 
     memset(store, 0, sizeof *store);
     store->path = refocus_file_place(path);
-    if (!store->path) {
+    if (!store->path)
         return rf_fail_memory(reason);
-    }
     status = check_place(store->path, reason);
     folder = folder_of(store->path);
     if (status == REFOCUS_OK) {
@@ -183,9 +173,8 @@ static int begin(struct rf_store *store, const char *path, const char *ending, i
         status =
             file >= 0 ? REFOCUS_OK : rf_fail_errno(reason, errno, "cannot write in its folder");
     }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = take_over(file, store->path, reason);
-    }
     if (status != REFOCUS_OK) {
         if (file >= 0) {
             close(file);
@@ -216,9 +205,8 @@ void rf_store_write(struct rf_store *store, const void *bytes, size_t size)
 {
     if (store->error == 0 && size > 0) {
         errno = 0;
-        if (fwrite(bytes, 1, size, store->stream) != size) {
+        if (fwrite(bytes, 1, size, store->stream) != size)
             store->error = errno ? errno : EIO;
-        }
         store->written += size;
     }
 }
@@ -233,9 +221,8 @@ int rf_store_open_memory(struct rf_store *store, struct refocus_reason *reason)
 int rf_store_close_memory(struct rf_store *store, int status, struct refocus_blob *blob,
                           struct refocus_reason *reason)
 {
-    if ((fclose(store->stream) != 0 || store->error) && status == REFOCUS_OK) {
+    if ((fclose(store->stream) != 0 || store->error) && status == REFOCUS_OK)
         status = rf_fail_memory(reason);
-    }
     if (status != REFOCUS_OK) {
         free(store->bytes);
         store->bytes = NULL;
@@ -251,27 +238,21 @@ int rf_store_close(struct rf_store *store, int status, struct refocus_reason *re
     const bool good = status == REFOCUS_OK;
 
     errno = 0;
-    if (good && store->error == 0 && fflush(store->stream) != 0) {
+    if (good && store->error == 0 && fflush(store->stream) != 0)
         store->error = errno ? errno : EIO;
-    }
-    if (good && store->error == 0 && !store->unsynced) {
+    if (good && store->error == 0 && !store->unsynced)
         store->error = sync_file(fileno(store->stream));
-    }
     errno = 0;
-    if (fclose(store->stream) != 0 && store->error == 0) {
+    if (fclose(store->stream) != 0 && store->error == 0)
         store->error = errno ? errno : EIO;
-    }
-    if (good && store->error == 0 && rename(store->temporary, store->path) != 0) {
+    if (good && store->error == 0 && rename(store->temporary, store->path) != 0)
         store->error = errno;
-    }
-    if (!good || store->error != 0) {
+    if (!good || store->error != 0)
         unlink(store->temporary);
-    } else if (!store->unsynced) {
+    else if (!store->unsynced)
         sync_folder(store->path);
-    }
-    if (good && store->error != 0) {
+    if (good && store->error != 0)
         status = rf_fail_errno(reason, store->error, "cannot write it");
-    }
     free(store->temporary);
     free(store->path);
     return status;
@@ -286,13 +267,11 @@ int refocus_file_write(const char *path, const void *bytes, size_t size,
 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
-    if (!path || !bytes) {
+    if (!path || !bytes)
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "there is no name or nothing to write");
-    }
     status = rf_store_open(&store, path, reason);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     rf_store_write(&store, bytes, size);
     return rf_store_close(&store, REFOCUS_OK, reason);
 }
@@ -306,9 +285,8 @@ int refocus_file_temporary(const char *path, char **temporary, struct refocus_re
 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
-    if (!path || !*path || !temporary) {
+    if (!path || !*path || !temporary)
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "there is no name or no place for one");
-    }
     *temporary = NULL;
     dot = strrchr(path + folder_of(path), '.');
     status = begin(&store, path, dot ? dot : "", &file, reason);
@@ -328,13 +306,11 @@ int refocus_file_move(const char *temporary, const char *path, struct refocus_re
 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
-    if (!temporary || !path) {
+    if (!temporary || !path)
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "there is no name");
-    }
     place = refocus_file_place(path);
-    if (!place) {
+    if (!place)
         return rf_fail_memory(reason);
-    }
     status = check_place(place, reason);
     file = status == REFOCUS_OK ? open(temporary, O_RDONLY | O_CLOEXEC) : -1;
     if (file >= 0) {
@@ -344,15 +320,12 @@ int refocus_file_move(const char *temporary, const char *path, struct refocus_re
     } else if (status == REFOCUS_OK) {
         error = errno;
     }
-    if (status == REFOCUS_OK && error == 0 && rename(temporary, place) != 0) {
+    if (status == REFOCUS_OK && error == 0 && rename(temporary, place) != 0)
         error = errno;
-    }
-    if (error != 0) {
+    if (error != 0)
         status = rf_fail_errno(reason, error, "cannot write it");
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         sync_folder(place);
-    }
     free(place);
     return status;
 }

@@ -42,11 +42,9 @@ void rf_text_number(struct rf_text *text, const char *name, double value)
     char number[64];
 
     snprintf(number, sizeof number, "%.12g", value);
-    for (char *c = number; *c; c++) {
-        if (*c != '-' && *c != '+' && *c != 'e' && (*c < '0' || *c > '9')) {
+    for (char *c = number; *c; c++)
+        if (*c != '-' && *c != '+' && *c != 'e' && (*c < '0' || *c > '9'))
             *c = '.';
-        }
-    }
     rf_text_words(text, name);
     rf_text_words(text, "=\"");
     rf_text_words(text, number);
@@ -58,9 +56,8 @@ void rf_text_base64(struct rf_text *text, struct rf_bytes bytes)
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     char *out;
 
-    if (!has_room(text, bytes.size / 3 * 4 + 4)) {
+    if (!has_room(text, bytes.size / 3 * 4 + 4))
         return;
-    }
     out = text->data + text->size;
     for (size_t i = 0; i < bytes.size; i += 3) {
         const size_t n = bytes.size - i < 3 ? bytes.size - i : 3;

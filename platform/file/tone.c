@@ -151,9 +151,8 @@ static void local_of(const struct rf_tone *tone, const struct rf_tone_part *part
     float shown[3];
 
     show(tone, part->x + x, part->y + y, own_at(part, x, y), shown);
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 3; c++)
         local[c] = tone->light[base[c]] - shown[c];
-    }
 }
 
 static float change_at(const struct rf_tone_part *part, int x, int y)
@@ -182,12 +181,10 @@ static void read_patch(const struct rf_tone *tone, const struct rf_tone_part *pa
         const float like = fmaxf(1 - 4 * change_at(part, x, y), 0);
         float local[3] = {0, 0, 0};
 
-        if (like > 0) {
+        if (like > 0)
             local_of(tone, part, x, y, local);
-        }
-        for (int c = 0; c < 3; c++) {
+        for (int c = 0; c < 3; c++)
             patch->kept[c][i] = like * local[c];
-        }
     }
 }
 
@@ -197,15 +194,12 @@ static void average(float *values, int stride, int rows, int reach)
 {
     const int side = 2 * reach + 1;
 
-    for (int i = 0; i < rows * stride - 2 * reach; i++) {
-        for (int k = 1; k < side; k++) {
+    for (int i = 0; i < rows * stride - 2 * reach; i++)
+        for (int k = 1; k < side; k++)
             values[i] += values[i + k];
-        }
-    }
     for (int i = 0; i < (rows - 2 * reach) * stride; i++) {
-        for (int k = 1; k < side; k++) {
+        for (int k = 1; k < side; k++)
             values[i] += values[i + k * stride];
-        }
         values[i] /= (float)(side * side);
     }
 }
@@ -265,9 +259,8 @@ static void show_pixel(const struct rf_tone *tone, const struct rf_tone_part *pa
     }
     for (int c = 0; c < 3; c++) {
         light[c] = light[c] > RF_HALF_MOST ? 0 : light[c]; /* negative light and NaN, too */
-        if (rf_half_value(light[c]) > NEARLY) {
+        if (rf_half_value(light[c]) > NEARLY)
             light[c] = beyond_full(tone, part->x + x, part->y + y, c, light[c]);
-        }
     }
     show(tone, part->x + x, part->y + y, light, shown);
     for (int c = 0; c < 3; c++) {
@@ -289,20 +282,17 @@ static void show_patch(const struct rf_tone *tone, const struct rf_tone_part *pa
     struct patch patch;
 
     read_patch(tone, part, x0, y0, &patch);
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 3; c++)
         average(patch.kept[c], COARSE_STRIDE, COARSE_ROWS, FAR);
-    }
     average(patch.change, STRIDE, ROWS, NEAR);
     for (int y = 0; y < HIGH && y0 + y < part->light->height; y++) {
         for (int x = 0; x < WIDE && x0 + x < part->light->width; x++) {
             struct beyond beyond = {.own = fmaxf(1 - 16 * patch.change[y * STRIDE + x], 0)};
 
-            if (beyond.own > 0) {
+            if (beyond.own > 0)
                 local_of(tone, part, x0 + x, y0 + y, beyond.local);
-            }
-            for (int c = 0; c < 3; c++) {
+            for (int c = 0; c < 3; c++)
                 beyond.kept[c] = kept_at(&patch, x, y, c);
-            }
             show_pixel(tone, part, x0 + x, y0 + y, &beyond);
         }
     }
@@ -310,9 +300,7 @@ static void show_patch(const struct rf_tone *tone, const struct rf_tone_part *pa
 
 void rf_tone_encode(const struct rf_tone *tone, const struct rf_tone_part *part)
 {
-    for (int y = 0; y < part->light->height; y += HIGH) {
-        for (int x = 0; x < part->light->width; x += WIDE) {
+    for (int y = 0; y < part->light->height; y += HIGH)
+        for (int x = 0; x < part->light->width; x += WIDE)
             show_patch(tone, part, x, y);
-        }
-    }
 }

@@ -105,15 +105,12 @@ static void measure_block(const struct rf_tone *tone, const struct refocus_image
         const uint16_t *row =
             (const uint16_t *)(const void *)(light->plane[0] + y * light->stride[0]);
 
-        for (int x = x0; x < x1; x += step, count++) {
-            for (int c = 0; c < 3; c++) {
+        for (int x = x0; x < x1; x += step, count++)
+            for (int c = 0; c < 3; c++)
                 mean[c] += rf_half_value(row[3 * (ptrdiff_t)x + c]);
-            }
-        }
     }
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 3; c++)
         mean[c] /= (float)count;
-    }
 }
 
 /* The sums of a level are those of four cells of the finer one. */
@@ -149,9 +146,8 @@ static void draw_whole(struct knot *curve)
     int last = -1;
 
     for (int i = 0; i < RF_TONE_KNOTS; i++) {
-        if (curve[i].count <= 0) {
+        if (curve[i].count <= 0)
             continue;
-        }
         curve[i].shown = shown_at(&curve[i], i);
         for (int k = last + 1; k < i; k++) {
             const int from = last < 0 ? 0 : last;
@@ -162,18 +158,16 @@ static void draw_whole(struct knot *curve)
         }
         last = i;
     }
-    for (int k = last + 1; k < RF_TONE_KNOTS; k++) {
+    for (int k = last + 1; k < RF_TONE_KNOTS; k++)
         curve[k].shown = last < 0 ? 0 : curve[last].shown;
-    }
 }
 
 static void draw(struct knot *curve, const struct knot *around)
 {
     float pixels = 0;
 
-    for (int i = 0; i < RF_TONE_KNOTS; i++) {
+    for (int i = 0; i < RF_TONE_KNOTS; i++)
         pixels += curve[i].count;
-    }
     for (int i = 0; i < RF_TONE_KNOTS; i++) {
         const float own = curve[i].count, other = pixels / FEW + 1e-3f;
 
@@ -205,11 +199,9 @@ static void make_grow(const struct knot *curve, float *shown)
             pool[n - 1].end = pool[n].end;
         }
     }
-    for (int i = 0, k = 0; k < n; k++) {
-        for (; i < pool[k].end; i++) {
+    for (int i = 0, k = 0; k < n; k++)
+        for (; i < pool[k].end; i++)
             shown[i] = pool[k].sum / pool[k].count;
-        }
-    }
 }
 
 static void draw_level(const struct rf_tone *tone, const struct level *level,
@@ -220,11 +212,10 @@ static void draw_level(const struct rf_tone *tone, const struct level *level,
             for (int c = 0; c < rf_tone_channels(tone); c++) {
                 struct knot *const curve = curve_of(tone, level, x, y, c);
 
-                if (coarse) {
+                if (coarse)
                     draw(curve, curve_of(tone, coarse, x / 2, y / 2, c));
-                } else {
+                else
                     draw_whole(curve);
-                }
             }
         }
     }
@@ -244,9 +235,8 @@ static void set_curves(struct rf_tone *tone, const struct level *cells)
 
 static void set_tables(struct rf_tone *tone)
 {
-    for (int i = 0; i < 256; i++) {
+    for (int i = 0; i < 256; i++)
         tone->light[i] = rf_tone_light(i);
-    }
     for (int i = 0; i <= 4096; i++) {
         const double v = i / 4096.0 * (i / 4096.0);
 
@@ -273,9 +263,8 @@ static size_t lay_out(const struct rf_tone *tone, struct level *level, int *leve
     for (*levels = 0; *levels < MOST_LEVELS; across = (across + 1) / 2, down = (down + 1) / 2) {
         level[(*levels)++] = (struct level){across, down, knots ? knots + all : NULL};
         all += (size_t)across * (size_t)down * (size_t)rf_tone_channels(tone) * RF_TONE_KNOTS;
-        if (across == 1 && down == 1) {
+        if (across == 1 && down == 1)
             break;
-        }
     }
     return all;
 }
@@ -296,21 +285,17 @@ int rf_tone_fit(struct rf_tone *tone, const struct refocus_image *base,
     tone->blocks_across = cells_along(base->width, longer, RF_TONE_BLOCKS);
     tone->blocks_down = cells_along(base->height, longer, RF_TONE_BLOCKS);
     knots = calloc(lay_out(tone, level, &levels, NULL), sizeof *knots);
-    if (!knots) {
+    if (!knots)
         return REFOCUS_ERR_MEMORY;
-    }
     lay_out(tone, level, &levels, knots);
     set_tables(tone);
-    for (int i = 0; i < tone->blocks_across * tone->blocks_down; i++) {
+    for (int i = 0; i < tone->blocks_across * tone->blocks_down; i++)
         measure_block(tone, light, i % tone->blocks_across, i / tone->blocks_across, tone->mean[i]);
-    }
     count(tone, &level[0], base, light);
-    for (int i = 1; i < levels; i++) {
+    for (int i = 1; i < levels; i++)
         add_up(tone, &level[i - 1], &level[i]);
-    }
-    for (int i = levels - 1; i >= 0; i--) {
+    for (int i = levels - 1; i >= 0; i--)
         draw_level(tone, &level[i], i + 1 < levels ? &level[i + 1] : NULL);
-    }
     set_curves(tone, &level[0]);
     free(knots);
     return REFOCUS_OK;

@@ -23,12 +23,10 @@ static int take_map(struct rf_read *read, struct rf_bytes map, uint32_t width, u
                                .max_value = 255};
     int status = rf_check_size(read, width, height, 1);
 
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_raster_alloc(read, &raster);
-    }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     memcpy(raster.pixels, map.data, (size_t)width * height);
     read->samples = raster;
     read->depth.meaning = REFOCUS_DEPTH_DISPARITY;
@@ -62,19 +60,16 @@ static bool find_directory(struct rf_bytes file, struct rf_bytes *directory)
 {
     size_t end = file.size;
 
-    if (end >= 6 && memcmp(file.data + end - 6, "QDIOBS", 6) == 0) {
+    if (end >= 6 && memcmp(file.data + end - 6, "QDIOBS", 6) == 0)
         end -= 2;
-    }
     for (int blocks = 0; blocks < 8 && end >= 8; blocks++) {
         const uint32_t size = rf_little_endian(file.data + end - 8, 4);
 
-        if (size < 4 || size >= 0x10000 || size > end - 8) {
+        if (size < 4 || size >= 0x10000 || size > end - 8)
             return false;
-        }
         *directory = (struct rf_bytes){file.data + end - 8 - size, size};
-        if (memcmp(file.data + end - 4, "SEFT", 4) == 0) {
+        if (memcmp(file.data + end - 4, "SEFT", 4) == 0)
             return size >= 12 && memcmp(directory->data, "SEFH", 4) == 0;
-        }
         end -= 8 + size;
     }
     return false;
@@ -92,18 +87,16 @@ static void take_block(struct samsung *found, struct rf_bytes block)
                    length = rf_little_endian(block.data + 4, 4);
     struct rf_bytes name, data;
 
-    if (length > block.size - 8) {
+    if (length > block.size - 8)
         return;
-    }
     name = (struct rf_bytes){block.data + 8, length};
     data = (struct rf_bytes){block.data + 8 + length, block.size - 8 - length};
-    if (type == DUAL_MAP && is_named(name, "DualShot_DepthMap_") && !found->map.data) {
+    if (type == DUAL_MAP && is_named(name, "DualShot_DepthMap_") && !found->map.data)
         found->map = data;
-    } else if (type == DUAL_EXTRA && !found->extra.data) {
+    else if (type == DUAL_EXTRA && !found->extra.data)
         found->extra = data;
-    } else if (type == SUB_IMAGE && length == 10 && is_named(name, "DualShot_1")) {
+    else if (type == SUB_IMAGE && length == 10 && is_named(name, "DualShot_1"))
         found->original = data;
-    }
 }
 
 static void take_blocks(struct samsung *found, struct rf_bytes file, size_t main_end,
@@ -116,9 +109,8 @@ static void take_blocks(struct samsung *found, struct rf_bytes file, size_t main
         const uint8_t *const entry = directory.data + 12 + 12 * (size_t)i;
         const uint32_t back = rf_little_endian(entry + 4, 4), size = rf_little_endian(entry + 8, 4);
 
-        if (back <= at - main_end && size <= back && size >= 8) {
+        if (back <= at - main_end && size <= back && size >= 8)
             take_block(found, (struct rf_bytes){file.data + at - back, size});
-        }
     }
 }
 
@@ -146,9 +138,8 @@ static int read_samsung(struct rf_read *read, struct rf_bytes file, size_t main_
     int status;
 
     take_blocks(&found, file, main_end, directory);
-    if (!found.map.data) {
+    if (!found.map.data)
         return REFOCUS_OK;
-    }
     if (!find_sides(found.extra, &width, &height) || width == 0 || height == 0 ||
         (uint64_t)width * height != found.map.size) {
         rf_note(read->info, "Samsung: its depth map does not say its sides, passed over");
@@ -174,9 +165,8 @@ static int read_huawei(struct rf_read *read, struct rf_bytes file, size_t main_e
         int status;
 
         if (rest.data[0] != 'e' || rest.size < MAP_AT ||
-            memcmp(rest.data, mark, sizeof mark - 1) != 0) {
+            memcmp(rest.data, mark, sizeof mark - 1) != 0)
             continue;
-        }
         width = rf_little_endian(rest.data + SIDES_AT, 2);
         height = rf_little_endian(rest.data + SIDES_AT + 2, 2);
         if (width == 0 || height == 0 || (uint64_t)width * height > rest.size - MAP_AT) {
@@ -198,9 +188,8 @@ int rf_read_trailer(struct rf_read *read, struct rf_bytes file, size_t main_end)
     const struct rf_bytes behind = {file.data + main_end, file.size - main_end};
     struct rf_bytes directory;
 
-    if (read->samples.pixels) {
+    if (read->samples.pixels)
         return REFOCUS_OK;
-    }
     return find_directory(behind, &directory) ? read_samsung(read, file, main_end, directory)
                                               : read_huawei(read, file, main_end);
 }

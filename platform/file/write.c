@@ -18,13 +18,11 @@ static int write_rows(const char *path, const struct rf_format *format, const st
     int status;
 
     /* A missing encoder is refused before a file is made. */
-    if (!format->write) {
+    if (!format->write)
         return rf_fail_absent(reason, format->name, format->library);
-    }
     status = rf_store_open(&store, path, reason);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     store.unsynced = options->unsynced;
     status = format->write(&store, rows, options, reason);
     return rf_store_close(&store, status, reason);
@@ -70,9 +68,8 @@ static int check_editable(struct refocus_write_options *parts, const struct rf_f
 #endif
     int status;
 
-    if (!parts->editable) {
+    if (!parts->editable)
         return REFOCUS_OK;
-    }
     if ((status = refocus_struct_read(&own->given, sizeof own->given,
                                       REFOCUS_SIZE_TO(struct refocus_editable, simulated_f_number),
                                       parts->editable)))
@@ -111,9 +108,8 @@ static int check_light(struct refocus_write_options *parts, const struct rf_form
 {
     int status;
 
-    if (!parts->light) {
+    if (!parts->light)
         return REFOCUS_OK;
-    }
     if ((status = refocus_image_read(own, parts->light)))
         return rf_fail(reason, status, "the light is not of a known size of struct");
     if (!rf_gain_can_make(rows, own)) {
@@ -155,9 +151,8 @@ int refocus_image_write(const char *path, const struct refocus_image *image,
                        "the picture or the quality is out of its range");
     }
     format = rf_format_of_name(path);
-    if (!format || !format->writes_pictures) {
+    if (!format || !format->writes_pictures)
         return fail_ending(reason, false);
-    }
     if (image->format > REFOCUS_FORMAT_YUYV && image->format != format->deep) {
         return rf_fail(
             reason, REFOCUS_ERR_UNSUPPORTED,
@@ -186,13 +181,11 @@ int refocus_gray16_write(const char *path, const uint16_t *samples, int width, i
 
     reason = reason ? reason : &unused;
     reason->text[0] = '\0';
-    if (!path || !samples || stride % 2 != 0 || !fits(width, height, stride, 2)) {
+    if (!path || !samples || stride % 2 != 0 || !fits(width, height, stride, 2))
         return rf_fail(reason, REFOCUS_ERR_ARGUMENT, "the samples are out of their range");
-    }
     format = rf_format_of_name(path);
-    if (!format || !format->writes_depth) {
+    if (!format || !format->writes_depth)
         return fail_ending(reason, true);
-    }
     rows.top = (const uint8_t *)samples;
     rows.stride = stride;
     rows.width = width;

@@ -19,12 +19,10 @@ int rf_xmp_number(const struct rf_read *read, const struct rf_xmp *xmp, enum rf_
 {
     *found = false;
     *value = 0.0;
-    if (!xmp->value[key]) {
+    if (!xmp->value[key])
         return REFOCUS_OK;
-    }
-    if (!rf_parse_number(xmp->value[key], value)) {
+    if (!rf_parse_number(xmp->value[key], value))
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged: its %s is no number", name);
-    }
     *found = true;
     return REFOCUS_OK;
 }

@@ -64,9 +64,8 @@ struct editing {
 
 static void stop(struct editing *editing, int status)
 {
-    if (editing->status == REFOCUS_OK) {
+    if (editing->status == REFOCUS_OK)
         editing->status = status;
-    }
     XML_StopParser(editing->parser, XML_FALSE);
 }
 
@@ -111,28 +110,23 @@ static bool next_attribute(const uint8_t *data, size_t *at, size_t end, struct s
     uint8_t quote;
 
     attribute->begin = i;
-    while (i < end && is_blank(data[i])) {
+    while (i < end && is_blank(data[i]))
         i++;
-    }
-    while (i < end && data[i] != '"' && data[i] != '\'') {
+    while (i < end && data[i] != '"' && data[i] != '\'')
         i++;
-    }
-    if (i == end) {
+    if (i == end)
         return false;
-    }
     quote = data[i++];
-    while (i < end && data[i] != quote) {
+    while (i < end && data[i] != quote)
         i++;
-    }
     attribute->end = *at = i < end ? i + 1 : end;
     return i < end;
 }
 
 static bool declares_namespace(const uint8_t *data, struct stretch attribute)
 {
-    while (is_blank(data[attribute.begin])) {
+    while (is_blank(data[attribute.begin]))
         attribute.begin++;
-    }
     return attribute.end - attribute.begin > 6 && memcmp(data + attribute.begin, "xmlns", 5) == 0 &&
            (data[attribute.begin + 5] == ':' || data[attribute.begin + 5] == '=' ||
             is_blank(data[attribute.begin + 5]));
@@ -146,13 +140,11 @@ static void cut_attributes(struct editing *editing, size_t begin, size_t end,
     struct stretch attribute;
     size_t at = begin;
 
-    while (at < end && !is_blank(data[at])) {
+    while (at < end && !is_blank(data[at]))
         at++;
-    }
     while (*attributes && next_attribute(data, &at, end, &attribute)) {
-        if (declares_namespace(data, attribute)) {
+        if (declares_namespace(data, attribute))
             continue;
-        }
         if (is_cut(editing, *attributes)) {
             cut(editing, attribute.begin, attribute.end);
             editing->node_lost = true;
@@ -177,9 +169,8 @@ static void XMLCALL on_start(void *user, const XML_Char *name, const XML_Char **
         editing->cut_open++;
         return;
     }
-    if (editing->frame > 0 || strcmp(name, RDF "RDF") == 0) {
+    if (editing->frame > 0 || strcmp(name, RDF "RDF") == 0)
         editing->frame++;
-    }
     if (editing->frame >= 3 && is_cut(editing, name)) {
         editing->cut_begin = begin;
         editing->cut_open = 1;
@@ -206,9 +197,8 @@ static void XMLCALL on_end(void *user, const XML_Char *name)
     (void)name;
     editing->open--;
     if (editing->cut_open > 0) {
-        if (--editing->cut_open == 0) {
+        if (--editing->cut_open == 0)
             cut(editing, editing->cut_begin, end);
-        }
         return;
     }
     if (editing->frame == 2) {
@@ -280,13 +270,12 @@ static int finish(struct editing *editing)
         return REFOCUS_OK;
     }
     edit->outcome = RF_XMP_CHANGED;
-    if (editing->has && (editing->place > 0 || edit->insert.size == 0)) {
+    if (editing->has && (editing->place > 0 || edit->insert.size == 0))
         put_edited(editing);
-    } else if (edit->insert.size > 0) {
+    else if (edit->insert.size > 0)
         put_new(edit);
-    } else {
+    else
         edit->outcome = RF_XMP_EMPTY;
-    }
     return edit->packet.failed ? rf_fail_memory(editing->read->reason) : REFOCUS_OK;
 }
 
@@ -304,25 +293,20 @@ int rf_xmp_edit(const struct rf_read *read, struct rf_bytes packet, struct rf_xm
 
     edit->found = 0;
     edit->packet = (struct rf_text){NULL, 0, 0, false};
-    if (packet.size == 0) {
+    if (packet.size == 0)
         return finish(&editing);
-    }
-    if (status == REFOCUS_OK && has_wide_letters(packet)) {
+    if (status == REFOCUS_OK && has_wide_letters(packet))
         status = REFOCUS_ERR_FORMAT;
-    }
     if (status == REFOCUS_OK) {
         editing.parser = rf_xmp_parser(&editing, on_start, on_end, on_doctype);
         status = editing.parser ? REFOCUS_OK : rf_fail_memory(read->reason);
     }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_xmp_run(read, editing.parser, packet, &editing.status);
-    }
-    if (editing.parser) {
+    if (editing.parser)
         XML_ParserFree(editing.parser);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = finish(&editing);
-    }
     free(editing.cuts);
     return status;
 }

@@ -26,9 +26,8 @@ static bool next_chunk(struct rf_jpeg_walk *walk, const char *guid, struct chunk
         if (walk->marker != 0xe1 ||
             !rf_jpeg_after(walk->segment, rf_jpeg_extended_signature,
                            sizeof rf_jpeg_extended_signature, &rest) ||
-            rest.size < HEAD_BYTES) {
+            rest.size < HEAD_BYTES)
             continue;
-        }
         if (memcmp(rest.data, guid, GUID_BYTES) != 0) {
             ++*strangers;
             continue;
@@ -70,12 +69,10 @@ static int check_places(const struct rf_read *read, struct place *places, size_t
 
     qsort(places, count, sizeof *places, compare_places);
     for (size_t i = 0; i < count; i++) {
-        if (places[i].offset < reached) {
+        if (places[i].offset < reached)
             return fail_chunks(read, "has parts that overlap");
-        }
-        if (places[i].offset > reached) {
+        if (places[i].offset > reached)
             return fail_chunks(read, "lacks a part");
-        }
         reached += places[i].size;
     }
     return reached == length ? REFOCUS_OK : fail_chunks(read, "lacks a part");
@@ -93,20 +90,16 @@ static int survey(struct rf_read *read, struct rf_bytes jpeg, const char *guid, 
     *length = 0;
     rf_jpeg_walk_begin(&walk, jpeg);
     while (next_chunk(&walk, guid, &chunk, &strangers)) {
-        if (++*count == 1) {
+        if (++*count == 1)
             *length = chunk.length;
-        }
         if (chunk.length != *length || chunk.offset > *length ||
-            chunk.content.size > *length - chunk.offset) {
+            chunk.content.size > *length - chunk.offset)
             return fail_chunks(read, "contradicts itself");
-        }
     }
-    if (strangers > 0) {
+    if (strangers > 0)
         rf_note(read->info, "XMP: %d extended parts of another GUID passed over", strangers);
-    }
-    if (*count == 0) {
+    if (*count == 0)
         return fail_chunks(read, "is missing");
-    }
     return rf_check_metadata(read, *length, "its extended XMP");
 }
 
@@ -123,17 +116,14 @@ int rf_xmp_extended(struct rf_read *read, struct rf_bytes jpeg, const char *guid
 
     packet->data = NULL;
     packet->size = 0;
-    if (guid_length != GUID_BYTES) {
+    if (guid_length != GUID_BYTES)
         return fail_chunks(read, "is named by no proper GUID");
-    }
     status = survey(read, jpeg, guid, &count, &length);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     places = malloc(count * sizeof *places);
-    if (!places) {
+    if (!places)
         return rf_fail_memory(read->reason);
-    }
     rf_jpeg_walk_begin(&walk, jpeg);
     while (n < count && next_chunk(&walk, guid, &chunk, &strangers)) {
         places[n].offset = chunk.offset;
@@ -141,18 +131,15 @@ int rf_xmp_extended(struct rf_read *read, struct rf_bytes jpeg, const char *guid
     }
     status = check_places(read, places, n, length);
     free(places);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     packet->data = malloc((size_t)length + 1);
-    if (!packet->data) {
+    if (!packet->data)
         return rf_fail_memory(read->reason);
-    }
     packet->size = (size_t)length;
     rf_jpeg_walk_begin(&walk, jpeg);
-    while (next_chunk(&walk, guid, &chunk, &strangers)) {
+    while (next_chunk(&walk, guid, &chunk, &strangers))
         memcpy(packet->data + chunk.offset, chunk.content.data, chunk.content.size);
-    }
     rf_note(read->info, "XMP: extended packet of %llu bytes in %zu parts, complete",
             (unsigned long long)length, count);
     return REFOCUS_OK;

@@ -28,9 +28,8 @@ static int find_extended(struct rf_xmp_keep *keep, struct rf_xmp_packet *packet,
     if (status == REFOCUS_OK && jpeg.size > 0 && xmp.value[RF_XMP_EXTENDED]) {
         status = rf_xmp_extended(&keep->read, jpeg, xmp.value[RF_XMP_EXTENDED],
                                  xmp.length[RF_XMP_EXTENDED], &packet->extended);
-        if (status == REFOCUS_OK) {
+        if (status == REFOCUS_OK)
             memcpy(packet->guid, xmp.value[RF_XMP_EXTENDED], 32);
-        }
     }
     rf_xmp_free(&xmp);
     return may_stay(status) ? REFOCUS_OK : status;
@@ -54,9 +53,8 @@ static int edit_extended(struct rf_xmp_keep *keep, struct rf_xmp_packet *packet,
     const int status = edit(keep, (struct rf_bytes){packet->extended.data, packet->extended.size},
                             &packet->edit_extended);
 
-    if (status != REFOCUS_OK || packet->edit_extended.outcome == RF_XMP_SAME) {
+    if (status != REFOCUS_OK || packet->edit_extended.outcome == RF_XMP_SAME)
         return status;
-    }
     packet->edit.cut |= RF_XMP_CUT_EXTENDED;
     if (packet->edit_extended.outcome == RF_XMP_CHANGED && !(keep->cut & RF_XMP_CUT_EXTENDED)) {
         rf_md5_hex(rf_text_bytes(&packet->edit_extended.packet), packet->new_guid);
@@ -77,12 +75,10 @@ static int edit_packet(struct rf_xmp_keep *keep, int index, struct rf_bytes jpeg
     int status = find_extended(keep, packet, jpeg);
 
     packet->edit.cut = packet->edit_extended.cut = keep->cut;
-    if (last) {
+    if (last)
         packet->edit_extended.insert = keep->insert_extended;
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = edit_extended(keep, packet, &insert);
-    }
     if (last) {
         rf_text_put(&insert, keep->insert.data, keep->insert.size);
         status = insert.failed ? rf_fail_memory(keep->read.reason) : status;
@@ -100,12 +96,10 @@ static int edit_packets(struct rf_xmp_keep *keep, struct rf_bytes jpeg)
 {
     int status = REFOCUS_OK;
 
-    if (keep->count == 0 && keep->insert.size > 0) {
+    if (keep->count == 0 && keep->insert.size > 0)
         keep->count = 1;
-    }
-    for (int i = 0; i < keep->count && status == REFOCUS_OK; i++) {
+    for (int i = 0; i < keep->count && status == REFOCUS_OK; i++)
         status = edit_packet(keep, i, jpeg);
-    }
     return status;
 }
 
@@ -114,13 +108,11 @@ int rf_xmp_keep_jpeg(struct rf_xmp_keep *keep, struct rf_bytes jpeg)
     struct rf_jpeg_walk walk;
 
     if (rf_jpeg_walk_begin(&walk, jpeg)) {
-        while (keep->count < RF_XMP_PACKETS && rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT) {
+        while (keep->count < RF_XMP_PACKETS && rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT)
             if (walk.marker == RF_JPEG_APP1 &&
                 rf_jpeg_after(walk.segment, rf_jpeg_xmp_signature, sizeof rf_jpeg_xmp_signature,
-                              &keep->packet[keep->count].standard)) {
+                              &keep->packet[keep->count].standard))
                 keep->count++;
-            }
-        }
     }
     return edit_packets(keep, jpeg);
 }

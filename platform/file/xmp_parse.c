@@ -104,25 +104,20 @@ static int find_key(const struct rf_xmp *xmp, const char *name)
 {
     int key = RF_XMP_KEYS;
 
-    for (size_t i = 0; i < sizeof names / sizeof *names && key == RF_XMP_KEYS; i++) {
-        if (strcmp(name, names[i].name) == 0) {
+    for (size_t i = 0; i < sizeof names / sizeof *names && key == RF_XMP_KEYS; i++)
+        if (strcmp(name, names[i].name) == 0)
             key = names[i].key;
-        }
-    }
     if (key == RF_XMP_KEYS || xmp->value[key] ||
         (key >= RF_XMP_MAP_FORMAT && key <= RF_XMP_MAP_CONFIDENCE_URI && xmp->maps > 1) ||
-        (key >= RF_XMP_CAMERA_IMAGE_SEMANTIC && key <= RF_XMP_CAMERA_IMAGE_URI &&
-         xmp->images > 1)) {
+        (key >= RF_XMP_CAMERA_IMAGE_SEMANTIC && key <= RF_XMP_CAMERA_IMAGE_URI && xmp->images > 1))
         return RF_XMP_KEYS;
-    }
     return key;
 }
 
 static void stop(struct parsing *parsing, int status)
 {
-    if (parsing->status == REFOCUS_OK) {
+    if (parsing->status == REFOCUS_OK)
         parsing->status = status;
-    }
     XML_StopParser(parsing->parser, XML_FALSE);
 }
 
@@ -215,9 +210,8 @@ static int read_bytes(const struct parsing *parsing, enum rf_xmp_key key, const 
     bool found;
     const int status = rf_xmp_number(parsing->read, parsing->xmp, key, name, &found, &value);
 
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     if (!(value >= 0.0 && value < 9007199254740992.0)) { /* 2^53: any sum of them fits */
         return rf_fail(parsing->read->reason, REFOCUS_ERR_FORMAT,
                        "damaged: its %s is no count of bytes", name);
@@ -243,9 +237,8 @@ static void take_item(struct parsing *parsing)
     int status = REFOCUS_OK;
 
     if (!xmp->value[RF_XMP_ITEM_SEMANTIC] && !xmp->value[RF_XMP_ITEM_URI] &&
-        !xmp->value[RF_XMP_ITEM_LENGTH] && !xmp->value[RF_XMP_ITEM_PADDING]) {
+        !xmp->value[RF_XMP_ITEM_LENGTH] && !xmp->value[RF_XMP_ITEM_PADDING])
         return;
-    }
     if (xmp->items == RF_XMP_ITEMS) {
         stop(parsing, rf_fail(parsing->read->reason, REFOCUS_ERR_SIZE,
                               "its container directory has more than %d items", RF_XMP_ITEMS));
@@ -256,17 +249,15 @@ static void take_item(struct parsing *parsing)
     copy_name(item->semantic, xmp->value[RF_XMP_ITEM_SEMANTIC]);
     copy_name(item->uri, xmp->value[RF_XMP_ITEM_URI]);
     status = read_bytes(parsing, RF_XMP_ITEM_LENGTH, "Item:Length", &item->length);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_bytes(parsing, RF_XMP_ITEM_PADDING, "Item:Padding", &item->padding);
-    }
     for (int key = RF_XMP_ITEM_SEMANTIC; key <= RF_XMP_ITEM_PADDING; key++) {
         free(xmp->value[key]);
         xmp->value[key] = NULL;
         xmp->length[key] = 0;
     }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         stop(parsing, status);
-    }
 }
 
 static void XMLCALL on_end(void *user, const XML_Char *name)
@@ -275,9 +266,8 @@ static void XMLCALL on_end(void *user, const XML_Char *name)
 
     parsing->open--;
     if (parsing->key == RF_XMP_KEYS) {
-        if (ends_item(name)) {
+        if (ends_item(name))
             take_item(parsing);
-        }
     } else if (parsing->depth-- == 0) {
         parsing->key = RF_XMP_KEYS;
     } else if (parsing->key >= RF_XMP_GAIN_MIN && parsing->status == REFOCUS_OK) {
@@ -290,9 +280,8 @@ static void XMLCALL on_text(void *user, const XML_Char *text, int size)
     struct parsing *const parsing = user;
 
     if (parsing->key != RF_XMP_KEYS && parsing->status == REFOCUS_OK &&
-        (parsing->depth == 0 || parsing->key >= RF_XMP_GAIN_MIN)) {
+        (parsing->depth == 0 || parsing->key >= RF_XMP_GAIN_MIN))
         append(parsing, text, (size_t)size);
-    }
 }
 
 /* XMP has no document type. Entities live there, and their expansion is an old trap. */
@@ -315,9 +304,8 @@ int rf_xmp_check(const struct rf_read *read, struct rf_bytes packet)
 {
     uint64_t elements = 0;
 
-    for (size_t i = 0; i < packet.size; i++) {
+    for (size_t i = 0; i < packet.size; i++)
         elements += packet.data[i] == '<' || packet.data[i] == '=';
-    }
     if (elements > read->limits.max_elements) {
         return rf_fail(read->reason, REFOCUS_ERR_SIZE,
                        "its XMP has %llu tags and attributes, more than the limit of %u",
@@ -348,31 +336,26 @@ int rf_xmp_run(const struct rf_read *read, XML_Parser parser, struct rf_bytes pa
 
     errno = 0;
     /* Writers pad packets with blanks, some with zeros that XML does not allow. */
-    while (packet.size > 0 && packet.data[packet.size - 1] == 0) {
+    while (packet.size > 0 && packet.data[packet.size - 1] == 0)
         packet.size--;
-    }
     while (packet.size > 0 && *status == REFOCUS_OK) {
         /* Steps are small: expat takes an int, and doubles its buffer up to the needs of one. */
         const size_t step = packet.size < INT_MAX / 2 ? packet.size : INT_MAX / 2;
         if (XML_Parse(parser, (const char *)packet.data, (int)step, step == packet.size) ==
-            XML_STATUS_ERROR) {
+            XML_STATUS_ERROR)
             break;
-        }
         packet.data += step;
         packet.size -= step;
     }
-    if (*status != REFOCUS_OK) {
+    if (*status != REFOCUS_OK)
         return *status;
-    }
     /* expat takes some failed allocations for an unbound prefix, or goes on without the text that
      * found no room; malloc() itself says so in errno. */
     error = XML_GetErrorCode(parser);
-    if (error == XML_ERROR_NO_MEMORY || errno == ENOMEM) {
+    if (error == XML_ERROR_NO_MEMORY || errno == ENOMEM)
         return rf_fail_memory(read->reason);
-    }
-    if (packet.size == 0) {
+    if (packet.size == 0)
         return REFOCUS_OK;
-    }
     return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged: its XMP: %s",
                    XML_ErrorString(error));
 }
@@ -382,13 +365,11 @@ int rf_xmp_parse(const struct rf_read *read, struct rf_bytes packet, struct rf_x
     struct parsing parsing = {.read = read, .xmp = xmp, .key = RF_XMP_KEYS};
     int status = rf_xmp_check(read, packet);
 
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     parsing.parser = rf_xmp_parser(&parsing, on_start, on_end, on_doctype);
-    if (!parsing.parser) {
+    if (!parsing.parser)
         return rf_fail_memory(read->reason);
-    }
     XML_SetCharacterDataHandler(parsing.parser, on_text);
     status = rf_xmp_run(read, parsing.parser, packet, &parsing.status);
     XML_ParserFree(parsing.parser);

@@ -34,17 +34,15 @@ static int take_about(struct reader *reader)
     struct rf_raster *const raster = &read->image;
     int status;
 
-    if (JxlDecoderGetBasicInfo(reader->decoder, &reader->about) != JXL_DEC_SUCCESS) {
+    if (JxlDecoderGetBasicInfo(reader->decoder, &reader->about) != JXL_DEC_SUCCESS)
         return fail_damaged(reader);
-    }
     if (reader->about.have_animation) {
         return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
                        "it is an animated JPEG XL; give a still picture");
     }
     status = rf_check_size(read, reader->about.xsize, reader->about.ysize, 12);
-    if (status == REFOCUS_OK) { /* libjxl has three floats a pixel, and as much for its filters */
+    if (status == REFOCUS_OK) /* libjxl has three floats a pixel, and as much for its filters */
         status = rf_check_memory(read, (uint64_t)reader->about.xsize * reader->about.ysize * 24);
-    }
     raster->width = (int32_t)reader->about.xsize;
     raster->height = (int32_t)reader->about.ysize;
     return status;
@@ -58,17 +56,14 @@ static int take_profile(struct reader *reader)
 
     if (JxlDecoderGetICCProfileSize(reader->decoder, NULL, JXL_COLOR_PROFILE_TARGET_DATA, &size) !=
             JXL_DEC_SUCCESS ||
-        size == 0 || icc->data) {
+        size == 0 || icc->data)
         return REFOCUS_OK;
-    }
     status = rf_check_metadata(reader->read, size, "its ICC profile");
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     icc->data = malloc(size);
-    if (!icc->data) {
+    if (!icc->data)
         return rf_fail_memory(reader->read->reason);
-    }
     icc->size = size;
     return JxlDecoderGetColorAsICCProfile(reader->decoder, NULL, JXL_COLOR_PROFILE_TARGET_DATA,
                                           icc->data, size) == JXL_DEC_SUCCESS
@@ -82,18 +77,16 @@ static int take_colour(struct reader *reader)
     JxlColorEncoding colour;
 
     if (JxlDecoderGetColorAsEncodedProfile(reader->decoder, NULL, JXL_COLOR_PROFILE_TARGET_DATA,
-                                           &colour) != JXL_DEC_SUCCESS) {
+                                           &colour) != JXL_DEC_SUCCESS)
         return take_profile(reader);
-    }
     /* The numbers are those of H.273, but for P3's. */
     reader->curve = (int)colour.transfer_function;
     reader->primaries =
         colour.primaries == JXL_PRIMARIES_P3 ? RF_PRIMARIES_P3 : (int)colour.primaries;
     if (rf_curve_is_hdr(reader->curve) ||
         (reader->curve == RF_CURVE_SRGB &&
-         (colour.color_space == JXL_COLOR_SPACE_GRAY || colour.primaries == JXL_PRIMARIES_SRGB))) {
+         (colour.color_space == JXL_COLOR_SPACE_GRAY || colour.primaries == JXL_PRIMARIES_SRGB)))
         return REFOCUS_OK;
-    }
     return take_profile(reader);
 }
 
@@ -120,15 +113,13 @@ static int begin_picture(struct reader *reader)
                                               : JXL_TYPE_UINT16,
                                       JXL_NATIVE_ENDIAN, 0};
     status = rf_raster_alloc(reader->read, raster);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     if (JxlDecoderImageOutBufferSize(reader->decoder, &reader->format, &size) != JXL_DEC_SUCCESS ||
         size != rf_raster_stride(raster) * (size_t)raster->height ||
         JxlDecoderSetImageOutBuffer(reader->decoder, &reader->format, raster->pixels, size) !=
-            JXL_DEC_SUCCESS) {
+            JXL_DEC_SUCCESS)
         return fail_damaged(reader);
-    }
     return REFOCUS_OK;
 }
 
@@ -141,9 +132,8 @@ static void end_box(struct reader *reader)
     struct refocus_blob *const to = exif ? &reader->extras->exif : &reader->extras->xmp;
     size_t skip = 0;
 
-    if (!box->data) {
+    if (!box->data)
         return;
-    }
     box->size -= JxlDecoderReleaseBoxBuffer(reader->decoder);
     if (exif && box->size > 4) {
         skip = 4 + ((size_t)box->data[0] << 24 | (size_t)box->data[1] << 16 |
@@ -164,20 +154,16 @@ static int begin_box(struct reader *reader)
 
     end_box(reader);
     if (JxlDecoderGetBoxType(reader->decoder, reader->type, reader->unpacks) != JXL_DEC_SUCCESS ||
-        JxlDecoderGetBoxSizeRaw(reader->decoder, &size) != JXL_DEC_SUCCESS) {
+        JxlDecoderGetBoxSizeRaw(reader->decoder, &size) != JXL_DEC_SUCCESS)
         return fail_damaged(reader);
-    }
-    if (memcmp(reader->type, "Exif", 4) != 0 && memcmp(reader->type, "xml ", 4) != 0) {
+    if (memcmp(reader->type, "Exif", 4) != 0 && memcmp(reader->type, "xml ", 4) != 0)
         return REFOCUS_OK;
-    }
     if (size < 8 || size > reader->file.size ||
-        rf_check_metadata(reader->read, size, "a block of it") != REFOCUS_OK) {
+        rf_check_metadata(reader->read, size, "a block of it") != REFOCUS_OK)
         return REFOCUS_OK;
-    }
     reader->box.data = malloc((size_t)size);
-    if (!reader->box.data) {
+    if (!reader->box.data)
         return rf_fail_memory(reader->read->reason);
-    }
     reader->box.size = (size_t)size;
     return JxlDecoderSetBoxBuffer(reader->decoder, reader->box.data, reader->box.size) ==
                    JXL_DEC_SUCCESS
@@ -199,9 +185,8 @@ static int grow_box(struct reader *reader)
         return REFOCUS_OK;
     }
     grown = realloc(box->data, 2 * box->size);
-    if (!grown) {
+    if (!grown)
         return rf_fail_memory(reader->read->reason);
-    }
     *box = (struct refocus_blob){grown, 2 * box->size};
     return JxlDecoderSetBoxBuffer(reader->decoder, grown + filled, box->size - filled) ==
                    JXL_DEC_SUCCESS
@@ -245,22 +230,17 @@ static int decode(struct reader *reader)
                                                        JXL_DEC_FULL_IMAGE | JXL_DEC_BOX) !=
             JXL_DEC_SUCCESS ||
         JxlDecoderSetInput(reader->decoder, reader->file.data, reader->file.size) !=
-            JXL_DEC_SUCCESS) {
+            JXL_DEC_SUCCESS)
         return fail_damaged(reader);
-    }
-    while (status == REFOCUS_OK && !ended) {
+    while (status == REFOCUS_OK && !ended)
         status = step(reader, &ended);
-    }
     end_box(reader);
-    if (status == REFOCUS_OK && !reader->has_picture) {
+    if (status == REFOCUS_OK && !reader->has_picture)
         status = fail_damaged(reader);
-    }
-    if (status == REFOCUS_OK && reader->about.alpha_bits > 0 && rf_wants_alpha(reader->read)) {
+    if (status == REFOCUS_OK && reader->about.alpha_bits > 0 && rf_wants_alpha(reader->read))
         status = rf_part_alpha(reader->read);
-    }
-    if (status == REFOCUS_OK && reader->about.alpha_bits > 0 && !reader->read->holes.pixels) {
+    if (status == REFOCUS_OK && reader->about.alpha_bits > 0 && !reader->read->holes.pixels)
         rf_note(reader->read->info, "JPEG XL: transparency is dropped");
-    }
     if (status == REFOCUS_OK &&
         (rf_curve_is_hdr(reader->curve) || raster->sample == REFOCUS_SAMPLE_F32)) {
         status = rf_raster_to_light(reader->read, raster, reader->curve, reader->primaries);
@@ -279,9 +259,8 @@ static int read_jxl(struct rf_read *read, struct rf_bytes file, struct rf_extras
 
     extras->upright = true;
     reader.decoder = JxlDecoderCreate(NULL);
-    if (!reader.decoder) {
+    if (!reader.decoder)
         return rf_fail_memory(read->reason);
-    }
     status = decode(&reader);
     JxlDecoderDestroy(reader.decoder);
     return status;

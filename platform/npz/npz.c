@@ -37,11 +37,10 @@ static zip_int64_t choose(zip_t *archive, int *others)
             *others = 0;
             return i;
         }
-        if (is_array(name) && first < 0) {
+        if (is_array(name) && first < 0)
             first = i;
-        } else if (is_array(name)) {
+        else if (is_array(name))
             ++*others;
-        }
     }
     return first;
 }
@@ -59,9 +58,8 @@ static int read_entry(struct rf_read *read, zip_t *archive, zip_int64_t index, i
     int status;
 
     if (zip_stat_index(archive, (zip_uint64_t)index, 0, &facts) != 0 ||
-        !(facts.valid & ZIP_STAT_SIZE) || !(facts.valid & ZIP_STAT_NAME)) {
+        !(facts.valid & ZIP_STAT_SIZE) || !(facts.valid & ZIP_STAT_NAME))
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged: its arrays have no sizes");
-    }
     entry = zip_fopen_index(archive, (zip_uint64_t)index, 0);
     if (!entry) {
         return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED, "its array cannot be read: %s",

@@ -10,9 +10,8 @@
 
 static int fail(const struct rf_read *read, int error)
 {
-    if (error == LIBRAW_UNSUFFICIENT_MEMORY || error == LIBRAW_TOO_BIG) {
+    if (error == LIBRAW_UNSUFFICIENT_MEMORY || error == LIBRAW_TOO_BIG)
         return rf_fail_memory(read->reason);
-    }
     return rf_fail(read->reason,
                    error == LIBRAW_FILE_UNSUPPORTED ? REFOCUS_ERR_UNSUPPORTED : REFOCUS_ERR_FORMAT,
                    "camera raw: %s", libraw_strerror(error));
@@ -40,9 +39,8 @@ static int take(struct rf_read *read, libraw_data_t *raw)
     int error = 0, status;
     libraw_processed_image_t *const made = libraw_dcraw_make_mem_image(raw, &error);
 
-    if (!made) {
+    if (!made)
         return fail(read, error);
-    }
     raster->width = made->width;
     raster->height = made->height;
     raster->channels = made->colors;
@@ -55,9 +53,8 @@ static int take(struct rf_read *read, libraw_data_t *raw)
     } else {
         status = rf_raster_alloc(read, raster);
     }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         memcpy(raster->pixels, made->data, rf_raster_stride(raster) * (size_t)raster->height);
-    }
     libraw_dcraw_clear_mem(made);
     return status;
 }
@@ -69,22 +66,18 @@ static int develop(struct rf_read *read, libraw_data_t *raw)
     int error, status;
 
     status = rf_check_size(read, sizes->raw_width, sizes->raw_height, 8);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     /* The samples, four of 16 bits a pixel while colours are found, and the picture. */
     pixels = (uint64_t)sizes->raw_width * sizes->raw_height;
     status = rf_check_memory(read, pixels * 24);
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     error = libraw_unpack(raw);
-    if (error == LIBRAW_SUCCESS) {
+    if (error == LIBRAW_SUCCESS)
         error = libraw_dcraw_process(raw);
-    }
-    if (error != LIBRAW_SUCCESS) {
+    if (error != LIBRAW_SUCCESS)
         return fail(read, error);
-    }
     return take(read, raw);
 }
 
@@ -95,9 +88,8 @@ static int read_raw(struct rf_read *read, struct rf_bytes file, struct rf_extras
     int error, status;
 
     extras->upright = true;
-    if (!raw) {
+    if (!raw)
         return rf_fail_memory(read->reason);
-    }
     raw->params.use_camera_wb = 1;
     raw->params.output_color = 1; /* sRGB */
     raw->params.output_bps = 16;
@@ -108,9 +100,8 @@ static int read_raw(struct rf_read *read, struct rf_bytes file, struct rf_extras
         (unsigned)(read->limits.max_memory >> 20 < 65536 ? read->limits.max_memory >> 20 : 65536);
     error = libraw_open_buffer(raw, (void *)(uintptr_t)file.data, file.size);
     status = error == LIBRAW_SUCCESS ? develop(read, raw) : fail(read, error);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         tell(read, raw);
-    }
     libraw_close(raw);
     return status;
 }

@@ -87,9 +87,8 @@ static int on_error(TIFF *tiff, void *user, const char *module, const char *word
 
     (void)tiff;
     (void)module;
-    if (!reader->error[0]) {
+    if (!reader->error[0])
         vsnprintf(reader->error, sizeof reader->error, words, list);
-    }
     return 1;
 }
 
@@ -125,9 +124,8 @@ static void put(const struct reader *reader, struct rf_raster *raster, const uin
             const size_t s = i * step + (apart ? 0 : c * grey);
             const size_t to = at + i * channels + c;
 
-            if (apart && grey && c != (size_t)plane) {
+            if (apart && grey && c != (size_t)plane)
                 continue;
-            }
             if (raster->sample == REFOCUS_SAMPLE_U8) {
                 raster->pixels[to] = inverted ? (uint8_t)~from[s] : from[s];
             } else if (raster->sample == REFOCUS_SAMPLE_U16) {
@@ -160,23 +158,18 @@ static int read_blocks(struct reader *reader, struct rf_raster *raster)
     int status = rf_check_memory(reader->read, 2 * bytes);
 
     TIFFGetField(reader->tiff, tiled ? TIFFTAG_TILELENGTH : TIFFTAG_ROWSPERSTRIP, &high);
-    if (tiled) {
+    if (tiled)
         TIFFGetField(reader->tiff, TIFFTAG_TILEWIDTH, &wide);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_check_bytes(reader->read, bytes, "a block of it");
-    }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     if (bytes == 0 || wide == 0 || high == 0 ||
-        row < ((uint64_t)wide * (apart ? 1 : reader->channels) * reader->bits + 7) / 8) {
+        row < ((uint64_t)wide * (apart ? 1 : reader->channels) * reader->bits + 7) / 8)
         return fail_damaged(reader);
-    }
     block = malloc((size_t)bytes);
-    if (!block) {
+    if (!block)
         return rf_fail_memory(reader->read->reason);
-    }
     high = high < reader->height ? high : reader->height;
     for (int plane = 0; status == REFOCUS_OK && plane < planes; plane++) {
         for (uint64_t y = 0; status == REFOCUS_OK && y < reader->height; y += high) {
@@ -193,9 +186,8 @@ static int read_blocks(struct reader *reader, struct rf_raster *raster)
                                 TIFFComputeStrip(reader->tiff, (uint32_t)y, (uint16_t)plane), block,
                                 wanted);
 
-                if (got < wanted) {
+                if (got < wanted)
                     status = fail_damaged(reader);
-                }
                 for (uint32_t i = 0; status == REFOCUS_OK && i < rows; i++) {
                     put(reader, raster, block + (size_t)row * i, (uint32_t)x, (uint32_t)y + i,
                         left < wide ? left : wide, plane);
@@ -223,23 +215,19 @@ static int read_rgba(struct reader *reader, struct rf_raster *raster)
     }
     raster->channels = 3;
     status = rf_raster_alloc(reader->read, raster);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = rf_check_memory(reader->read, 8 * pixels);
-    }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     rgba = malloc((size_t)pixels * 4);
-    if (!rgba) {
+    if (!rgba)
         return rf_fail_memory(reader->read->reason);
-    }
     /* In the orientation of the file libtiff turns nothing: it mirrors for others, and never turns
      * a picture onto its side. */
     TIFFGetFieldDefaulted(reader->tiff, TIFFTAG_ORIENTATION, &orientation);
     if (!TIFFReadRGBAImageOriented(reader->tiff, reader->width, reader->height, rgba, orientation,
-                                   1)) {
+                                   1))
         status = fail_damaged(reader);
-    }
     for (uint64_t i = 0; status == REFOCUS_OK && i < pixels; i++) {
         raster->pixels[3 * i] = (uint8_t)TIFFGetR(rgba[i]);
         raster->pixels[3 * i + 1] = (uint8_t)TIFFGetG(rgba[i]);
@@ -278,15 +266,12 @@ static int read_samples(struct reader *reader)
                                           : REFOCUS_SAMPLE_U8;
     raster->max_value = floats ? 0 : reader->bits == 16 ? 65535 : 255;
     status = rf_raster_alloc(read, raster);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_blocks(reader, raster);
-    }
-    if (status == REFOCUS_OK && alpha) {
+    if (status == REFOCUS_OK && alpha)
         status = rf_part_alpha(read);
-    }
-    if (status == REFOCUS_OK && reader->channels != (grey ? 1 : 3) && !read->holes.pixels) {
+    if (status == REFOCUS_OK && reader->channels != (grey ? 1 : 3) && !read->holes.pixels)
         rf_note(read->info, "TIFF: channels beyond its colour, as of transparency, are dropped");
-    }
     if (status == REFOCUS_OK && floats) {
         rf_note(read->info, "TIFF: floats of %d bits, %s", reader->bits,
                 depth ? "a depth map" : "linear light");
@@ -299,13 +284,11 @@ static int copy(const struct rf_read *read, struct refocus_blob *blob, const voi
 {
     int status = rf_check_metadata(read, size, "a block of it");
 
-    if (status != REFOCUS_OK || size == 0) {
+    if (status != REFOCUS_OK || size == 0)
         return status;
-    }
     blob->data = malloc(size);
-    if (!blob->data) {
+    if (!blob->data)
         return rf_fail_memory(read->reason);
-    }
     memcpy(blob->data, data, size);
     blob->size = size;
     return REFOCUS_OK;
@@ -318,16 +301,13 @@ static int read_extras(struct reader *reader, struct rf_extras *extras)
     void *data = NULL;
     int status = REFOCUS_OK;
 
-    if (TIFFGetField(reader->tiff, TIFFTAG_ICCPROFILE, &size, &data)) {
+    if (TIFFGetField(reader->tiff, TIFFTAG_ICCPROFILE, &size, &data))
         status = copy(reader->read, &extras->icc, data, size);
-    }
-    if (status == REFOCUS_OK && TIFFGetField(reader->tiff, TIFFTAG_XMLPACKET, &size, &data)) {
+    if (status == REFOCUS_OK && TIFFGetField(reader->tiff, TIFFTAG_XMLPACKET, &size, &data))
         status = copy(reader->read, &extras->xmp, data, size);
-    }
     if (TIFFGetField(reader->tiff, TIFFTAG_ORIENTATION, &orientation) && orientation >= 1 &&
-        orientation <= 8) {
+        orientation <= 8)
         reader->read->orientation = orientation;
-    }
     return status;
 }
 
@@ -353,20 +333,17 @@ static int run(struct reader *reader, struct rf_extras *extras)
 
     if (!TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &reader->width) ||
         !TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &reader->height) ||
-        !TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &reader->photometric)) {
+        !TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &reader->photometric))
         return fail_damaged(reader);
-    }
     TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &reader->bits);
     TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &reader->channels);
     TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &reader->format);
     TIFFGetFieldDefaulted(tiff, TIFFTAG_PLANARCONFIG, &reader->planar);
     status = rf_check_size(reader->read, reader->width, reader->height, 3);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = read_extras(reader, extras);
-    }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     if (is_plain(reader)) {
         status = read_samples(reader);
     } else if (reader->bits <= 8) {
@@ -393,9 +370,8 @@ int rf_tiff_read(struct rf_read *read, struct rf_bytes file, struct rf_extras *e
     const uint64_t most = read->limits.max_memory;
     int status;
 
-    if (!options) {
+    if (!options)
         return rf_fail_memory(read->reason);
-    }
     TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, &reader);
     TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, &reader);
     TIFFOpenOptionsSetMaxSingleMemAlloc(
@@ -403,9 +379,8 @@ int rf_tiff_read(struct rf_read *read, struct rf_bytes file, struct rf_extras *e
     reader.tiff = TIFFClientOpenExt("photo", "r", &reader, on_read, on_write, on_seek, on_close,
                                     on_size, on_map, on_unmap, options);
     TIFFOpenOptionsFree(options);
-    if (!reader.tiff) {
+    if (!reader.tiff)
         return fail_damaged(&reader);
-    }
     status = run(&reader, extras);
     TIFFClose(reader.tiff);
     return status;

@@ -20,17 +20,14 @@ static bool grow(struct writer *writer, size_t size)
     size_t room = writer->room > 0 ? writer->room : 65536;
     uint8_t *grown;
 
-    while (room < size && room <= SIZE_MAX / 2) {
+    while (room < size && room <= SIZE_MAX / 2)
         room *= 2;
-    }
-    if (room < size) {
+    if (room < size)
         return false;
-    }
     if (room > writer->room) {
         grown = realloc(writer->file->data, room);
-        if (!grown) {
+        if (!grown)
             return false;
-        }
         writer->file->data = grown;
         writer->room = room;
     }
@@ -45,9 +42,8 @@ static tmsize_t on_write(thandle_t handle, void *from, tmsize_t size)
 {
     struct writer *const writer = handle;
 
-    if (size < 0 || !grow(writer, writer->position + (size_t)size)) {
+    if (size < 0 || !grow(writer, writer->position + (size_t)size))
         return -1;
-    }
     memcpy(writer->file->data + writer->position, from, (size_t)size);
     writer->position += (size_t)size;
     return size;
@@ -135,16 +131,13 @@ static bool put_exif(TIFF *tiff, struct writer *writer, const struct refocus_blo
         if (size > 0) {
             good =
                 grow(writer, base + size) && TIFFSetField(tiff, directories[i].to, (uint64_t)base);
-            if (good) {
+            if (good)
                 memcpy(writer->file->data + base, copy, size);
-            }
         }
     }
-    for (size_t i = 0; good && i < sizeof texts / sizeof *texts; i++) {
-        if (rf_exif_text(block, texts[i], (char *)copy, 1024)) {
+    for (size_t i = 0; good && i < sizeof texts / sizeof *texts; i++)
+        if (rf_exif_text(block, texts[i], (char *)copy, 1024))
             good = TIFFSetField(tiff, texts[i], (const char *)copy);
-        }
-    }
     free(copy);
     return good;
 }
@@ -168,15 +161,12 @@ static bool put(TIFF *tiff, const struct rf_rows *rows, const struct rf_extras *
     TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
     TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
     TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0));
-    if (alpha) {
+    if (alpha)
         TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &kind);
-    }
-    if (extras->icc.size > 0 && extras->icc.data) {
+    if (extras->icc.size > 0 && extras->icc.data)
         good = TIFFSetField(tiff, TIFFTAG_ICCPROFILE, (uint32_t)extras->icc.size, extras->icc.data);
-    }
-    if (extras->xmp.size > 0 && extras->xmp.data) {
+    if (extras->xmp.size > 0 && extras->xmp.data)
         good &= TIFFSetField(tiff, TIFFTAG_XMLPACKET, (uint32_t)extras->xmp.size, extras->xmp.data);
-    }
     for (int32_t y = 0; good && y < rows->height; y++) {
         store_row(row, rows, rows->top + y * rows->stride);
         good = TIFFWriteScanline(tiff, row, (uint32_t)y, 0) == 1;
@@ -207,23 +197,20 @@ int rf_tiff_write(struct refocus_blob *file, const struct rf_rows *rows,
         tiff = TIFFClientOpenExt("photo", mode, &writer, on_read, on_write, on_seek, on_close,
                                  on_size, NULL, NULL, options);
     }
-    if (options) {
+    if (options)
         TIFFOpenOptionsFree(options);
-    }
     if (tiff) {
         good = (!exif || put_exif(tiff, &writer, &extras->exif)) && put(tiff, rows, extras, row);
         TIFFClose(tiff);
     }
     free(row);
-    if (!good) {
+    if (!good)
         return rf_fail(reason, REFOCUS_ERR_MEMORY, "not enough memory to make a TIFF");
-    }
-    if (big && extras->exif.size > 0) {
+    if (big && extras->exif.size > 0)
         rf_leave_out(reason, "EXIF is not written into a TIFF of more than 4 GiB");
-    } else if (exif &&
-               rf_exif_has_maker_note((struct rf_bytes){extras->exif.data, extras->exif.size})) {
+    else if (exif &&
+             rf_exif_has_maker_note((struct rf_bytes){extras->exif.data, extras->exif.size}))
         rf_leave_out(reason, "the maker's note of EXIF is not written into a TIFF");
-    }
     return REFOCUS_OK;
 }
 

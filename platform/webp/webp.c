@@ -9,9 +9,8 @@
 
 static int fail(const struct rf_read *read, VP8StatusCode code)
 {
-    if (code == VP8_STATUS_OUT_OF_MEMORY) {
+    if (code == VP8_STATUS_OUT_OF_MEMORY)
         return rf_fail_memory(read->reason);
-    }
     return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged WebP: %s",
                    code == VP8_STATUS_NOT_ENOUGH_DATA || code == VP8_STATUS_SUSPENDED
                        ? "it ends too early; copy it again"
@@ -26,13 +25,11 @@ static int decode(struct rf_read *read, struct rf_bytes file)
     bool alpha;
     int status;
 
-    if (!WebPInitDecoderConfig(&config)) {
+    if (!WebPInitDecoderConfig(&config))
         return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED, "WebP: libwebp is of another kind");
-    }
     code = WebPGetFeatures(file.data, file.size, &config.input);
-    if (code != VP8_STATUS_OK) {
+    if (code != VP8_STATUS_OK)
         return fail(read, code);
-    }
     if (config.input.has_animation) {
         return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
                        "it is an animated WebP; give a still picture");
@@ -45,12 +42,10 @@ static int decode(struct rf_read *read, struct rf_bytes file)
     raster->max_value = 255;
     raster->lossy = config.input.format != 2;
     status = rf_raster_alloc(read, raster);
-    if (status == REFOCUS_OK) { /* libwebp keeps the whole picture of a lossless one: 4 bytes */
+    if (status == REFOCUS_OK) /* libwebp keeps the whole picture of a lossless one: 4 bytes */
         status = rf_check_memory(read, (uint64_t)raster->width * (uint64_t)raster->height * 4);
-    }
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     config.output.colorspace = alpha ? MODE_RGBA : MODE_RGB;
     config.output.is_external_memory = 1;
     config.output.u.RGBA.rgba = raster->pixels;
@@ -58,15 +53,12 @@ static int decode(struct rf_read *read, struct rf_bytes file)
     config.output.u.RGBA.size = rf_raster_stride(raster) * (size_t)raster->height;
     code = WebPDecode(file.data, file.size, &config);
     WebPFreeDecBuffer(&config.output);
-    if (code != VP8_STATUS_OK) {
+    if (code != VP8_STATUS_OK)
         return fail(read, code);
-    }
-    if (alpha) {
+    if (alpha)
         status = rf_part_alpha(read);
-    }
-    if (status == REFOCUS_OK && config.input.has_alpha && !read->holes.pixels) {
+    if (status == REFOCUS_OK && config.input.has_alpha && !read->holes.pixels)
         rf_note(read->info, "WebP: transparency is dropped");
-    }
     return status;
 }
 
@@ -107,20 +99,16 @@ static int read_webp(struct rf_read *read, struct rf_bytes file, struct rf_extra
     WebPDemuxer *demuxer;
     int status = decode(read, file);
 
-    if (status != REFOCUS_OK) {
+    if (status != REFOCUS_OK)
         return status;
-    }
     demuxer = WebPDemux(&data);
-    if (!demuxer) {
+    if (!demuxer)
         return REFOCUS_OK; /* the pixels are whole all the same */
-    }
     status = copy(read, demuxer, "ICCP", &extras->icc);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = copy(read, demuxer, "EXIF", &extras->exif);
-    }
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         status = copy(read, demuxer, "XMP ", &extras->xmp);
-    }
     WebPDemuxDelete(demuxer);
     trim(&extras->exif);
     return status;

@@ -48,9 +48,8 @@ int main(int count, char **folders)
                 files++;
             }
         }
-        if (folder) {
+        if (folder)
             closedir(folder);
-        }
     }
     printf("%d files\n", files);
     return failed || files == 0;

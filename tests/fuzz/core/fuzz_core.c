@@ -238,9 +238,8 @@ static void use(struct input *in, struct refocus_renderer *renderer, float most,
           (shape & 2 && status == REFOCUS_ERR_ARGUMENT));
     lens.render.aperture = aperture;
     status = render(renderer, &lens, width, height, out_format, out[0], capacity);
-    if (status == REFOCUS_OK) {
+    if (status == REFOCUS_OK)
         check(refocus_get_view(renderer, REFOCUS_VIEW_BLUR, view, 2 * width) == 0);
-    }
     if (status == REFOCUS_OK && choice.again) {
         check(render(renderer, &lens, width, height, out_format, out[1], capacity) == 0);
         check(memcmp(out[0], out[1], capacity) == 0);

@@ -62,51 +62,39 @@ static inline void fuzz_check_photo(const struct refocus_photo *photo)
     volatile unsigned sum = 0;
 
     if (photo->image->plane[0]) {
-        for (int32_t y = 0; y < photo->image->height; y++) {
-            for (int32_t x = 0; x < photo->image->width * 3; x++) {
+        for (int32_t y = 0; y < photo->image->height; y++)
+            for (int32_t x = 0; x < photo->image->width * 3; x++)
                 sum += photo->image->plane[0][y * photo->image->stride[0] + x];
-            }
-        }
     }
     if (photo->depth->samples) {
         const uint8_t *const samples = photo->depth->samples;
         const int32_t bytes = (int32_t)rf_sample_bytes(photo->depth->sample);
-        for (int32_t y = 0; y < photo->depth->height; y++) {
-            for (int32_t x = 0; x < photo->depth->width * bytes; x++) {
+        for (int32_t y = 0; y < photo->depth->height; y++)
+            for (int32_t x = 0; x < photo->depth->width * bytes; x++)
                 sum += samples[y * photo->depth->stride + x];
-            }
-        }
         if (photo->depth->meaning != REFOCUS_DEPTH_DISPARITY &&
-            photo->depth->meaning != REFOCUS_DEPTH_DISTANCE) {
+            photo->depth->meaning != REFOCUS_DEPTH_DISTANCE)
             abort();
-        }
         if (photo->info->depth_source == REFOCUS_DEPTH_SOURCE_NONE ||
-            !(photo->depth->near_m >= 0.0) || !(photo->depth->far_m >= 0.0)) {
+            !(photo->depth->near_m >= 0.0) || !(photo->depth->far_m >= 0.0))
             abort();
-        }
     }
     if (photo->matte->samples) {
         const uint8_t *const samples = photo->matte->samples;
-        for (int32_t i = 0; i < photo->matte->height * (int32_t)photo->matte->stride; i++) {
+        for (int32_t i = 0; i < photo->matte->height * (int32_t)photo->matte->stride; i++)
             sum += samples[i];
-        }
     }
-    if (photo->confidence) {
-        for (int32_t i = 0; i < photo->depth->width * photo->depth->height; i++) {
+    if (photo->confidence)
+        for (int32_t i = 0; i < photo->depth->width * photo->depth->height; i++)
             sum += photo->confidence[i];
-        }
-    }
-    for (size_t i = 0; i < photo->exif.size; i++) {
+    for (size_t i = 0; i < photo->exif.size; i++)
         sum += photo->exif.data[i];
-    }
-    for (size_t i = 0; i < photo->icc.size; i++) {
+    for (size_t i = 0; i < photo->icc.size; i++)
         sum += photo->icc.data[i];
-    }
     (void)sum;
     if (photo->info->evidence_count > REFOCUS_INFO_LINES || photo->info->orientation < 1 ||
-        photo->info->orientation > 8) {
+        photo->info->orientation > 8)
         abort();
-    }
 }
 
 #endif

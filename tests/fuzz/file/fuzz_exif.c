@@ -10,21 +10,17 @@ static void check_copies(struct rf_bytes tiff)
     const size_t size = rf_exif_of_tiff(tiff, copy);
     char text[64];
 
-    if (size > RF_EXIF_COPY_ROOM) {
+    if (size > RF_EXIF_COPY_ROOM)
         abort();
-    }
     if (size > 0) {
         const size_t smaller = rf_exif_of_tiff((struct rf_bytes){copy, size}, again);
 
-        if (smaller == 0 || smaller > size ||
-            rf_exif_has_maker_note((struct rf_bytes){copy, size})) {
+        if (smaller == 0 || smaller > size || rf_exif_has_maker_note((struct rf_bytes){copy, size}))
             abort();
-        }
     }
     if (rf_exif_directory(tiff, 0x8769, 8, again) > RF_EXIF_COPY_ROOM ||
-        (rf_exif_text(tiff, 0x10f, text, sizeof text) && strlen(text) >= sizeof text)) {
+        (rf_exif_text(tiff, 0x10f, text, sizeof text) && strlen(text) >= sizeof text))
         abort();
-    }
     free(copy);
     free(again);
 }
@@ -36,9 +32,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     memcpy(once, data, size);
     if (rf_exif_parse(once, size, &first)) {
-        if (first.orientation < 1 || first.orientation > 8) {
+        if (first.orientation < 1 || first.orientation > 8)
             abort();
-        }
         memcpy(twice, once, size);
         rf_exif_parse(twice, size, &second);
         rf_exif_set_size(twice, size, 1024, 768); /* drops what is of other sides */

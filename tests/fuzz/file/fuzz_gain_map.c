@@ -10,16 +10,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static struct rf_gain_map map;
 
-    if (rf_gain_from_iso((struct rf_bytes){data, size}, &map.values)) {
+    if (rf_gain_from_iso((struct rf_bytes){data, size}, &map.values))
         return 0;
-    }
     rf_gain_make_curves(&map);
     for (int c = 0; c < 3; c++) {
-        for (int i = 0; i < 256; i++) {
-            if (!(fabsf(map.gain[c][i]) <= 16.001f)) {
+        for (int i = 0; i < 256; i++)
+            if (!(fabsf(map.gain[c][i]) <= 16.001f))
                 abort();
-            }
-        }
     }
     return 0;
 }

@@ -9,9 +9,8 @@ static void change(struct rf_bytes file)
 
     if (rf_heif_single_targets(file, &changed) == REFOCUS_OK && changed) {
         rf_heif_single_targets((struct rf_bytes){changed, file.size}, &again);
-        if (again) {
+        if (again)
             abort();
-        }
         free(changed);
     }
 }
@@ -22,17 +21,15 @@ static void find_gain_map(struct rf_bytes file)
     struct rf_heif_tone_map map, again;
     uint8_t *changed;
 
-    if (!rf_heif_find_tone_map(file, &map)) {
+    if (!rf_heif_find_tone_map(file, &map))
         return;
-    }
     if (map.metadata.size > 0) {
         volatile uint8_t last = map.metadata.data[map.metadata.size - 1];
         (void)last;
     }
     if (rf_heif_with_main_picture(file, map.item, &changed) == REFOCUS_OK) {
-        if (rf_heif_find_tone_map((struct rf_bytes){changed, file.size}, &again)) {
+        if (rf_heif_find_tone_map((struct rf_bytes){changed, file.size}, &again))
             abort();
-        }
         free(changed);
     }
 }
@@ -43,9 +40,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     for (uint32_t item = 0; item < 3; item++) {
         const int orientation = rf_heif_orientation(file, item);
-        if (orientation < 1 || orientation > 8) {
+        if (orientation < 1 || orientation > 8)
             abort();
-        }
     }
     rf_heif_is_sequence(file);
     rf_heif_is_stereo(file);

@@ -13,14 +13,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     text[size] = '\0';
     if (rf_parse_number(text, &value)) {
         const double expected = strtod(text, &end);
-        if (end == text || fabs(value - expected) > 1e-14 * fabs(expected) + 1e-307) {
+        if (end == text || fabs(value - expected) > 1e-14 * fabs(expected) + 1e-307)
             abort();
-        }
     }
     const size_t decoded = rf_base64_decode(text, size);
-    if (decoded != (size_t)-1 && decoded > size * 3 / 4) {
+    if (decoded != (size_t)-1 && decoded > size * 3 / 4)
         abort();
-    }
     free(text);
     return 0;
 }

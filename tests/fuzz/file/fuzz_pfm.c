@@ -10,9 +10,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         fuzz_begin(&reading);
         reading.read.picture_always = photo;
         if (rf_format_pfm.read(&reading.read, file) == REFOCUS_OK && photo &&
-            rf_image_to_rgb8(&reading.read) != REFOCUS_OK) {
+            rf_image_to_rgb8(&reading.read) != REFOCUS_OK)
             abort(); /* the limits leave room for it */
-        }
         fuzz_end(&reading);
     }
     return 0;

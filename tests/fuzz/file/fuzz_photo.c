@@ -8,9 +8,8 @@ static void read_second(const uint8_t *data, size_t size)
     fuzz_begin(&reading);
     if (rf_read_begin(&reading.read, (struct rf_bytes){data, size}, &fuzz_limits, true, true,
                       &reading.info, NULL, &reading.reason) != REFOCUS_OK &&
-        reading.reason.text[0] == '\0') {
+        reading.reason.text[0] == '\0')
         abort();
-    }
     fuzz_end(&reading);
 }
 
@@ -21,13 +20,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const int status = refocus_photo_read_memory(&photo, data, size, &fuzz_limits, &reason);
 
     if ((status == REFOCUS_OK) != (photo != NULL) ||
-        (status != REFOCUS_OK && reason.text[0] == '\0')) {
+        (status != REFOCUS_OK && reason.text[0] == '\0'))
         abort();
-    }
     if (photo) {
-        if (!photo->image->plane[0]) {
+        if (!photo->image->plane[0])
             abort();
-        }
         fuzz_check_photo(photo);
     }
     refocus_photo_free(&photo);

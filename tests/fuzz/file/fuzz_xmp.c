@@ -7,9 +7,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct fuzz_reading reading;
 
     fuzz_begin(&reading);
-    if (rf_xmp_parse(&reading.read, (struct rf_bytes){data, size}, &xmp) == REFOCUS_OK) {
+    if (rf_xmp_parse(&reading.read, (struct rf_bytes){data, size}, &xmp) == REFOCUS_OK)
         rf_read_gdepth(&reading.read, &xmp);
-    }
     rf_xmp_free(&xmp);
     fuzz_end(&reading);
     return 0;

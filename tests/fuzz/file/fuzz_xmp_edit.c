@@ -16,19 +16,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct rf_bytes packet;
 
     fuzz_begin(&reading);
-    if (size > 0 && data[0] & 1) {
+    if (size > 0 && data[0] & 1)
         first.insert = (struct rf_bytes){(const uint8_t *)insert, sizeof insert - 1};
-    }
     if (rf_xmp_edit(&reading.read, (struct rf_bytes){data, size}, &first) == REFOCUS_OK &&
         first.outcome == RF_XMP_CHANGED) {
         packet = (struct rf_bytes){(const uint8_t *)first.packet.data, first.packet.size};
         if (rf_xmp_edit(&reading.read, packet, &second) != REFOCUS_OK ||
-            second.outcome != RF_XMP_SAME || second.found != 0) {
+            second.outcome != RF_XMP_SAME || second.found != 0)
             abort();
-        }
-        if (first.insert.size > 0 && !memmem(packet.data, packet.size, insert, sizeof insert - 1)) {
+        if (first.insert.size > 0 && !memmem(packet.data, packet.size, insert, sizeof insert - 1))
             abort();
-        }
     }
     free(first.packet.data);
     free(second.packet.data);

@@ -11,11 +11,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     fuzz_begin(&reading);
     if (rf_xmp_extended(&reading.read, (struct rf_bytes){data, size}, guid, 32, &packet) ==
-        REFOCUS_OK) {
-        for (size_t i = 0; i < packet.size; i++) {
+        REFOCUS_OK)
+        for (size_t i = 0; i < packet.size; i++)
             sum += packet.data[i];
-        }
-    }
     (void)sum;
     free(packet.data);
     fuzz_end(&reading);

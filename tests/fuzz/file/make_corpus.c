@@ -45,15 +45,14 @@ static void seed_samples(void)
         bytes_add(&depth, b->data, b->size);
         seed("depth", samples[i].name, depth.data, depth.size);
         bytes_free(&depth);
-        if (strncmp(b->data ? (const char *)b->data : "", "Pf", 2) == 0) {
+        if (strncmp(b->data ? (const char *)b->data : "", "Pf", 2) == 0)
             seed("pfm", samples[i].name, b->data, b->size);
-        } else if (strstr(samples[i].name, ".npy")) {
+        else if (strstr(samples[i].name, ".npy"))
             seed("npy", samples[i].name, b->data, b->size);
-        } else if (b->data[0] == 'P') {
+        else if (b->data[0] == 'P')
             seed("pnm", samples[i].name, b->data, b->size);
-        } else if (strcmp(samples[i].name, "extended.jpg") == 0) {
+        else if (strcmp(samples[i].name, "extended.jpg") == 0)
             seed("xmp_extended", samples[i].name, b->data, b->size);
-        }
     }
     free_samples(samples, count);
 }
@@ -183,9 +182,8 @@ static void seed_formats(void)
             make_dng(32, 24, 20000, preview ? make_jpeg(16, 16, false, false) : none);
 
         seed("raw", preview ? "preview" : "plain", file.data, file.size);
-        if (preview) {
+        if (preview)
             seed("photo", "preview.dng", file.data, file.size);
-        }
         bytes_free(&file);
     }
 }
@@ -236,14 +234,12 @@ static void seed_editable_heic(void)
     char path[1024];
 
     snprintf(path, sizeof path, "%s/photo/editable.heic", root);
-    if (refocus_photo_read_memory(&photo, jpeg.data, jpeg.size, NULL, NULL) != REFOCUS_OK) {
+    if (refocus_photo_read_memory(&photo, jpeg.data, jpeg.size, NULL, NULL) != REFOCUS_OK)
         exit(1);
-    }
     write_editable(path, photo);
     if (refocus_file_read(path, UINT64_MAX, &heic, NULL) != REFOCUS_OK ||
-        refocus_photo_read(&result, path, NULL, NULL) != REFOCUS_OK) {
+        refocus_photo_read(&result, path, NULL, NULL) != REFOCUS_OK)
         exit(1);
-    }
     seed("heif_boxes", "editable", heic.data, heic.size);
     seed("xmp", "editable", rf_kept_of(result)->bytes.data, rf_kept_of(result)->bytes.size);
     free(heic.data);

@@ -23,9 +23,8 @@ static inline int entries(const char *path)
     int n = 0;
 
     assert_non_null(directory);
-    while (readdir(directory)) {
+    while (readdir(directory))
         n++;
-    }
     closedir(directory);
     return n;
 }
@@ -57,9 +56,8 @@ static inline struct refocus_photo *read_photo_at(struct bytes bytes, int expect
 
     bytes_free(&bytes);
     check_status(status, expected, reason.text, file, line);
-    if ((photo == NULL) != (expected != REFOCUS_OK)) {
+    if ((photo == NULL) != (expected != REFOCUS_OK))
         _fail(file, line);
-    }
     return photo;
 }
 
@@ -73,9 +71,8 @@ static inline struct refocus_photo *read_depth_at(struct bytes bytes, const char
 
     bytes_free(&bytes);
     check_status(status, expected, reason.text, file, line);
-    if ((photo == NULL) != (expected != REFOCUS_OK)) {
+    if ((photo == NULL) != (expected != REFOCUS_OK))
         _fail(file, line);
-    }
     return photo;
 }
 
@@ -127,11 +124,9 @@ static inline void upright_place(int orientation, int w, int h, int column, int 
 /* True when a line of evidence holds the text. */
 static inline int has_evidence(const struct refocus_photo *photo, const char *text)
 {
-    for (int i = 0; i < photo->info->evidence_count; i++) {
-        if (strstr(photo->info->evidence[i], text)) {
+    for (int i = 0; i < photo->info->evidence_count; i++)
+        if (strstr(photo->info->evidence[i], text))
             return 1;
-        }
-    }
     return 0;
 }
 

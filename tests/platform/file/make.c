@@ -10,9 +10,8 @@ static size_t room_for(size_t size)
 {
     size_t room = 64;
 
-    while (room < size + 1) {
+    while (room < size + 1)
         room *= 2;
-    }
     return room;
 }
 
@@ -22,14 +21,12 @@ void bytes_add(struct bytes *bytes, const void *data, size_t size)
 
     if (!bytes->data || room != room_for(bytes->size)) {
         uint8_t *const grown = realloc(bytes->data, room);
-        if (!grown) {
+        if (!grown)
             exit(99);
-        }
         bytes->data = grown;
     }
-    if (size > 0) {
+    if (size > 0)
         memcpy(bytes->data + bytes->size, data, size);
-    }
     bytes->size += size;
     bytes->data[bytes->size] = 0;
 }
@@ -81,9 +78,8 @@ static uint32_t crc32_of(const uint8_t *data, size_t size)
 
     for (size_t i = 0; i < size; i++) {
         crc ^= data[i];
-        for (int bit = 0; bit < 8; bit++) {
+        for (int bit = 0; bit < 8; bit++)
             crc = crc & 1 ? 0xedb88320u ^ crc >> 1 : crc >> 1;
-        }
     }
     return ~crc;
 }
@@ -138,14 +134,12 @@ struct bytes make_png_raw(int width, int height, int type, int bits, const uint8
     bytes_number(&header, (uint64_t)type, 1, true);
     bytes_number(&header, 0, 3, true);
     png_chunk(&png, "IHDR", header.data, header.size);
-    if (exif) {
+    if (exif)
         png_chunk(&png, "eXIf", exif->data, exif->size);
-    }
     if (type == 3) {
         uint8_t palette[768];
-        for (int i = 0; i < 768; i++) {
+        for (int i = 0; i < 768; i++)
             palette[i] = (uint8_t)(i / 3);
-        }
         png_chunk(&png, "PLTE", palette, sizeof palette);
         png_chunk(&png, "tRNS", "\0\200", 2);
     }
@@ -262,9 +256,8 @@ struct bytes make_heif_boxes(const struct heif_property *properties, int count, 
         const int own = item == 1 ? count + 1 : 1;
         bytes_number(&ipma, (uint64_t)item, large ? 4 : 2, true);
         bytes_number(&ipma, (uint64_t)own, 1, true);
-        for (int i = 1; i <= own; i++) {
+        for (int i = 1; i <= own; i++)
             bytes_number(&ipma, (uint64_t)i | (large ? 0x8000 : 0x80), large ? 2 : 1, true);
-        }
     }
     for (int i = 0; i < count; i++) {
         const uint8_t value = (uint8_t)properties[i].value;
@@ -293,9 +286,8 @@ struct bytes base64(const void *data, size_t size)
                                (uint32_t)(i + 1 < size ? from[i + 1] : 0) << 8 |
                                (uint32_t)(i + 2 < size ? from[i + 2] : 0);
         char four[4];
-        for (int k = 0; k < 4; k++) {
+        for (int k = 0; k < 4; k++)
             four[k] = digits[group >> (18 - 6 * k) & 63];
-        }
         four[3] = i + 2 < size ? four[3] : '=';
         four[2] = i + 1 < size ? four[2] : '=';
         bytes_add(&text, four, 4);
@@ -322,14 +314,12 @@ static struct bytes make_iso(int channels, const int32_t *values, bool common)
 
     bytes_number(&iso, 0, 4, true);
     bytes_number(&iso, (channels == 3 ? 0xc0 : 0x40) + 8 * common, 1, true);
-    if (common) {
+    if (common)
         bytes_number(&iso, 1000, 4, true);
-    }
     for (int i = 0; i < 2 + 5 * channels; i++) {
         bytes_number(&iso, (uint32_t)values[i], 4, true);
-        if (!common) {
+        if (!common)
             bytes_number(&iso, 1000, 4, true);
-        }
     }
     return iso;
 }

@@ -29,13 +29,12 @@ static void add_sample(struct bytes *file, struct tiff_kind kind, int x, int y, 
 {
     const uint32_t most = kind.bits == 16 ? 65535 : 255;
 
-    if (kind.alpha && c == kind.channels - 1) {
+    if (kind.alpha && c == kind.channels - 1)
         bytes_number(file, x == 1 && y == 1 ? 0 : most, kind.bits / 8, kind.big_endian);
-    } else if (kind.floats) {
+    else if (kind.floats)
         add_float(file, (float)pattern(x, y, c, 255) / 64, kind.big_endian);
-    } else {
+    else
         bytes_number(file, pattern(x, y, c, most), kind.bits / 8, kind.big_endian);
-    }
 }
 
 struct bytes make_tiff(int width, int height, struct tiff_kind kind)
@@ -53,19 +52,15 @@ struct bytes make_tiff(int width, int height, struct tiff_kind kind)
     bytes_number(&file, directory, 4, big);
     for (int p = 0; p < (int)strips; p++) {
         for (int y = 0; y < height; y++) {
-            for (int x = 0; x < width; x++) {
-                for (int c = 0; c < (kind.planar ? 1 : kind.channels); c++) {
+            for (int x = 0; x < width; x++)
+                for (int c = 0; c < (kind.planar ? 1 : kind.channels); c++)
                     add_sample(&file, kind, x, y, c + p);
-                }
-            }
         }
     }
-    for (uint32_t i = 0; strips > 1 && i < strips; i++) {
+    for (uint32_t i = 0; strips > 1 && i < strips; i++)
         bytes_number(&file, DATA + plane * i, 4, big);
-    }
-    for (uint32_t i = 0; strips > 1 && i < strips; i++) {
+    for (uint32_t i = 0; strips > 1 && i < strips; i++)
         bytes_number(&file, plane, 4, big);
-    }
     bytes_number(&file, ENTRIES + kind.alpha, 2, big);
     entry(&file, 254, 4, 1, kind.thumbnail, big);
     entry(&file, 256, 3, 1, (uint32_t)width, big);
@@ -77,14 +72,12 @@ struct bytes make_tiff(int width, int height, struct tiff_kind kind)
     entry(&file, 274, 3, 1, (uint32_t)kind.orientation, big);
     entry(&file, 277, 3, 1, (uint32_t)kind.channels, big);
     entry(&file, 279, 4, strips, strips > 1 ? tables + 4 * strips : bytes, big);
-    if (kind.thumbnail) {
+    if (kind.thumbnail)
         entry(&file, 330, 4, 1, 0, big);
-    } else {
+    else
         entry(&file, 284, 3, 1, kind.planar ? 2 : 1, big);
-    }
-    if (kind.alpha) {
+    if (kind.alpha)
         entry(&file, 338, 3, 1, 2, big);
-    }
     entry(&file, 339, 3, 1, kind.floats ? 3 : 1, big);
     bytes_number(&file, 0, 4, big);
     return file;
@@ -165,9 +158,8 @@ static int add_header(struct bytes *file, int width, int height, const struct ex
             bytes_number(file, 1, 4, false);
         }
     }
-    if (part->view) {
+    if (part->view)
         add_text(file, "view", part->view);
-    }
     bytes_number(file, 0, 1, false);
     return count;
 }
@@ -180,9 +172,8 @@ struct bytes make_exr_parts(int height, const struct exr_part *parts, int count)
     int channels[8], before = 0;
 
     bytes_add(&file, count > 1 ? "\x76\x2f\x31\x01\2\x10\0\0" : "\x76\x2f\x31\x01\2\0\0\0", 8);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
         channels[i] = add_header(&file, parts[0].width, height, &parts[i], count == 1);
-    }
     bytes_number(&file, 0, count > 1, false);
     at = file.size + 8 * (size_t)(count * height);
     for (int i = 0; i < count; i++) {
@@ -196,11 +187,9 @@ struct bytes make_exr_parts(int height, const struct exr_part *parts, int count)
             bytes_number(&file, (uint32_t)i, (int)mark, false);
             bytes_number(&file, (uint32_t)(y + parts[i].y), 4, false);
             bytes_number(&file, (uint32_t)(4 * parts[i].width * channels[i]), 4, false);
-            for (int c = before; c < before + channels[i]; c++) {
-                for (int x = 0; x < parts[i].width; x++) {
+            for (int c = before; c < before + channels[i]; c++)
+                for (int x = 0; x < parts[i].width; x++)
                     add_float(&file, (float)pattern(x, y, c, 255) / 64, false);
-                }
-            }
         }
     }
     return file;
@@ -225,16 +214,14 @@ struct bytes make_dng(int width, int height, unsigned level, struct bytes previe
 
     bytes_add(&file, "II*\0", 4);
     bytes_number(&file, directory, 4, false);
-    for (int i = 0; i < width * height; i++) {
+    for (int i = 0; i < width * height; i++)
         bytes_number(&file, level, 2, false);
-    }
     for (int i = 0; i < 9; i++) {
         bytes_number(&file, (uint32_t)matrix[i], 4, false);
         bytes_number(&file, 10000, 4, false);
     }
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < 6; i++)
         bytes_number(&file, 1, 4, false);
-    }
     bytes_add(&file, "Model X\0", 8);
     bytes_number(&file, ENTRIES, 2, false);
     entry(&file, 254, 4, 1, 0, false);
@@ -254,9 +241,8 @@ struct bytes make_dng(int width, int height, unsigned level, struct bytes previe
     entry(&file, 50708, 2, 8, model_at, false);
     entry(&file, 50721, 10, 9, matrix_at, false);
     bytes_number(&file, 0, 4, false);
-    if (preview.size > 0) {
+    if (preview.size > 0)
         bytes_join(&file, preview);
-    }
     return file;
 }
 

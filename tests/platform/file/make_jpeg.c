@@ -36,10 +36,8 @@ struct bytes make_jpeg(int width, int height, bool grey, bool progressive)
 
     fill(pixels, width, height, grey);
     if (tjCompress2(compressor, pixels, width, 0, height, grey ? TJPF_GRAY : TJPF_RGB, &out, &size,
-                    grey ? TJSAMP_GRAY : TJSAMP_444, 95,
-                    progressive ? TJFLAG_PROGRESSIVE : 0) != 0) {
+                    grey ? TJSAMP_GRAY : TJSAMP_444, 95, progressive ? TJFLAG_PROGRESSIVE : 0) != 0)
         exit(98);
-    }
     bytes_add(&jpeg, out, size);
     tjFree(out);
     tjDestroy(compressor);
@@ -85,9 +83,8 @@ void jpeg_insert_extended(struct bytes *jpeg, const char *guid, struct bytes pac
         const size_t size = packet.size - from < chunk ? packet.size - from : chunk;
         struct bytes body = {NULL, 0};
 
-        if (index == skip) {
+        if (index == skip)
             continue;
-        }
         bytes_text(&body, guid);
         bytes_number(&body, packet.size, 4, true);
         bytes_number(&body, from, 4, true);
@@ -132,9 +129,8 @@ struct bytes make_gdepth(struct gdepth gdepth, int orientation)
     jpeg_insert_xmp(&jpeg, (const char *)xmp.data);
     bytes_free(&xmp);
     bytes_free(&text);
-    if (orientation) {
+    if (orientation)
         jpeg_insert_exif(&jpeg, make_exif(true, orientation));
-    }
     return jpeg;
 }
 
@@ -191,18 +187,14 @@ struct bytes make_dynamic_xmp(const struct dynamic *dynamic)
                       "xmlns:Image=\"" DD "image/\" xmlns:DepthMap=\"" DD "depthmap/\">"
                       "<Container:Directory><rdf:Seq>");
     add_item(&text, dynamic, "Primary", "primary_image", 0);
-    if (dynamic->gain.data) {
+    if (dynamic->gain.data)
         add_item(&text, dynamic, "GainMap", "android/gainmap", dynamic->gain.size);
-    }
-    if (dynamic->original.data) {
+    if (dynamic->original.data)
         add_item(&text, dynamic, "Original", "android/original_image", dynamic->original.size);
-    }
-    if (dynamic->depth.data) {
+    if (dynamic->depth.data)
         add_item(&text, dynamic, "Depth", "android/depthmap", dynamic->depth.size);
-    }
-    if (dynamic->confidence.data) {
+    if (dynamic->confidence.data)
         add_item(&text, dynamic, "Confidence", "android/confidencemap", dynamic->confidence.size);
-    }
     bytes_text(&text, "</rdf:Seq></Container:Directory>");
     if (dynamic->map) {
         bytes_text(&text,
@@ -224,9 +216,8 @@ struct bytes make_dynamic_xmp(const struct dynamic *dynamic)
 
 static void add_zeros(struct bytes *file, size_t count)
 {
-    while (count-- > 0) {
+    while (count-- > 0)
         bytes_add(file, "", 1);
-    }
 }
 
 static void add_behind(struct bytes *file, struct bytes part, size_t padding)
@@ -243,9 +234,8 @@ struct bytes make_dynamic(struct dynamic dynamic, int orientation)
 
     jpeg_insert_xmp(&jpeg, (const char *)xmp.data);
     bytes_free(&xmp);
-    if (orientation) {
+    if (orientation)
         jpeg_insert_exif(&jpeg, make_exif(true, orientation));
-    }
     add_zeros(&jpeg, dynamic.between + dynamic.padding);
     add_behind(&jpeg, dynamic.gain, dynamic.padding);
     add_behind(&jpeg, dynamic.original, dynamic.padding);
@@ -288,9 +278,8 @@ struct bytes make_mpf(struct bytes main_jpeg, struct bytes *parts, int count, bo
     }
     jpeg_insert(&main_jpeg, 0xe2, "MPF", 4, tiff.data, tiff.size);
     bytes_free(&tiff);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
         bytes_join(&main_jpeg, parts[i]);
-    }
     return main_jpeg;
 }
 

@@ -8,9 +8,8 @@ static struct bytes map_of(void)
 {
     struct bytes map = {NULL, 0};
 
-    for (int i = 0; i < 24; i++) {
+    for (int i = 0; i < 24; i++)
         bytes_number(&map, (uint64_t)(10 * i), 1, false);
-    }
     return map;
 }
 
@@ -34,9 +33,8 @@ static struct bytes extra_of(int mark_at, int width, int height)
 {
     struct bytes extra = {NULL, 0};
 
-    while (extra.size < (size_t)mark_at) {
+    while (extra.size < (size_t)mark_at)
         bytes_number(&extra, 0, 4, false);
-    }
     bytes_number(&extra, 0xffff0003, 4, false);
     bytes_number(&extra, (uint64_t)width, 4, false);
     bytes_number(&extra, (uint64_t)height, 4, false);
@@ -50,9 +48,8 @@ struct bytes make_samsung(int mark_at, int width, int height, bool original, boo
     const int count = original ? 3 : 2;
     size_t directory;
 
-    if (original) {
+    if (original)
         add_block(&blocks, &entries, 1, "DualShot_1", make_jpeg(60, 30, false, false));
-    }
     add_block(&blocks, &entries, 0xab1, "DualShot_DepthMap_1", map_of());
     add_block(&blocks, &entries, 0xab3, "DualShot_Extra_Info", extra_of(mark_at, width, height));
     for (int i = 0; i < count; i++) {
@@ -60,9 +57,8 @@ struct bytes make_samsung(int mark_at, int width, int height, bool original, boo
         const size_t at = back[0] | (size_t)back[1] << 8 | (size_t)back[2] << 16;
         const size_t value = blocks.size - at;
 
-        for (int k = 0; k < 4; k++) {
+        for (int k = 0; k < 4; k++)
             back[k] = (uint8_t)(value >> 8 * k);
-        }
     }
     bytes_join(&file, blocks);
     directory = 12 + entries.size;
@@ -84,18 +80,15 @@ struct bytes make_huawei(int width, int height, bool original)
 {
     struct bytes file = make_jpeg(64, 32, false, false);
 
-    if (original) {
+    if (original)
         bytes_join(&file, make_jpeg(60, 30, false, false));
-    }
     bytes_add(&file, "edof\0\0\0\0\1", 9);
-    for (int i = 9; i < 20; i++) {
+    for (int i = 9; i < 20; i++)
         bytes_number(&file, 0, 1, false);
-    }
     bytes_number(&file, (uint64_t)width, 2, false);
     bytes_number(&file, (uint64_t)height, 2, false);
-    for (int i = 24; i < 72; i++) {
+    for (int i = 24; i < 72; i++)
         bytes_number(&file, 0, 1, false);
-    }
     bytes_join(&file, map_of());
     return file;
 }

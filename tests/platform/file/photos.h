@@ -76,9 +76,8 @@ static inline struct bytes load(const char *name)
     size_t n;
 
     assert_non_null(file);
-    while ((n = fread(part, 1, sizeof part, file)) > 0) {
+    while ((n = fread(part, 1, sizeof part, file)) > 0)
         bytes_add(&bytes, part, n);
-    }
     fclose(file);
     return bytes;
 }

@@ -145,7 +145,6 @@ int make_samples(struct sample *samples)
 
 void free_samples(struct sample *samples, int count)
 {
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
         bytes_free(&samples[i].bytes);
-    }
 }

@@ -179,9 +179,8 @@ static void mpo_views(void **state)
         struct bytes mpo = make_mpf(make_jpeg(48, 32, false, false), &part, 1, true);
         struct refocus_photo *photo;
 
-        if (view) {
+        if (view)
             memcpy(mpo.data + attributes, "\0\2\0\2", 4);
-        }
         photo = read_photo(mpo, REFOCUS_OK);
         assert_int_equal(photo->info->views, view);
         assert_true(has_evidence(photo, "another view, for stereo") == view);

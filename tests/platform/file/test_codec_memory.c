@@ -82,12 +82,10 @@ static void readers(void **state)
 
             snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
             if (entry->d_name[0] == '.' ||
-                refocus_file_read(path, 1 << 20, &blob, NULL) != REFOCUS_OK) {
+                refocus_file_read(path, 1 << 20, &blob, NULL) != REFOCUS_OK)
                 continue;
-            }
-            for (int picture = 0; picture < 2; picture++) {
+            for (int picture = 0; picture < 2; picture++)
                 fail_each(path, codecs[i].codec, (struct rf_bytes){blob.data, blob.size}, picture);
-            }
             free(blob.data);
             files++;
         }
@@ -118,9 +116,8 @@ static void writers(void **state)
     for (size_t i = 0; i < sizeof codecs / sizeof *codecs; i++) {
         long total;
 
-        if (!codecs[i].codec->write) {
+        if (!codecs[i].codec->write)
             continue;
-        }
         failing.calls = failing.live = failing.fail_at = 0;
         assert_int_equal(write_one(codecs[i].codec), REFOCUS_OK);
         total = failing.calls;

@@ -23,9 +23,8 @@ static void box(struct bytes *to, const char *type, struct bytes content, int wa
 {
     bytes_number(to, way == BY_32 ? 8 + content.size : way == BY_64 ? 1 : 0, 4, true);
     bytes_add(to, type, 4);
-    if (way == BY_64) {
+    if (way == BY_64)
         bytes_number(to, 16 + content.size, 8, true);
-    }
     bytes_join(to, content);
 }
 
@@ -134,15 +133,12 @@ static void heif_without_a_box(void **state)
             struct bytes file = heif(&layout);
             size_t at = 0;
 
-            while (memcmp(file.data + at + 4, names[i], 4) != 0) {
+            while (memcmp(file.data + at + 4, names[i], 4) != 0)
                 at++;
-            }
-            if (n == 0) {
+            if (n == 0)
                 file.data[at + 4] = 'x';
-            }
-            for (int k = 0; n > 0 && k < 4; k++) {
+            for (int k = 0; n > 0 && k < 4; k++)
                 file.data[at + (size_t)k] = (uint8_t)(sizes[n - 1] >> (24 - 8 * k));
-            }
             assert_int_equal(rf_heif_orientation(whole(file), 0), 1);
             bytes_free(&file);
         }
@@ -203,9 +199,8 @@ static struct bytes tiff(bool high_first, const struct tag *tags, int count)
         bytes_number(&file, tags[i].type, 2, high_first);
         bytes_number(&file, 1, 4, high_first);
         bytes_number(&file, tags[i].value, tags[i].type == 3 ? 2 : 4, high_first);
-        if (tags[i].type == 3) {
+        if (tags[i].type == 3)
             bytes_number(&file, 0xeeee, 2, high_first);
-        }
     }
     bytes_number(&file, 0, 4, high_first);
     return file;
@@ -288,11 +283,10 @@ static void raw_previews(void **state)
 
             for (int i = 0; i < last; i++) {
                 bytes_text(&file, "between\xff\xff");
-                if (parts[i].width) {
+                if (parts[i].width)
                     bytes_join(&file, make_jpeg(parts[i].width, parts[i].height, false, i % 2));
-                } else {
+                else
                     bytes_add(&file, parts[i].height ? twelve : lossless, sizeof lossless - 1);
-                }
             }
             photo = read_preview(&file, REFOCUS_OK);
             assert_int_equal(photo->image->width, is_large ? (is_turned ? 32 : 48) : 16);
@@ -314,9 +308,8 @@ static void raw_of_many_beginnings(void **state)
 
     (void)state;
     bytes_join(&file, make_jpeg(48, 32, false, false));
-    for (int i = 0; i < 87000; i++) {
+    for (int i = 0; i < 87000; i++)
         bytes_add(&file, "\xff\xfe\0\4\xff\xd8", 6);
-    }
     photo = read_preview(&file, REFOCUS_OK);
     assert_int_equal(photo->image->width, 48);
     refocus_photo_free(&photo);

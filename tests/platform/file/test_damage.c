@@ -14,9 +14,8 @@ static int read_exact(const uint8_t *bytes, size_t size, bool depth, struct refo
                    : refocus_photo_read_memory(&photo, copy, size, NULL, reason);
     free(copy);
     if ((status == REFOCUS_OK) != (photo != NULL) ||
-        (status != REFOCUS_OK && reason->text[0] == '\0')) {
+        (status != REFOCUS_OK && reason->text[0] == '\0'))
         fail_msg("status %d does not go with the photo or its words", status);
-    }
     refocus_photo_free(&photo);
     return status;
 }
@@ -33,10 +32,8 @@ static void whole_samples_are_read(void **state)
         const struct bytes *const b = &samples[i].bytes;
         const int photo = read_exact(b->data, b->size, false, &reason);
         const int depth = read_exact(b->data, b->size, true, &reason);
-        if ((photo == REFOCUS_OK) != samples[i].photo ||
-            (depth == REFOCUS_OK) != samples[i].depth) {
+        if ((photo == REFOCUS_OK) != samples[i].photo || (depth == REFOCUS_OK) != samples[i].depth)
             fail_msg("%s: %d %d %s", samples[i].name, photo, depth, reason.text);
-        }
     }
     free_samples(samples, count);
 }
@@ -53,9 +50,8 @@ static void cut_at_every_byte(void **state)
         for (size_t size = 0; size < s->bytes.size; size++) {
             for (int depth = 0; depth < 2; depth++) {
                 const int status = read_exact(s->bytes.data, size, depth, &reason);
-                if (status == REFOCUS_OK && size != s->whole_at && !s->loose_end) {
+                if (status == REFOCUS_OK && size != s->whole_at && !s->loose_end)
                     fail_msg("%s cut at %zu is read as if whole", s->name, size);
-                }
             }
         }
     }
@@ -98,9 +94,8 @@ static void limits_of_parts(void **state)
                                                      samples[i].bytes.size, &limits, &reason);
         const int small = strcmp(samples[i].name, "p3.ppm") == 0;
 
-        if (samples[i].photo) {
+        if (samples[i].photo)
             assert_int_equal(status, small ? REFOCUS_OK : REFOCUS_ERR_SIZE);
-        }
         refocus_photo_free(&photo);
     }
     free_samples(samples, count);

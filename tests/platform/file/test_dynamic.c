@@ -163,9 +163,8 @@ static void confidence_of_all_kinds(void **state)
     bytes_free(&dynamic.confidence);
     dynamic.confidence = make_png(6, 4, 0, 16);
     photo = read_photo(make_dynamic(dynamic, 0), REFOCUS_OK);
-    for (int i = 0; i < 24; i++) {
+    for (int i = 0; i < 24; i++)
         assert_int_equal(photo->confidence[i], pattern(i % 6, i / 6, 0, 65535) * 255 / 65535);
-    }
     refocus_photo_free(&photo);
     dynamic = with("DepthMap:Format=\"RangeInverse\" " URIS, false);
     bytes_free(&dynamic.confidence);
@@ -207,9 +206,8 @@ static void damaged(void **state)
     struct bytes file;
 
     (void)state;
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         read_photo(make_dynamic(with(bad[i], false), 0), REFOCUS_ERR_FORMAT);
-    }
     for (int i = 0; i < 3; i++) { /* parts that are no picture, or one in colour */
         dynamic = with(map, false);
         bytes_free(i ? &dynamic.confidence : &dynamic.depth);
@@ -267,9 +265,8 @@ static void check_items(const char *items, int count, int expected)
     bytes_text(&text, "<x xmlns:c=\"http://ns.google.com/photos/dd/1.0/container/\" "
                       "xmlns:i=\"http://ns.google.com/photos/dd/1.0/item/\" "
                       "xmlns:d=\"http://ns.google.com/photos/dd/1.0/depthmap/\"><c:Directory>");
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
         bytes_text(&text, items);
-    }
     bytes_text(&text, "</c:Directory></x>");
     jpeg_insert_xmp(&jpeg, (const char *)text.data);
     bytes_text(&jpeg, "something");

@@ -19,14 +19,12 @@ static bool parse(struct bytes *block, struct rf_exif *exif)
 
     assert_true(guarded_create(&guarded, block->size));
     place = guarded_place(&guarded, block->size, 1, AT_END, 0);
-    if (block->size > 0) {
+    if (block->size > 0)
         memcpy(place, block->data, block->size);
-    }
     good = rf_exif_parse(place, block->size, exif);
     assert_true(guarded_intact(&guarded));
-    if (block->size > 0) {
+    if (block->size > 0)
         memcpy(block->data, place, block->size);
-    }
     guarded_destroy(&guarded);
     return good;
 }
@@ -84,12 +82,10 @@ static struct bytes with_subject(int type, uint32_t count, uint32_t x, uint32_t 
     struct bytes block = with_settings(1, 1 + sides);
 
     entry(&block, SUBJECT_AREA, type, count, x << 16 | y);
-    if (sides > 0) {
+    if (sides > 0)
         entry_short(&block, WIDTH, 640);
-    }
-    if (sides > 1) {
+    if (sides > 1)
         entry(&block, HEIGHT, LONG, 1, 480);
-    }
     add(&block, 0, 4);
     return block;
 }
@@ -123,9 +119,8 @@ static void directory_lies_within(void **state)
 
         bytes_add(&block, "MM\0*", 4);
         add(&block, size + (uint32_t)beyond, 4);
-        while (block.size < size) {
+        while (block.size < size)
             add(&block, 0, 1);
-        }
         assert_false(parse(&block, &exif));
         bytes_free(&block);
         block = with_settings(1, 0);
@@ -148,20 +143,17 @@ static void entries_lie_within(void **state)
 
         directory(&block, 3);
         entry_short(&block, ORIENTATION, 6);
-        for (size_t i = 0; i < rest; i++) {
+        for (size_t i = 0; i < rest; i++)
             add(&block, 0x77, 1);
-        }
         assert_true(parse(&block, &exif));
         assert_int_equal(exif.orientation, 6);
-        for (size_t i = 0; i < rest; i++) { /* no link to a thumbnail is behind them */
+        for (size_t i = 0; i < rest; i++) /* no link to a thumbnail is behind them */
             assert_int_equal(block.data[8 + 2 + 12 + i], 0x77);
-        }
         bytes_free(&block);
         block = with_settings(1, 3);
         entry_short(&block, FOCAL_LENGTH_35MM, 28);
-        for (size_t i = 0; i < rest; i++) {
+        for (size_t i = 0; i < rest; i++)
             add(&block, 0x77, 1);
-        }
         assert_true(facts(block).focal_length_35mm == 28);
     }
 }
@@ -177,14 +169,12 @@ static void link_lies_within(void **state)
 
         directory(&block, 1);
         entry_short(&block, ORIENTATION, 3);
-        for (size_t i = 0; i < rest; i++) {
+        for (size_t i = 0; i < rest; i++)
             add(&block, 0x77, 1);
-        }
         assert_true(parse(&block, &exif));
         assert_int_equal(exif.orientation, 3);
-        for (size_t i = 0; i < rest; i++) {
+        for (size_t i = 0; i < rest; i++)
             assert_int_equal(block.data[8 + 2 + 12 + i], rest == 4 ? 0 : 0x77);
-        }
         bytes_free(&block);
     }
 }
@@ -254,17 +244,15 @@ static void texts_end(void **state)
 
         directory(&block, 1);
         entry(&block, MAKE, ASCII, count, count <= 4 ? 0x78787878 : 8 + 2 + 12);
-        if (count > 4) {
+        if (count > 4)
             bytes_add(&block, text, count);
-        }
         exif = facts(block);
         assert_int_equal(strlen(exif.camera), count < 47 ? count : 47);
         block = (struct bytes){NULL, 0};
         directory(&block, 1);
         entry(&block, MODEL, ASCII, count, count <= 4 ? 0x78787878 : 8 + 2 + 12);
-        if (count > 4) {
+        if (count > 4)
             bytes_add(&block, text, count);
-        }
         exif = facts(block);
         assert_int_equal(strlen(exif.camera), count < 63 ? count : 63);
     }
@@ -339,9 +327,8 @@ static void sides_are_exchanged(void **state)
         assert_int_equal(exchanges(orientation, SHORT, 1, HEIGHT),
                          orientation >= 5 && orientation <= 8);
     }
-    for (int type = 0; type <= 65535; type++) {
+    for (int type = 0; type <= 65535; type++)
         assert_int_equal(exchanges(6, type, 1, HEIGHT), type > 0 && type < RATIONAL);
-    }
     assert_false(exchanges(6, SHORT, 0, HEIGHT));
     assert_false(exchanges(6, SHORT, 2, HEIGHT));
     assert_false(exchanges(6, SHORT, 1, HEIGHT + 1));

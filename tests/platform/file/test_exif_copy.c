@@ -50,9 +50,8 @@ static uint32_t number(const uint8_t *from, int size, bool high_first)
 {
     uint32_t value = 0;
 
-    for (int i = 0; i < size; i++) {
+    for (int i = 0; i < size; i++)
         value = value << 8 | from[high_first ? i : size - 1 - i];
-    }
     return value;
 }
 
@@ -86,9 +85,8 @@ static const uint8_t *find(uint32_t directory, uint32_t tag, bool high_first)
     for (uint32_t i = 0; i < count; i++) {
         const uint8_t *const at = copied + directory + 2 + 12 * (size_t)i;
 
-        if (number(at, 2, high_first) == tag) {
+        if (number(at, 2, high_first) == tag)
             return at;
-        }
     }
     return NULL;
 }
@@ -148,9 +146,8 @@ static void left_out(void **state)
         entry(&from, ARTIST, ASCII, 5, size + 1);
         entry(&from, MODEL, ASCII, 5, size - 5);
         bytes_number(&from.bytes, 0, 4, high);
-        while (from.bytes.size < size - 5) {
+        while (from.bytes.size < size - 5)
             bytes_add(&from.bytes, "x", 1);
-        }
         bytes_add(&from.bytes, "Model", 5);
         assert_true(copy(&from) > 0);
         assert_int_equal(number(copied + main_directory(high), 2, high), 1);
@@ -216,13 +213,11 @@ static void room(void **state)
     uint32_t directory;
 
     (void)state;
-    for (int i = 0; i < TEXTS; i++) {
+    for (int i = 0; i < TEXTS; i++)
         entry(&from, ARTIST, ASCII, LENGTH, text);
-    }
     bytes_number(&from.bytes, 0, 4, true);
-    for (int i = 0; i < LENGTH; i++) {
+    for (int i = 0; i < LENGTH; i++)
         bytes_add(&from.bytes, "t", 1);
-    }
     assert_true(copy(&from) > 3 * LENGTH);
     directory = main_directory(true);
     assert_int_equal(number(copied + directory, 2, true), 3);
@@ -233,9 +228,8 @@ static void room(void **state)
 
         assert_true(at % 2 == 0 && copied[at] == 't' && copied[at + LENGTH - 1] == 't');
     }
-    for (int i = 0; i < 6000; i++) {
+    for (int i = 0; i < 6000; i++)
         entry(&many, TURN, SHORT, 1, 1);
-    }
     assert_int_equal(copy(&many), 0);
     bytes_free(&from.bytes);
     bytes_free(&many.bytes);

@@ -74,11 +74,9 @@ static bool mentions(const struct bytes *block, unsigned tag)
 {
     const unsigned count = number(block, AREA_ENTRY - 2);
 
-    for (unsigned i = 0; i < count; i++) {
-        if (number(block, AREA_ENTRY + 12 * (size_t)i) == tag) {
+    for (unsigned i = 0; i < count; i++)
+        if (number(block, AREA_ENTRY + 12 * (size_t)i) == tag)
             return true;
-        }
-    }
     return false;
 }
 
@@ -219,9 +217,8 @@ static struct bytes with_thumbnail(int tag, uint32_t count, uint32_t place, uint
     entry(&block, tag, LONG, count, place);
     entry(&block, tag == 0x111 ? 0x117 : 0x202, LONG, count, bytes);
     add(&block, 0, 4);
-    for (int i = 0; i < 32; i++) {
+    for (int i = 0; i < 32; i++)
         add(&block, 0x77, 1);
-    }
     return block;
 }
 
@@ -235,12 +232,10 @@ static int left(struct bytes block)
 
     assert_true(rf_exif_parse(block.data, block.size, &exif));
     assert_memory_equal(block.data, before.data, THUMBNAIL - 4);
-    for (size_t i = THUMBNAIL - 4; i < DATA; i++) {
+    for (size_t i = THUMBNAIL - 4; i < DATA; i++)
         assert_int_equal(block.data[i], 0);
-    }
-    for (size_t i = DATA; i < block.size; i++) {
+    for (size_t i = DATA; i < block.size; i++)
         n += block.data[i] == 0x77;
-    }
     bytes_free(&block);
     free(before.data);
     return n;

@@ -13,9 +13,8 @@ static int short_read;              /* a read has failed: its stream says so */
 
 static int fails(void)
 {
-    if (++calls != fail_at) {
+    if (++calls != fail_at)
         return 0;
-    }
     errno = failure;
     return 1;
 }
@@ -60,9 +59,8 @@ size_t __wrap_fread(void *to, size_t size, size_t n, FILE *stream)
 {
     short_read = fails();
     n = __real_fread(to, size, short_read ? n / 2 : n, stream);
-    if (short_read) {
+    if (short_read)
         errno = failure;
-    }
     return n;
 }
 
@@ -76,9 +74,8 @@ size_t __wrap_fwrite(const void *from, size_t size, size_t n, FILE *stream)
     const int fault = fails();
 
     n = __real_fwrite(from, size, fault ? n / 2 : n, stream);
-    if (fault) {
+    if (fault)
         errno = failure;
-    }
     return n;
 }
 
@@ -92,9 +89,8 @@ int __wrap_fclose(FILE *stream)
 {
     const int fault = fails(), status = __real_fclose(stream);
 
-    if (fault) {
+    if (fault)
         errno = failure;
-    }
     return fault ? EOF : status;
 }
 
@@ -160,9 +156,8 @@ static int each_call(int (*act)(struct refocus_reason *reason), bool moves, int 
         fail_at = 0;
         assert_int_equal(refocus_file_write("a.ppm", old, sizeof old, NULL), REFOCUS_OK);
         assert_int_equal(chmod("a.ppm", 0604), 0);
-        if (moves) {
+        if (moves)
             assert_int_equal(refocus_file_write("tmp", good.data, good.size, NULL), REFOCUS_OK);
-        }
         calls = 0;
         fail_at = at;
         status = act(&reason);

@@ -140,9 +140,8 @@ static void tiff_written(void **state)
     struct refocus_photo *photo = NULL;
 
     (void)state;
-    for (int i = 0; i < 3 * W * H; i++) {
+    for (int i = 0; i < 3 * W * H; i++)
         samples[i] = (uint16_t)(i * 1091);
-    }
     assert_int_equal(refocus_image_write("formats.tif", &image, NULL, NULL), REFOCUS_OK);
     assert_int_equal(refocus_photo_read(&photo, "formats.tif", NULL, NULL), REFOCUS_OK);
     assert_memory_equal(photo->deep->plane[0], samples, sizeof samples);
@@ -225,9 +224,8 @@ static void webp(void **state)
     size_t size;
 
     (void)state;
-    for (int i = 0; i < 3 * W * H; i++) {
+    for (int i = 0; i < 3 * W * H; i++)
         rgb[i] = (uint8_t)pattern(i / 3 % W, i / 3 / W, i % 3, 255);
-    }
     size = WebPEncodeLosslessRGB(rgb, W, H, 3 * W, &made);
     assert_true(size > 20);
     photo = read_photo(bytes_copy(made, size), REFOCUS_OK);
@@ -390,9 +388,8 @@ static void jxl(void **state)
     assert_memory_equal(photo->deep->plane[0], light, sizeof light);
     refocus_photo_free(&photo);
     /* White of PQ, 203 cd/m2, is the code .580689 (ITU-R BT.2408), and 1000 cd/m2 are .751827. */
-    for (int i = 0; i < 3 * W * H; i++) {
+    for (int i = 0; i < 3 * W * H; i++)
         deep[i] = i % 2 ? 38055 : 49271;
-    }
     photo = read_photo(make_jxl(deep, sizeof deep, JXL_TYPE_UINT16, 16, JXL_TRANSFER_FUNCTION_PQ),
                        REFOCUS_OK);
     assert_true(fabs((double)light_at(photo->deep, 0, 0, 1) - 1) < 0.001);
@@ -413,9 +410,8 @@ static void raw_developed(void **state)
     assert_string_equal(photo->info->container, "raw");
     assert_int_equal(photo->image->width, 64);
     assert_int_equal(photo->image->height, 48);
-    for (int c = 0; c < 3; c++) { /* .735357 is the code of .5 */
+    for (int c = 0; c < 3; c++) /* .735357 is the code of .5 */
         assert_true(abs((int)deep_at(photo->deep, 30, 20, c) - 48192) < 200);
-    }
     refocus_photo_free(&photo);
     refuse_large(file);
     bytes_free(&file);
@@ -486,10 +482,8 @@ static struct bytes make_heif(enum heif_compression_format compression, int left
         options->output_nclx_profile = nclx;
         options->macOS_compatibility_workaround_no_nclx_profile = 0;
         heif_encoder_set_lossy_quality(encoder, 98);
-        if (heif_context_encode_image(context, image, encoder, options, NULL).code ==
-            heif_error_Ok) {
+        if (heif_context_encode_image(context, image, encoder, options, NULL).code == heif_error_Ok)
             heif_context_write(context, &writer, &file);
-        }
         heif_encoder_release(encoder);
     }
     heif_encoding_options_free(options);
@@ -532,9 +526,8 @@ static void heic(void **state)
     struct bytes file = make_heif(hevc, 300, 801, heif_transfer_characteristic_IEC_61966_2_1);
 
     (void)state;
-    if (file.size == 0) { /* not each libheif writes them */
+    if (file.size == 0) /* not each libheif writes them */
         skip();
-    }
     check_codes(file, "HEIC");
     check_light(make_heif(hevc, 594, 769, heif_transfer_characteristic_ITU_R_BT_2100_0_PQ),
                 1000.0 / 203);
@@ -546,9 +539,8 @@ static void heic(void **state)
 static void avif(void **state)
 {
     (void)state;
-    if (!heif_have_decoder_for_format(heif_compression_AV1)) {
+    if (!heif_have_decoder_for_format(heif_compression_AV1))
         skip();
-    }
     check_codes(load("srgb10.avif"), "AVIF");
     check_light(load("pq10.avif"), 1000.0 / 203);
 }

@@ -16,12 +16,10 @@ static struct bytes times_part(int times, struct bytes part, bool indexed, int o
 {
     struct bytes photo = make_jpeg(32 * times, 16 * times, false, false);
 
-    if (orientation > 1) {
+    if (orientation > 1)
         jpeg_insert_exif(&photo, make_exif(true, orientation));
-    }
-    if (indexed) {
+    if (indexed)
         return make_mpf(photo, &part, 1, false);
-    }
     bytes_join(&photo, part);
     return photo;
 }
@@ -213,9 +211,8 @@ static void three_channels(void **state)
 
     (void)state;
     assert_int_equal(refocus_light_create(&light, photo), REFOCUS_OK);
-    for (int c = 0; c < 3; c++) { /* white, where the map is white too */
+    for (int c = 0; c < 3; c++) /* white, where the map is white too */
         expect_quarter(photo, refocus_light_image(light), 3, c, c + 1, 0, 0);
-    }
     refocus_light_destroy(&light);
     refocus_photo_free(&photo);
 }
@@ -288,9 +285,8 @@ static void expect_passed_over(struct bytes file, const char *why)
     struct refocus_photo *photo = read_photo(file, REFOCUS_OK);
     struct refocus_light *light = (struct refocus_light *)1;
 
-    if (!has_evidence(photo, why)) {
+    if (!has_evidence(photo, why))
         fail_msg("no evidence says \"%s\"", why);
-    }
     assert_true(photo->info->gain_map_stops == 0);
     assert_null(rf_photo_gain_map(photo));
     assert_int_equal(refocus_light_create(&light, photo), REFOCUS_ERR_UNSUPPORTED);
@@ -316,18 +312,16 @@ static void passed_over(void **state)
     struct bytes part, file;
 
     (void)state;
-    for (size_t i = 0; i < sizeof damaged / sizeof *damaged; i++) {
+    for (size_t i = 0; i < sizeof damaged / sizeof *damaged; i++)
         expect_passed_over(with_part(xmp_part(damaged[i]), true, 1), "its metadata is damaged");
-    }
     expect_passed_over(
         with_part(xmp_part("<hdrgm:BaseRenditionIsHDR>True</hdrgm:BaseRenditionIsHDR>"
                            "<hdrgm:GainMapMax>3</hdrgm:GainMapMax>"
                            "<hdrgm:HDRCapacityMax>3</hdrgm:HDRCapacityMax>"),
                   true, 1),
         "not the darker rendition");
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         expect_passed_over(with_part(iso_part(1, bad[i]), true, 1), "gain map: passed over");
-    }
     expect_passed_over(
         with_part(make_auxiliary("urn:com:apple:photo:2020:aux:hdrgainmap", NULL), true, 1),
         "does not say its headroom");
@@ -457,9 +451,8 @@ static void tones(void **state)
     }
     from.plane[0] = (uint8_t *)pixels;
     assert_int_equal(refocus_light_to_base(light, &from, 0, 0, 0, &to), REFOCUS_OK);
-    for (int i = 0; i < 16 * 32; i++) {
+    for (int i = 0; i < 16 * 32; i++)
         bright += out[(16 + (size_t)i / 32) * row + 3 * (32 + (size_t)i % 32) + 1] > 200;
-    }
     assert_in_range(bright, 300, 512);
     /* A part lies where it is said to. */
     to.width = from.width = 8;

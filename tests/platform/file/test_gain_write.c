@@ -51,9 +51,8 @@ static struct scene *make_scene(void)
         const float light = is_lit(x, y) ? lamp[c] : rf_tone_light(40 + x + 20 * c);
         int code = 0;
 
-        while (code < 255 && rf_tone_light(code) < light) {
+        while (code < 255 && rf_tone_light(code) < light)
             code++;
-        }
         scene->codes[i] = (uint8_t)code;
         scene->halves[i] = rf_half_of(light);
     }
@@ -148,11 +147,9 @@ static size_t number_behind(const struct bytes *file, const char *word)
 {
     const size_t n = strlen(word);
 
-    for (size_t i = 0; i + n < file->size; i++) {
-        if (memcmp(file->data + i, word, n) == 0) {
+    for (size_t i = 0; i + n < file->size; i++)
+        if (memcmp(file->data + i, word, n) == 0)
             return (size_t)strtoul((const char *)file->data + i + n, NULL, 10);
-        }
-    }
     return 0;
 }
 
@@ -168,11 +165,9 @@ static void places(void **state)
 
     (void)state;
     assert_true(rf_jpeg_walk_begin(&walk, bytes));
-    while (rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT) {
-        if (walk.marker == 0xe2) {
+    while (rf_jpeg_walk_next(&walk) == RF_JPEG_SEGMENT)
+        if (walk.marker == 0xe2)
             rf_jpeg_after(walk.segment, rf_jpeg_mpf_signature, sizeof rf_jpeg_mpf_signature, &tiff);
-        }
-    }
     end = walk.position;
     assert_non_null(tiff.data);
     base = (size_t)(tiff.data - file.data);
@@ -223,16 +218,13 @@ static void other_light(void **state)
     struct refocus_photo *photo;
 
     (void)state;
-    for (int y = 0; y < H / 2; y++) {
-        for (int x = 0; x < W / 2; x++) {
+    for (int y = 0; y < H / 2; y++)
+        for (int x = 0; x < W / 2; x++)
             memmove(scene->codes + 3 * (y * (W / 2) + x), scene->codes + 6 * (y * W + x), 3);
-        }
-    }
     scene->base = refocus_image_packed(REFOCUS_FORMAT_RGB8, scene->codes, W / 2, H / 2, 3 * W / 2);
     expect_light(write_scene(scene, NULL), 2);
-    for (int i = 0; i < 3 * W * H; i++) {
+    for (int i = 0; i < 3 * W * H; i++)
         scene->halves[i] = wild[i % 7];
-    }
     for (int side = 1; side <= 3; side++) {
         scene->base.width = side;
         scene->base.height = 4 - side;
@@ -361,9 +353,8 @@ static void original_of_heic(void **state)
                                                        rf_photo_gain_map(again)};
             float gain[2];
 
-            for (int i = 0; i < 2; i++) {
+            for (int i = 0; i < 2; i++)
                 gain[i] = maps[i]->gain[0][maps[i]->samples.pixels[32 * y + x]];
-            }
             assert_true(fabsf(gain[0] - gain[1]) < 0.1f);
             assert_true(
                 abs((int)sample_at(photo->matte, x, y) - (int)sample_at(again->matte, x, y)) < 6);

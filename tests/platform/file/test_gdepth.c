@@ -18,9 +18,8 @@ static struct gdepth small_gdepth(void)
 
 static void check_quarter(const struct refocus_image *image, int x, int y, const uint8_t *colour)
 {
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < 3; c++)
         assert_in_range(pixel_at(image, x, y)[c] + 10, colour[c], colour[c] + 20);
-    }
 }
 
 static void orientation_of_photo_and_depth(void **state)
@@ -276,9 +275,8 @@ static void gdepth_damaged(void **state)
     };
 
     (void)state;
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         read_photo(make_gdepth(bad[i], 0), REFOCUS_ERR_FORMAT);
-    }
 }
 
 static void original_replaces_a_blurred_picture(void **state)
@@ -341,22 +339,18 @@ static void extended_damaged(void **state)
     read_photo(jpeg, REFOCUS_ERR_FORMAT);
     /* Two chunks at one place and none at another: the sizes still add up. */
     jpeg = make_gdepth_extended(small_gdepth(), 100, 1, -1);
-    for (size_t i = 0; i + 80 < jpeg.size; i++) {
+    for (size_t i = 0; i + 80 < jpeg.size; i++)
         if (memcmp(jpeg.data + i, "http://ns.adobe.com/xmp/extension/", 34) == 0 &&
-            memcmp(jpeg.data + i + 35 + 36, "\0\0\0\144", 4) == 0) {
+            memcmp(jpeg.data + i + 35 + 36, "\0\0\0\144", 4) == 0)
             jpeg.data[i + 35 + 39] = 0;
-        }
-    }
     read_photo(jpeg, REFOCUS_ERR_FORMAT);
     /* Another GUID, and a length that is not true. */
     for (int change = 0; change < 3; change++) {
         jpeg = make_gdepth_extended(small_gdepth(), 100, 1, -1);
         place = NULL;
-        for (size_t i = 0; i + 80 < jpeg.size && !place; i++) {
-            if (memcmp(jpeg.data + i, "http://ns.adobe.com/xmp/extension/", 34) == 0) {
+        for (size_t i = 0; i + 80 < jpeg.size && !place; i++)
+            if (memcmp(jpeg.data + i, "http://ns.adobe.com/xmp/extension/", 34) == 0)
                 place = jpeg.data + i + 35;
-            }
-        }
         place[change == 0 ? 31 : change == 1 ? 35 : 39] ^= 1;
         read_photo(jpeg, REFOCUS_ERR_FORMAT);
     }

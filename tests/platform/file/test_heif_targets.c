@@ -9,9 +9,8 @@ static void add_box(struct bytes *to, const char *type, const uint32_t *numbers,
 {
     bytes_number(to, 8 + (uint64_t)count * (uint64_t)size, 4, true);
     bytes_add(to, type, 4);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
         bytes_number(to, numbers[i], size, true);
-    }
 }
 
 static void add_reference(struct bytes *to, const char *type, int size, uint32_t from,
@@ -21,9 +20,8 @@ static void add_reference(struct bytes *to, const char *type, int size, uint32_t
     bytes_add(to, type, 4);
     bytes_number(to, from, size, true);
     bytes_number(to, (uint64_t)count, 2, true);
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
         bytes_number(to, targets[i], size, true);
-    }
 }
 
 static void put_box(struct bytes *to, const char *type, struct bytes content)
@@ -52,22 +50,19 @@ static struct bytes make(const struct layout *layout)
     bytes_number(&refs, layout->large ? 1u << 24 : 0, 4, true);
     add_reference(&refs, "dimg", size, 3, targets, 3);
     add_reference(&refs, layout->type, size, 6, targets, layout->targets);
-    if (layout->most != layout->targets) {
+    if (layout->most != layout->targets)
         refs.data[refs.size - (size_t)(layout->targets * size) - 1] = (uint8_t)layout->most;
-    }
     add_reference(&refs, "cdsc", size, 7, targets + 2, 2);
     bytes_add(&refs, "\0\0\0\0", (size_t)layout->extra);
     bytes_number(&pitm, layout->large ? 1u << 24 : 0, 4, true);
     bytes_number(&pitm, 3, size, true);
     bytes_number(&meta, 0, 4, true);
-    if (layout->swapped) {
+    if (layout->swapped)
         put_box(&meta, "iref", refs);
-    }
     put_box(&meta, "pitm", pitm);
     add_box(&meta, "iinf", targets, 4, 1);
-    if (!layout->swapped) {
+    if (!layout->swapped)
         put_box(&meta, "iref", refs);
-    }
     add_box(&meta, "iprp", targets, 4, 4);
     put_box(&file, "ftyp", bytes_copy("heic\0\0\0\0mif1", 12));
     put_box(&file, "meta", meta);
@@ -79,9 +74,8 @@ static uint32_t number(const uint8_t *at, int size)
 {
     uint32_t value = 0;
 
-    for (int i = 0; i < size; i++) {
+    for (int i = 0; i < size; i++)
         value = value << 8 | at[i];
-    }
     return value;
 }
 
@@ -92,9 +86,8 @@ static const uint8_t *content_of(const uint8_t *at, const uint8_t *end, const ch
     while (at < end) {
         *size = number(at, 4) - 8;
         assert_in_range(*size, 0, end - at - 8);
-        if (memcmp(at + 4, type, 4) == 0) {
+        if (memcmp(at + 4, type, 4) == 0)
             return at + 8;
-        }
         at += 8 + *size;
     }
     fail_msg("no %s", type);
@@ -128,9 +121,8 @@ static void one_target(void **state)
         pitm = content_of(meta + 4, meta + length, "pitm", &others);
         assert_int_equal(others, 4 + size + spare);
         assert_int_equal(number(pitm + 4, size), 3);
-        for (int n = 0; n < spare; n++) {
+        for (int n = 0; n < spare; n++)
             assert_int_equal(pitm[4 + size + n], 0);
-        }
         refs = content_of(meta + 4, meta + length, "iref", &others) + 4;
         box = content_of(refs, refs + others - 4, "dimg", &length);
         assert_int_equal(number(box + size, 2), 3);
@@ -181,12 +173,10 @@ static void damaged(void **state)
         uint8_t *const at = guarded_place(&guarded, size, 1, AT_END, 0);
         uint8_t *changed;
 
-        if (size > 0) {
+        if (size > 0)
             memcpy(at, file.data, size);
-        }
-        if (i >= file.size) {
+        if (i >= file.size)
             at[place] = bytes[i / file.size - 1];
-        }
         assert_int_equal(rf_heif_single_targets((struct rf_bytes){at, size}, &changed), REFOCUS_OK);
         assert_true(guarded_intact(&guarded));
         free(changed);

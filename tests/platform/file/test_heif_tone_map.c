@@ -45,9 +45,8 @@ static void add_location(struct bytes *iloc, const struct layout *layout, uint32
                          int pieces, uint64_t offset)
 {
     bytes_number(iloc, number, layout->version == 2 ? 4 : 2, true);
-    if (layout->version > 0) {
+    if (layout->version > 0)
         bytes_number(iloc, layout->inside, 2, true);
-    }
     bytes_number(iloc, 0, 2, true);
     bytes_number(iloc, layout->base ? offset - 1 : 0, layout->base, true);
     bytes_number(iloc, (uint64_t)pieces, 2, true);
@@ -77,9 +76,8 @@ static struct bytes make_at(const struct layout *layout, size_t at)
     dimg = (struct bytes){NULL, 0};
     bytes_number(&dimg, 3, layout->number, true);
     bytes_number(&dimg, (uint64_t)layout->sources, 2, true);
-    for (int i = 0; i < layout->sources; i++) {
+    for (int i = 0; i < layout->sources; i++)
         bytes_number(&dimg, i ? 2 : layout->first, layout->number, true);
-    }
     add_box(&iref, "dimg", dimg);
     bytes_number(&iloc, (uint64_t)layout->version << 24, 4, true);
     bytes_number(&iloc, (uint64_t)layout->offset << 12 | 4 << 8 | (uint64_t)layout->base << 4, 2,
@@ -148,9 +146,8 @@ static void others(void **state)
     struct layout layouts[8];
 
     (void)state;
-    for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
+    for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
         layouts[i] = plain;
-    }
     layouts[0].type = "grid";
     layouts[1].first = 7;
     layouts[2].first = 2;
@@ -221,12 +218,10 @@ static void damaged(void **state)
         struct rf_heif_tone_map map;
         uint8_t *changed;
 
-        if (size > 0) {
+        if (size > 0)
             memcpy(at, file.data, size);
-        }
-        if (i >= file.size) {
+        if (i >= file.size)
             at[place] = values[i / file.size - 1];
-        }
         if (rf_heif_find_tone_map((struct rf_bytes){at, size}, &map)) {
             assert_true(map.metadata.data >= at && map.metadata.size <= size &&
                         map.metadata.data + map.metadata.size <= at + size);

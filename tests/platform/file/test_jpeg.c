@@ -15,9 +15,8 @@ static void orientation_of_png(void **state)
             uint8_t samples[5 * 3 * 3];
             struct refocus_photo *photo;
 
-            for (int i = 0; i < 45; i++) {
+            for (int i = 0; i < 45; i++)
                 samples[i] = (uint8_t)pattern(i / 3 % 5, i / 15, i % 3, 255);
-            }
             photo = read_photo(make_png_raw(5, 3, 2, 8, samples, &exif), REFOCUS_OK);
             bytes_free(&exif);
             assert_int_equal(photo->info->orientation, orientation);
@@ -47,9 +46,8 @@ static struct bytes plain_with_icc(struct bytes profile, size_t chunk, int skip)
         char signature[14] = "ICC_PROFILE";
         signature[12] = (char)(i + 1);
         signature[13] = (char)count;
-        if (i != skip) {
+        if (i != skip)
             jpeg_insert(&jpeg, 0xe2, signature, 14, profile.data + from, size);
-        }
     }
     return jpeg;
 }
@@ -60,9 +58,8 @@ static void icc_in_chunks(void **state)
     struct refocus_photo *photo;
 
     (void)state;
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < 300; i++)
         profile[i] = (uint8_t)i;
-    }
     memcpy(profile + 16, "RGB ", 4);
     memcpy(profile + 36, "acsp", 4);
     /* jpeg_insert() puts each before the last: they come in reverse order. */
@@ -152,9 +149,8 @@ static void bytes_too_many(void **state)
     refocus_photo_free(&photo);
     jpeg = make_jpeg(64, 64, false, false);
     jpeg.size -= 2;
-    for (int i = 0; i < 120; i++) {
+    for (int i = 0; i < 120; i++)
         bytes_add(&jpeg, "U", 1);
-    }
     bytes_add(&jpeg, "\xff\xd9", 2);
     read_photo(jpeg, REFOCUS_ERR_FORMAT);
     jpeg = make_jpeg(64, 64, false, false);

@@ -13,17 +13,15 @@ static struct bytes png_with(struct bytes packet, bool has_text)
     struct bytes plain = make_png(8, 4, 2, 8), png = bytes_copy(plain.data, 33);
     struct bytes xmp = bytes_copy(rf_png_xmp_head, RF_PNG_XMP_HEAD);
 
-    if (has_text) {
+    if (has_text)
         png_chunk(&png, "tEXt", "Author\0somebody", 15);
-    }
     if (packet.data) {
         bytes_join(&xmp, packet);
         png_chunk(&png, "iTXt", xmp.data, xmp.size);
     }
     bytes_free(&xmp);
-    if (has_text) {
+    if (has_text)
         png_chunk(&png, "pHYs", "\0\0\1\0\0\0\2\0\1", 9);
-    }
     bytes_add(&png, plain.data + 33, plain.size - 33);
     bytes_free(&plain);
     return png;
@@ -48,9 +46,8 @@ static struct bytes rewritten(struct bytes file, int32_t width, int32_t height)
     refocus_photo_free(&photo);
     in = fopen(path, "rb");
     assert_non_null(in);
-    while ((byte = fgetc(in)) != EOF) {
+    while ((byte = fgetc(in)) != EOF)
         bytes_number(&out, (uint64_t)byte, 1, false);
-    }
     fclose(in);
     assert_int_equal(unlink(path), 0);
     return out;
@@ -79,9 +76,8 @@ static void chunks(void **state)
         struct bytes packet = {NULL, 0}, png;
         struct rf_png_chunk chunk = {0};
 
-        if (has_xmp) {
+        if (has_xmp)
             packet = make_xmp("xmlns:q=\"q:\" q:a=\"kept\" GDepth:Near=\"1\"");
-        }
         png = rewritten(png_with(packet, true), 8, 4);
         assert_int_equal(count(&png, "tEXt", &chunk), 1);
         assert_int_equal(chunk.content.size, 15);
@@ -217,9 +213,8 @@ static void transparency(void **state)
         struct refocus_photo *photo = read_photo(make_png(6, 4, types[i], 8), REFOCUS_OK);
         bool told = false;
 
-        for (int k = 0; k < photo->info->evidence_count; k++) {
+        for (int k = 0; k < photo->info->evidence_count; k++)
             told |= strstr(photo->info->evidence[k], "transparency") != NULL;
-        }
         assert_int_equal(told, types[i] >= 4);
         refocus_photo_free(&photo);
     }

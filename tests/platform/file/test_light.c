@@ -28,13 +28,11 @@ static void light_of(const float *samples, int n, uint32_t max_value, int curve,
 
     failing.live = failing.fail_at = 0;
     assert_int_equal(rf_raster_alloc(&read, &raster), REFOCUS_OK);
-    for (int i = 0; i < n; i++) {
-        if (max_value) {
+    for (int i = 0; i < n; i++)
+        if (max_value)
             ((uint16_t *)(void *)raster.pixels)[i] = (uint16_t)samples[i];
-        } else {
+        else
             ((float *)(void *)raster.pixels)[i] = samples[i];
-        }
-    }
     assert_int_equal(rf_raster_to_light(&read, &raster, curve, primaries), REFOCUS_OK);
     assert_int_equal(raster.sample, REFOCUS_SAMPLE_F32);
     assert_int_equal(raster.max_value, 0);
@@ -46,9 +44,8 @@ static void light_of(const float *samples, int n, uint32_t max_value, int curve,
 
 static void is_light(float is, double should, const char *what)
 {
-    if (!(fabs(is - should) <= 2e-4 * fmax(fabs(should), 0.05))) {
+    if (!(fabs(is - should) <= 2e-4 * fmax(fabs(should), 0.05)))
         fail_msg("%s: %.7g, should be %.7g", what, is, should);
-    }
 }
 
 /* Values of BT.2100 and BT.2408: 203 cd/m2 are 58.07 % of PQ, 100 are 50.81 %, and HLG has its
@@ -142,9 +139,8 @@ static void primaries(void **state)
         memcpy(two, known[i].in, sizeof known[i].in);
         memcpy(two + 3, known[i].in, sizeof known[i].in);
         light_of(two, 6, 0, RF_CURVE_LINEAR, known[i].primaries, light);
-        for (int c = 0; c < 6; c++) {
+        for (int c = 0; c < 6; c++)
             is_light(light[c], known[i].out[c % 3], "a channel");
-        }
     }
 }
 

@@ -91,9 +91,8 @@ static uint32_t count(const struct bytes *jpeg, uint8_t marker)
 {
     uint32_t n = 0;
 
-    for (size_t i = 0; i + 1 < jpeg->size; i++) {
+    for (size_t i = 0; i + 1 < jpeg->size; i++)
         n += jpeg->data[i] == 0xff && jpeg->data[i + 1] == marker;
-    }
     return n;
 }
 
@@ -119,9 +118,8 @@ static struct bytes jpeg_of_segments(int more)
 {
     struct bytes jpeg = make_jpeg(16, 16, true, false);
 
-    for (int i = 0; i < more; i++) {
+    for (int i = 0; i < more; i++)
         jpeg_insert(&jpeg, 0xef, "x", 1, "y", 1);
-    }
     return jpeg;
 }
 

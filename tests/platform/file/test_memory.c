@@ -54,12 +54,10 @@ static void readers(void **state)
 
     (void)state;
     for (int i = 0; i < count; i++) {
-        if (samples[i].photo) {
+        if (samples[i].photo)
             fail_each_in(&samples[i], false);
-        }
-        if (samples[i].depth) {
+        if (samples[i].depth)
             fail_each_in(&samples[i], true);
-        }
     }
     free_samples(samples, count);
 }
@@ -86,9 +84,8 @@ static void lights(void **state)
         struct refocus_photo *photo;
         long total;
 
-        if (strcmp(samples[i].name, "gain.jpg") != 0) {
+        if (strcmp(samples[i].name, "gain.jpg") != 0)
             continue;
-        }
         assert_int_equal(refocus_photo_read_memory(&photo, samples[i].bytes.data,
                                                    samples[i].bytes.size, NULL, NULL),
                          REFOCUS_OK);
@@ -175,9 +172,8 @@ static void peak_of(const struct sample *sample)
             (photo->deep->plane[0] ? 27 : 9) * (size_t)photo->image->width *
                 (size_t)photo->image->height +
             9 * (size_t)photo->depth->width * (size_t)photo->depth->height;
-    if (failing.peak > bound || failing.peak == 0) {
+    if (failing.peak > bound || failing.peak == 0)
         fail_msg("%s: %zu bytes at the most, %zu are stated", sample->name, failing.peak, bound);
-    }
     refocus_photo_free(&photo);
 }
 
@@ -188,16 +184,13 @@ static void stated_peak(void **state)
     struct sample large = {.name = "large.pgm"};
 
     (void)state;
-    for (int i = 0; i < count; i++) {
-        if (samples[i].photo) {
+    for (int i = 0; i < count; i++)
+        if (samples[i].photo)
             peak_of(&samples[i]);
-        }
-    }
     free_samples(samples, count);
     bytes_text(&large.bytes, "P5\n700 500\n65535\n");
-    for (int i = 0; i < 700 * 500; i++) {
+    for (int i = 0; i < 700 * 500; i++)
         bytes_number(&large.bytes, 1000, 2, true);
-    }
     peak_of(&large);
     assert_true(failing.peak >= 5 * 700 * 500); /* the photo and its samples */
     bytes_free(&large.bytes);
@@ -263,17 +256,15 @@ static void writers(void **state)
         long total;
 
         snprintf(path, sizeof path, "/tmp/refocus-memory-%ld%s", (long)getpid(), endings[i]);
-        if (strcmp(endings[i], ".heic") == 0 && write_one(path, 0) == REFOCUS_ERR_UNSUPPORTED) {
+        if (strcmp(endings[i], ".heic") == 0 && write_one(path, 0) == REFOCUS_ERR_UNSUPPORTED)
             continue; /* libheif has no encoder here */
-        }
         assert_int_equal(write_one(path, 0), REFOCUS_OK);
         total = failing.calls;
         assert_int_equal(unlink(path), 0);
         for (long k = 1; k <= total; k++) {
             const int status = write_one(path, k);
-            if (status != REFOCUS_ERR_MEMORY || access(path, F_OK) == 0) {
+            if (status != REFOCUS_ERR_MEMORY || access(path, F_OK) == 0)
                 fail_msg("%s: allocation %ld: status %d", path, k, status);
-            }
         }
     }
 }
@@ -317,11 +308,9 @@ static void depth_writers(void **state)
     total = failing.calls;
     assert_true(total > 4);
     assert_int_equal(unlink(path), 0);
-    for (long k = 1; k <= total; k++) {
-        if (write_depth(path, original, k) != REFOCUS_ERR_MEMORY || access(path, F_OK) == 0) {
+    for (long k = 1; k <= total; k++)
+        if (write_depth(path, original, k) != REFOCUS_ERR_MEMORY || access(path, F_OK) == 0)
             fail_msg("%s: allocation %ld", path, k);
-        }
-    }
     assert_int_equal(unlink(original), 0);
 }
 
@@ -344,9 +333,8 @@ static int write_kept(const char *path, const struct refocus_photo *photo, long 
     depth.stride = 6;
     editable.depth = &depth;
     options.keep = photo;
-    if (!strstr(path, ".png") && photo->info->original_used == 0) {
-        options.editable = &editable; /* the photo and depth go into the file */
-    }
+    if (!strstr(path, ".png") && photo->info->original_used == 0)
+        options.editable = &editable;                     /* the photo and depth go into the file */
     options.light = strstr(path, ".jpg") ? &light : NULL; /* a gain map lies behind it */
     failing.calls = failing.live = 0;
     failing.fail_at = fail;
@@ -354,9 +342,8 @@ static int write_kept(const char *path, const struct refocus_photo *photo, long 
     failing.fail_at = 0;
     /* The C library gets the memory of files in memory, which is not counted until it is freed. */
     if (failing.live > 0 || failing.live < -streams ||
-        (status == REFOCUS_OK && failing.live != -streams)) {
+        (status == REFOCUS_OK && failing.live != -streams))
         fail_msg("%s: allocation %ld keeps %ld", path, fail, failing.live);
-    }
     return status;
 }
 
@@ -395,13 +382,11 @@ static void keepers_of(bool has_original, const char *container, int streams)
                             .depth = make_png(30, 20, 0, 16)};
     struct refocus_photo *photo;
 
-    if (has_original) {
+    if (has_original)
         gdepth.original = make_png(50, 30, 2, 8);
-    }
     photo = read_photo(make_gdepth_extended(gdepth, 6000, 7, -1), REFOCUS_OK);
-    if (container) {
+    if (container)
         become(photo, container);
-    }
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         const int in_memory = i == 0 ? streams : i == 2 ? streams - 1 : 0;
         char path[64];
@@ -410,19 +395,16 @@ static void keepers_of(bool has_original, const char *container, int streams)
 
         snprintf(path, sizeof path, "/tmp/refocus-memory-%ld%s", (long)getpid(), endings[i]);
         status = write_kept(path, photo, 0, in_memory);
-        if (i == 2 && status == REFOCUS_ERR_UNSUPPORTED) {
+        if (i == 2 && status == REFOCUS_ERR_UNSUPPORTED)
             continue; /* libheif has no encoder here */
-        }
         assert_int_equal(status, REFOCUS_OK);
         total = failing.calls;
         assert_true(total > 4);
         assert_int_equal(unlink(path), 0);
-        for (long k = 1; k <= total; k++) {
+        for (long k = 1; k <= total; k++)
             if (write_kept(path, photo, k, in_memory) != REFOCUS_ERR_MEMORY ||
-                access(path, F_OK) == 0) {
+                access(path, F_OK) == 0)
                 fail_msg("%s: allocation %ld", path, k);
-            }
-        }
     }
     refocus_photo_free(&photo);
 }
@@ -464,9 +446,8 @@ static void files(void **state)
     assert_int_equal(refocus_gray16_write(path, samples, 4, 3, 8, NULL), REFOCUS_OK);
     for (int depth = 0; depth < 2; depth++) {
         assert_int_equal(read_path(path, depth, 0), REFOCUS_OK);
-        for (long k = failing.calls; k >= 1; k--) {
+        for (long k = failing.calls; k >= 1; k--)
             assert_int_equal(read_path(path, depth, k), REFOCUS_ERR_MEMORY);
-        }
     }
     assert_int_equal(unlink(path), 0);
 }

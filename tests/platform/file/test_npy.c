@@ -46,9 +46,8 @@ static void numbers_of_every_type(void **state)
             char descr[8];
 
             snprintf(descr, sizeof descr, "%c%s", high_first ? '>' : '<', types[i].type);
-            for (int k = 0; k < 2; k++) {
+            for (int k = 0; k < 2; k++)
                 bytes_number(&samples, types[i].bits[k], types[i].bytes, high_first);
-            }
             photo = read_depth(array(descr, "False", "(1, 2)", samples.data, samples.size), NULL,
                                REFOCUS_OK);
             assert_string_equal(photo->info->container, "NPY");
@@ -124,9 +123,8 @@ static void forms_of_one_array(void **state)
 
         assert_int_equal(photo->depth->width, 3);
         assert_int_equal(photo->depth->height, 2);
-        for (int k = 0; k < 6; k++) {
+        for (int k = 0; k < 6; k++)
             assert_int_equal(sample_at(photo->depth, k % 3, k / 3), k + 1);
-        }
         refocus_photo_free(&photo);
     }
 }
@@ -187,9 +185,8 @@ static void headers_that_are_damaged(void **state)
     struct bytes file;
 
     (void)state;
-    for (size_t i = 0; i < sizeof headers / sizeof *headers; i++) {
+    for (size_t i = 0; i < sizeof headers / sizeof *headers; i++)
         read_depth(make_npy(1, headers[i], "\1\2", 2), NULL, REFOCUS_ERR_FORMAT);
-    }
     for (int version = 0; version < 5; version += 4) {
         read_depth(make_npy(version, "{'descr': '|u1', 'fortran_order': False, 'shape': (1, 2)}",
                             "\1\2", 2),

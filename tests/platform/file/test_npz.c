@@ -17,11 +17,9 @@ static struct bytes archive(const char *name)
 
 static bool notes(const struct refocus_photo *photo, const char *line)
 {
-    for (int i = 0; i < photo->info->evidence_count; i++) {
-        if (strcmp(photo->info->evidence[i], line) == 0) {
+    for (int i = 0; i < photo->info->evidence_count; i++)
+        if (strcmp(photo->info->evidence[i], line) == 0)
             return true;
-        }
-    }
     return false;
 }
 
@@ -42,9 +40,8 @@ static void an_array_is_chosen(void **state)
         assert_true(notes(photo, names[i][1]));
         assert_int_equal(photo->depth->width, 3);
         assert_int_equal(photo->depth->height, 2);
-        for (int k = 0; k < 6; k++) {
+        for (int k = 0; k < 6; k++)
             assert_true(float_at(photo->depth, k % 3, k / 3) == k + 1);
-        }
         refocus_photo_free(&photo);
         read_photo(archive(names[i][0]), REFOCUS_ERR_UNSUPPORTED);
     }
@@ -54,11 +51,9 @@ static size_t find(const struct bytes *file, const char *text)
 {
     const size_t length = strlen(text);
 
-    for (size_t i = 0; i + length <= file->size; i++) {
-        if (memcmp(file->data + i, text, length) == 0) {
+    for (size_t i = 0; i + length <= file->size; i++)
+        if (memcmp(file->data + i, text, length) == 0)
             return i;
-        }
-    }
     fail_msg("no %s in it", text);
     return 0;
 }
@@ -73,9 +68,8 @@ static void damage_is_told(void **state)
     file.data[samples] ^= 1;
     read_depth(file, NULL, REFOCUS_ERR_FORMAT);
     file = archive("deflated");
-    for (size_t size = 4; size < file.size; size += 3) {
+    for (size_t size = 4; size < file.size; size += 3)
         read_depth(bytes_copy(file.data, size), NULL, REFOCUS_ERR_FORMAT);
-    }
     bytes_free(&file);
 }
 
@@ -86,9 +80,8 @@ static void others_are_refused(void **state)
 
     (void)state;
     read_depth(bytes_copy(empty, sizeof empty), NULL, REFOCUS_ERR_UNSUPPORTED);
-    for (int i = 0; i < 2; i++) { /* here and in the directory */
+    for (int i = 0; i < 2; i++) /* here and in the directory */
         memcpy(file.data + find(&file, "arr_0.npy"), "arr_0.txt", 9);
-    }
     read_depth(file, NULL, REFOCUS_ERR_UNSUPPORTED);
     file = archive("stored");
     memcpy(file.data + find(&file, "NUMPY"), "numpy", 5);

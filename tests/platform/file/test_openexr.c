@@ -138,9 +138,8 @@ static void exr_other_depth(void **state)
                 memset(blue + 4 * W * c, 0, kind == 1 ? 4 : 0);
             }
         }
-        if (kind >= 2) {
+        if (kind >= 2)
             set_sample(&file, 3, 3 - kind, H - 1, 0.25f);
-        }
         photo = read_depth(file, "m", kind < 2 ? REFOCUS_OK : REFOCUS_ERR_NO_DEPTH);
         if (photo) {
             assert_true(float_at(photo->depth, 2, 1) ==
@@ -169,9 +168,8 @@ static void exr_parts(void **state)
     for (int i = 0; i < W * H; i++) {
         const int x = i % W, y = i / W;
 
-        for (int c = 0; c < 3; c++) {
+        for (int c = 0; c < 3; c++)
             assert_true(light_at(photo->deep, x, y, c) == (float)pattern(x, y, 4 - c, 255) / 64);
-        }
         assert_true(float_at(photo->depth, x, y) == (double)((float)pattern(x, y, 7, 255) / 64));
     }
     refocus_photo_free(&photo);
@@ -230,9 +228,8 @@ static void exr_written(void **state)
     struct refocus_photo *photo = NULL;
 
     (void)state;
-    for (int i = 0; i < 3 * W * H; i++) {
+    for (int i = 0; i < 3 * W * H; i++)
         samples[i] = values[i % 4];
-    }
     assert_int_equal(refocus_image_write("formats.exr", &image, NULL, NULL), REFOCUS_OK);
     assert_int_equal(refocus_photo_read(&photo, "formats.exr", NULL, NULL), REFOCUS_OK);
     assert_true(light_at(photo->deep, 0, 0, 0) == 1 && light_at(photo->deep, 1, 0, 0) == 100);

@@ -42,9 +42,8 @@ static void numbers(void **state)
         assert_true(rf_parse_number(good[i].text, &value));
         assert_true(fabs(value - good[i].value) <= 1e-15 * fabs(good[i].value));
     }
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         assert_false(rf_parse_number(bad[i], &value));
-    }
 }
 
 static void base64_text(void **state)
@@ -54,15 +53,13 @@ static void base64_text(void **state)
     char text[400];
 
     (void)state;
-    for (int i = 0; i < 256; i++) {
+    for (int i = 0; i < 256; i++)
         bytes[i] = (uint8_t)(i * 89);
-    }
     for (size_t size = 0; size <= 256; size++) {
         struct bytes coded = base64(bytes, size);
         assert_int_equal(rf_base64_decode((char *)coded.data, coded.size), size);
-        if (size > 0) {
+        if (size > 0)
             assert_memory_equal(coded.data, bytes, size);
-        }
         bytes_free(&coded);
     }
     strcpy(text, " QU\r\nJD\tRA ");
@@ -135,9 +132,8 @@ static void mpf_bounds(void **state)
     assert_int_equal(mpf.image[0].size, 256);
     assert_int_equal(mpf.image[1].size, 5);
     assert_int_equal(mpf.image[1].offset, 258);
-    for (size_t size = 0; size < tiff.size; size++) {
+    for (size_t size = 0; size < tiff.size; size++)
         assert_false(rf_mpf_parse((struct rf_bytes){tiff.data, size}, &mpf));
-    }
     bytes_free(&tiff);
 }
 
@@ -166,9 +162,8 @@ static void heif_sequences(void **state)
     assert_false(rf_heif_is_sequence((struct rf_bytes){film.data, film.size}));
     bytes_add(&film, track, 12);
     assert_true(rf_heif_is_sequence((struct rf_bytes){film.data, film.size}));
-    for (size_t size = 20; size < 32; size++) {
+    for (size_t size = 20; size < 32; size++)
         assert_false(rf_heif_is_sequence((struct rf_bytes){film.data, size}));
-    }
     both = bytes_copy(film.data, film.size);
     bytes_add(&both, meta, 12);
     assert_false(rf_heif_is_sequence((struct rf_bytes){both.data, both.size}));
@@ -189,9 +184,8 @@ static void heif_stereo(void **state)
         bytes_add(&file, names[i], 4);
         bytes_add(&file, "\0\0\0\0\0\0\0\3\0\0\0\2\0\0\0\1\0\0\0\2\0\0\0\0", 24);
         assert_true(rf_heif_is_stereo((struct rf_bytes){file.data, file.size}) == (i == 0));
-        for (size_t size = 0; size < file.size; size++) {
+        for (size_t size = 0; size < file.size; size++)
             assert_false(rf_heif_is_stereo((struct rf_bytes){file.data, size}));
-        }
         bytes_free(&file);
     }
 }

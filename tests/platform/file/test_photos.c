@@ -91,9 +91,8 @@ static double part_of_zeros(const char *name)
     assert_int_equal(depth->depth->sample, REFOCUS_SAMPLE_U16);
     assert_int_equal(depth->depth->flags, REFOCUS_DEPTH_ZERO_IS_UNKNOWN);
     assert_near(depth->depth->metres_per_unit, 1 / 5000.0);
-    for (int i = 0; i < 640 * 480; i++) {
+    for (int i = 0; i < 640 * 480; i++)
         zeros += sample_at(depth->depth, i % 640, i / 640) == 0;
-    }
     refocus_photo_free(&depth);
     return zeros / (640 * 480.0);
 }
@@ -168,9 +167,8 @@ static void heic_exif_lies_within(void **state)
         struct refocus_photo *photo;
         size_t at = 10;
 
-        while (at + 8 < file.size && memcmp(file.data + at, "MM\0*\0\0\0\10", 8) != 0) {
+        while (at + 8 < file.size && memcmp(file.data + at, "MM\0*\0\0\0\10", 8) != 0)
             at++;
-        }
         assert_true(at + 8 < file.size);
         memcpy(file.data + at - 10, skips[i], 4);
         photo = read_depth(file, NULL, REFOCUS_OK);
@@ -187,11 +185,9 @@ static void heic_turned(void **state)
     struct bytes file = load("phone/apple-heic-pug.heic");
 
     (void)state;
-    for (size_t i = 0; i + 8 < file.size; i++) {
-        if (memcmp(file.data + i, "irot", 4) == 0) {
+    for (size_t i = 0; i + 8 < file.size; i++)
+        if (memcmp(file.data + i, "irot", 4) == 0)
             file.data[i + 4] = 1;
-        }
-    }
     turned = read_photo(file, REFOCUS_OK);
     assert_sizes(turned, 3024, 4032, 576, 768);
     assert_int_equal(turned->info->stored_width, 4032);
@@ -222,9 +218,8 @@ static void heic_depth_without_rotation(void **state)
     for (size_t i = 0; i + 8 < file.size; i++) {
         /* Item 54, five properties, among them 5, the rotation; 2 is a size. */
         static const uint8_t association[] = {0, 54, 5};
-        if (memcmp(file.data + i, "irot", 4) == 0) {
+        if (memcmp(file.data + i, "irot", 4) == 0)
             file.data[i + 4] = 3;
-        }
         if (changed == 0 && memcmp(file.data + i, association, 3) == 0 &&
             (file.data[i + 5] & 127) == 5) {
             file.data[i + 5] = 13;
@@ -261,9 +256,8 @@ static void heic_cut_and_limited(void **state)
         memcpy(copy, file.data, size);
         status = refocus_photo_read_memory(&photo, copy, size, NULL, &reason);
         free(copy);
-        if (status == REFOCUS_OK) {
+        if (status == REFOCUS_OK)
             fail_msg("cut at %zu of %zu is read as if whole", size, file.size);
-        }
     }
     assert_int_equal(refocus_photo_read_memory(&photo, file.data, file.size, &limits, &reason),
                      REFOCUS_ERR_SIZE);

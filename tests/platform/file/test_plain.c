@@ -85,9 +85,8 @@ static void pnm_damaged(void **state)
     };
 
     (void)state;
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         read_photo(text_file(bad[i]), REFOCUS_ERR_FORMAT);
-    }
     read_photo(text_file("P6 2147483648 2147483648 255 x"), REFOCUS_ERR_SIZE);
     read_photo(text_file("P6 65535 65535 255 x"), REFOCUS_ERR_SIZE);
     read_photo(text_file("P6 99999999999999999999 1 255 x"), REFOCUS_ERR_FORMAT);
@@ -335,9 +334,8 @@ static void numbers_ignore_the_locale(void **state)
 {
     (void)state;
     /* Not every machine has one with a decimal comma; with one this is the test. */
-    if (!setlocale(LC_NUMERIC, "de_DE.UTF-8")) {
+    if (!setlocale(LC_NUMERIC, "de_DE.UTF-8"))
         setlocale(LC_NUMERIC, "C.UTF-8");
-    }
     unit_words(NULL);
     setlocale(LC_NUMERIC, "C");
 }
@@ -350,9 +348,8 @@ static void endings_in_words(void **state)
         char words[192], expected[192] = "";
         int count = 0;
 
-        while (refocus_file_ending(depth, count)) {
+        while (refocus_file_ending(depth, count))
             count++;
-        }
         for (int i = 0; i < count; i++) {
             strcat(expected, i == 0 ? "" : i == count - 1 ? " or " : ", ");
             strcat(expected, refocus_file_ending(depth, i));

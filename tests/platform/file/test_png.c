@@ -100,9 +100,8 @@ static void more_than_8_bits_are_dithered(void **state)
     for (int code = 0; code < 256; code++) {
         memset(samples, code, sizeof samples); /* 257 code */
         photo = read_photo(make_png_raw(9, 9, 0, 16, samples, NULL), REFOCUS_OK);
-        for (int i = 0; i < 9 * 9; i++) {
+        for (int i = 0; i < 9 * 9; i++)
             assert_int_equal(pixel_at(photo->image, i % 9, i / 9)[0], code);
-        }
         refocus_photo_free(&photo);
     }
 }
@@ -130,9 +129,8 @@ static void png_depth(void **state)
     assert_near(photo->depth->metres_per_unit, 1 / 5000.0);
     refocus_photo_free(&photo);
     read_depth(make_png(6, 4, 2, 8), NULL, REFOCUS_ERR_NO_DEPTH);
-    for (int i = 0; i < 12; i++) {
+    for (int i = 0; i < 12; i++)
         grey_rgb[i] = (uint8_t)(i / 3 * 20);
-    }
     photo = read_depth(make_png_raw(2, 2, 2, 8, grey_rgb, NULL), NULL, REFOCUS_OK);
     assert_int_equal(sample_at(photo->depth, 1, 1), 60);
     assert_true(photo->depth->value_near == 255);
@@ -219,11 +217,9 @@ static struct bytes with_chunk(struct bytes png, const char *type, const void *d
 
 static bool tells(const struct refocus_photo *photo, const char *words)
 {
-    for (int i = 0; i < photo->info->evidence_count; i++) {
-        if (strstr(photo->info->evidence[i], words)) {
+    for (int i = 0; i < photo->info->evidence_count; i++)
+        if (strstr(photo->info->evidence[i], words))
             return true;
-        }
-    }
     return false;
 }
 

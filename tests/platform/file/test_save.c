@@ -30,9 +30,8 @@ int __wrap_fsync(int file)
 
     assert_int_equal(fstat(file, &facts), 0);
     note(S_ISDIR(facts.st_mode) ? 'd' : 'f');
-    if (S_ISREG(facts.st_mode)) {
+    if (S_ISREG(facts.st_mode))
         synced = facts.st_size;
-    }
     if (error) {
         errno = error;
         error = 0;
@@ -64,9 +63,8 @@ static int remove_folder(void **state)
                                         "jpeg.jpg", "grey.pgm", "text",     "tmp"};
 
     (void)state;
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         unlink(names[i]);
-    }
     rmdir("sub");
     return chdir(before) || rmdir(folder); /* nothing else is left */
 }
@@ -317,9 +315,8 @@ static void only_files_are_replaced(void **state)
         assert_int_equal(facts_of(names[i]).st_mode, was);
     }
     assert_int_equal(entries("."), files);
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         assert_int_equal(remove(names[i]), 0);
-    }
 }
 
 /* The file that a link points at is replaced, there or not, and the link stays. */
@@ -339,9 +336,8 @@ static void links_stay(void **state)
         assert_true(S_ISLNK(facts_of("b.ppm").st_mode));
         facts = facts_of("sub/a.ppm");
         assert_true(S_ISREG(facts.st_mode));
-        if (there) {
+        if (there)
             assert_int_equal(facts.st_mode & 07777, 0600);
-        }
         assert_int_equal(chmod("sub/a.ppm", 0600), 0);
     }
     place = refocus_file_place("link.ppm");

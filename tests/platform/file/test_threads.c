@@ -18,14 +18,11 @@ static unsigned digest(const struct refocus_photo *photo)
 {
     unsigned sum = 1;
 
-    for (int y = 0; photo && photo->image->plane[0] && y < photo->image->height; y++) {
-        for (int x = 0; x < photo->image->width * 3; x++) {
+    for (int y = 0; photo && photo->image->plane[0] && y < photo->image->height; y++)
+        for (int x = 0; x < photo->image->width * 3; x++)
             sum = sum * 31 + photo->image->plane[0][y * photo->image->stride[0] + x];
-        }
-    }
-    for (int i = 0; photo && i < photo->info->evidence_count; i++) {
+    for (int i = 0; photo && i < photo->info->evidence_count; i++)
         sum = sum * 31 + (unsigned)strlen(photo->info->evidence[i]);
-    }
     return sum;
 }
 
@@ -55,9 +52,8 @@ static int write_shared(int number, const char *ending)
     snprintf(path, sizeof path, "/tmp/refocus-threads-%ld%s", (long)getpid(), ending);
     wrong = refocus_image_write(path, &image, NULL, NULL) != REFOCUS_OK;
     wrong += refocus_photo_read(&photo, path, NULL, NULL) != REFOCUS_OK;
-    for (int i = 1; !wrong && i < 16 * 16 * 3; i++) {
+    for (int i = 1; !wrong && i < 16 * 16 * 3; i++)
         wrong += abs(photo->image->plane[0][i] - photo->image->plane[0][0]) > 2;
-    }
     refocus_photo_free(&photo);
     return wrong;
 }
@@ -91,9 +87,8 @@ static void many_threads(void **state)
     pthread_t threads[THREADS];
 
     (void)state;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
         samples[i].whole_at = read_sample(&samples[i]); /* the sum expected */
-    }
     for (int i = 0; i < THREADS; i++) {
         work[i] = (struct work){samples, count, i, 0};
         assert_int_equal(pthread_create(&threads[i], NULL, run, &work[i]), 0);

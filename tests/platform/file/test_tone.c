@@ -95,9 +95,8 @@ static void is_shown(const struct rf_tone *tone, int x, int y, int half, double 
 {
     const double is = shown(tone, x, y, half);
 
-    if (!(fabs(is - light) <= 0.02 * light + 0.002)) {
+    if (!(fabs(is - light) <= 0.02 * light + 0.002))
         fail_msg("%#x at (%d, %d) is shown as %.4f, should be %.4f", half, x, y, is, light);
-    }
 }
 
 /* Light from 0 to 2 in each cell, shown as half of it in the left third, as a quarter in the right,
@@ -129,9 +128,8 @@ static void tones_are_of_their_place(void **state)
                          part_of[third] * (double)rf_half_value((uint16_t)half));
             }
         }
-        for (int x = 1; x < SIDE; x++) { /* without a step from one to the next */
+        for (int x = 1; x < SIDE; x++) /* without a step from one to the next */
             assert_true(fabs(shown(tone, x, 48, ONE) - shown(tone, x - 1, 48, ONE)) < 0.04);
-        }
         free(tone);
     }
 }
@@ -180,11 +178,9 @@ static void tones_do_not_fall(void **state)
         }
     }
     tone = fit(false);
-    for (int x = 5; x < SIDE; x += 17) {
-        for (int half = 64; half <= RF_HALF_MOST; half += 64) {
+    for (int x = 5; x < SIDE; x += 17)
+        for (int half = 64; half <= RF_HALF_MOST; half += 64)
             assert_true(shown(tone, x, x, half) >= shown(tone, x, x, half - 64));
-        }
-    }
     is_shown(tone, 48, 48, HALF, 0.3);
     free(tone);
 }
@@ -216,9 +212,8 @@ static void by_the_brightest(void **state)
         free(tone);
         tone = fit(false);
         encode(tone, 48, 48, own, base, light, out);
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; k++)
             assert_int_equal(out[k], k == c ? 180 : 10);
-        }
         free(tone);
     }
 }
@@ -257,9 +252,8 @@ static void light_by_chance(void **state)
     uint8_t out[9];
 
     (void)state;
-    for (int i = 0; i < 9; i++) {
+    for (int i = 0; i < 9; i++)
         own[i] = HALF + 1;
-    }
     tone = fit_two();
     encode_row(tone, 48, 48, 3, own, base, light, out);
     assert_in_range(out[4], 97, 101);
@@ -315,9 +309,8 @@ static void parts_are_shown_as_the_whole(void **state)
             const uint8_t *a = whole + 3 * (SIDE * (Y + y) + X + x), *b = part + 3 * (SIDE * y + x);
 
             if (x < REACHED || y < REACHED || x >= WIDE - REACHED || y >= HIGH - REACHED) {
-                for (int c = 0; c < 3; c++) {
+                for (int c = 0; c < 3; c++)
                     worst = abs(a[c] - b[c]) > worst ? abs(a[c] - b[c]) : worst;
-                }
                 continue;
             }
             kept += abs(a[1] - codes[3 * (SIDE * (Y + y) + X + x) + 1]) < 2;

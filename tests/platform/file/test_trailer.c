@@ -12,9 +12,8 @@ static void check_map(struct bytes file, bool original)
     assert_true(photo->depth->near_m == 0 && photo->depth->far_m == 0);
     assert_int_equal(photo->depth->width, 6);
     assert_int_equal(photo->depth->height, 4);
-    for (int i = 0; i < 24; i++) {
+    for (int i = 0; i < 24; i++)
         assert_int_equal(sample_at(photo->depth, i % 6, i / 6), 10 * i);
-    }
     assert_int_equal(photo->info->original_used, original);
     assert_int_equal(photo->image->width, original ? 60 : 64);
     refocus_photo_free(&photo);
@@ -92,9 +91,8 @@ static void cut(void **state)
     for (int maker = 0; maker < 2; maker++) {
         struct bytes file = maker ? make_huawei(6, 4, false) : make_samsung(32, 6, 4, false, false);
 
-        for (size_t size = main_picture.size; size < file.size; size++) {
+        for (size_t size = main_picture.size; size < file.size; size++)
             expect_none(bytes_copy(file.data, size));
-        }
         bytes_free(&file);
     }
     bytes_free(&main_picture);

@@ -37,9 +37,8 @@ static int count_files(void)
     DIR *const list = opendir(folder);
     int count = 0;
 
-    while (list && (entry = readdir(list))) {
+    while (list && (entry = readdir(list)))
         count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
-    }
     closedir(list);
     return count;
 }
@@ -72,12 +71,10 @@ static struct picture make_picture(uint32_t format, int width, int height, bool 
     for (int y = 0; y < height; y++) {
         for (int x = 0; x < width; x++) {
             uint8_t *const p = picture.image.plane[0] + y * picture.image.stride[0] + x * bytes;
-            for (int c = 0; c < 3; c++) {
+            for (int c = 0; c < 3; c++)
                 p[swap ? 2 - c : c] = (uint8_t)pattern(x, y, c, 255);
-            }
-            if (bytes == 4) {
+            if (bytes == 4)
                 p[3] = 77;
-            }
         }
     }
     return picture;
@@ -132,9 +129,8 @@ static void grey_round_trip(void **state)
     struct refocus_photo *depth;
 
     (void)state;
-    for (int i = 0; i < 12; i++) {
+    for (int i = 0; i < 12; i++)
         samples[i] = (uint16_t)pattern(i % 3, i / 3, 0, 65535);
-    }
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
         for (int flipped = 0; flipped < 2; flipped++) {
             assert_int_equal(refocus_gray16_write(in_folder(names[k]), samples + (flipped ? 9 : 0),
@@ -146,11 +142,10 @@ static void grey_round_trip(void **state)
             for (int i = 0; i < 12; i++) {
                 const int y = flipped ? 3 - i / 3 : i / 3;
                 const unsigned v = samples[y * 3 + i % 3];
-                if (depth->depth->sample == REFOCUS_SAMPLE_F32) {
+                if (depth->depth->sample == REFOCUS_SAMPLE_F32)
                     assert_true(float_at(depth->depth, i % 3, i / 3) == (float)(v / 65535.0));
-                } else {
+                else
                     assert_int_equal(sample_at(depth->depth, i % 3, i / 3), v);
-                }
             }
             refocus_photo_free(&depth);
         }
@@ -164,17 +159,15 @@ static struct bytes make_icc(size_t size)
     static const uint8_t d50[12] = {0, 0, 0xf6, 0xd6, 0, 1, 0, 0, 0, 0, 0xd3, 0x2d};
     struct bytes icc = {calloc(1, size), size};
 
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i++)
         icc.data[i] = (uint8_t)(size >> (24 - 8 * i));
-    }
     icc.data[8] = 2;
     memcpy(icc.data + 12, "mntrRGB XYZ ", 12);
     memcpy(icc.data + 36, "acsp", 4);
     memcpy(icc.data + 68, d50, 12);
     /* libpng finds profiles "too short" that zlib makes too small. */
-    for (size_t i = 132; i < size; i++) {
+    for (size_t i = 132; i < size; i++)
         icc.data[i] = (uint8_t)((i * i * 2654435761u) >> 13);
-    }
     return icc;
 }
 #endif
@@ -194,9 +187,8 @@ static int times_in_file(const char *name, const char *word)
     int times = 0;
 
     assert_int_equal(refocus_file_read(in_folder(name), UINT64_MAX, &file, NULL), REFOCUS_OK);
-    for (size_t i = 0; i + strlen(word) <= file.size; i++) {
+    for (size_t i = 0; i + strlen(word) <= file.size; i++)
         times += memcmp(file.data + i, word, strlen(word)) == 0;
-    }
     free(file.data);
     return times;
 }
