@@ -27,7 +27,6 @@ struct rf_gain_map {
     struct rf_raster samples; /* 8 bits, 1 or 3 channels; pixels NULL: there is none */
     struct rf_gain_values values;
     float gain[3][256]; /* log2 of the gain of each sample */
-    bool apple;         /* `gain` follows Apple's curve, not least, greatest and gamma */
 };
 
 /* The map of a photo; NULL: it has none. It ends with the photo. */

@@ -160,7 +160,6 @@ void rf_gain_make_curves(struct rf_gain_map *map)
 {
     const struct rf_gain_values *const v = &map->values;
 
-    map->apple = false;
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < 256; i++) {
             map->gain[c][i] = (float)(v->least[c] + (v->greatest[c] - v->least[c]) *
@@ -177,7 +176,6 @@ void rf_gain_make_apple(struct rf_gain_map *map, double headroom)
 
     memset(v, 0, sizeof *v);
     v->other_headroom = log2(headroom);
-    map->apple = true;
     for (int c = 0; c < 3; c++) {
         v->gamma[c] = 1;
         v->greatest[c] = v->other_headroom;

@@ -75,8 +75,10 @@ const struct rf_kept *rf_kept_of(const struct refocus_photo *photo)
     return &((const struct rf_photo *)(const void *)photo)->kept;
 }
 
-void rf_kept_read(const struct refocus_photo *photo, struct rf_read *read,
-                  struct refocus_photo_info *info, struct refocus_reason *reason)
+/* An empty reading with the limits of that photo's, if there is one: what a writer reads again
+ * keeps them too. */
+static void begin_read(const struct refocus_photo *photo, struct rf_read *read,
+                       struct refocus_photo_info *info, struct refocus_reason *reason)
 {
     memset(read, 0, sizeof *read);
     memset(info, 0, sizeof *info);
@@ -87,7 +89,8 @@ void rf_kept_read(const struct refocus_photo *photo, struct rf_read *read,
     read->orientation = 1;
 }
 
-unsigned rf_xmp_keep_found(const struct rf_xmp_keep *keep)
+/* The bits of RF_XMP_CUT_... that were there. */
+static unsigned found_in(const struct rf_xmp_keep *keep)
 {
     unsigned found = 0;
 
@@ -133,7 +136,7 @@ int rf_keep_xmp(const struct refocus_photo *photo, struct rf_xmp_keep *keep, int
                      (photo->info->orientation != 1 ? RF_XMP_CUT_ORIENTATION : 0) |
                      (has_other_size(photo, width, height) ? RF_XMP_CUT_SIZE : 0);
     }
-    rf_kept_read(photo, &keep->read, &keep->info, &keep->unused);
+    begin_read(photo, &keep->read, &keep->info, &keep->unused);
     bytes = (struct rf_bytes){kept.bytes.data, kept.bytes.size};
     status = kept.kind == RF_KEPT_JPEG  ? rf_xmp_keep_jpeg(keep, bytes)
              : kept.kind == RF_KEPT_XMP ? rf_xmp_keep_packet(keep, bytes)
@@ -187,6 +190,6 @@ void rf_keep_warn_kind(const struct refocus_photo *photo, enum rf_kept_kind writ
 void rf_keep_warn(const struct refocus_photo *photo, const struct rf_xmp_keep *keep,
                   struct refocus_reason *reason)
 {
-    if (rf_kept_of(photo)->gain_map || rf_xmp_keep_found(keep) & RF_XMP_CUT_GAIN_MAP)
+    if (rf_kept_of(photo)->gain_map || found_in(keep) & RF_XMP_CUT_GAIN_MAP)
         rf_leave_out(reason, "it is written without an HDR gain map, which the photo has");
 }

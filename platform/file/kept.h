@@ -14,10 +14,6 @@ void rf_keep_companion(struct rf_read *read, struct rf_bytes picture);
 
 /* The parts of a photo that refocus_photo_read() made which only the writers see. */
 const struct rf_kept *rf_kept_of(const struct refocus_photo *photo);
-/* An empty reading with the limits of that photo's, if there is one: what a writer reads again
- * keeps them too. */
-void rf_kept_read(const struct refocus_photo *photo, struct rf_read *read,
-                  struct refocus_photo_info *info, struct refocus_reason *reason);
 /* Edit the XMP of a photo, or of none, for a picture of this size. The rest of *keep is zeros but
  * for `cut`, `insert` and `insert_extended`; rf_xmp_keep_free() ends it, whatever is returned. */
 int rf_keep_xmp(const struct refocus_photo *photo, struct rf_xmp_keep *keep, int32_t width,

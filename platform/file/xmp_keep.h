@@ -46,8 +46,6 @@ static inline int rf_xmp_keep_packet(struct rf_xmp_keep *keep, struct rf_bytes p
     return REFOCUS_OK;
 }
 #endif
-/* The bits of RF_XMP_CUT_... that were there. */
-unsigned rf_xmp_keep_found(const struct rf_xmp_keep *keep);
 /* A standard packet after its editing; empty: nothing is left. */
 struct rf_bytes rf_xmp_kept(const struct rf_xmp_packet *packet);
 void rf_xmp_keep_free(struct rf_xmp_keep *keep);

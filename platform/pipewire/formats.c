@@ -19,7 +19,7 @@ static const struct {
 };
 enum { FORMATS = sizeof formats / sizeof *formats };
 
-uint32_t rf_pipewire_spa_of(uint32_t format)
+static uint32_t spa_of(uint32_t format)
 {
     for (int i = 0; i < FORMATS; i++)
         if (formats[i].ours == format)
@@ -106,7 +106,7 @@ static const struct spa_pod *wish(struct spa_pod_builder *builder, uint32_t subt
         spa_pod_builder_prop(builder, SPA_FORMAT_VIDEO_format, 0);
         spa_pod_builder_push_choice(builder, &choice, SPA_CHOICE_Enum, 0);
         if (config->format != REFOCUS_FRAME_ANY) /* the first one is the default */
-            spa_pod_builder_id(builder, rf_pipewire_spa_of(config->format));
+            spa_pod_builder_id(builder, spa_of(config->format));
         else
             spa_pod_builder_id(builder, formats[0].spa);
         for (int i = 0; i < FORMATS; i++)
@@ -150,7 +150,7 @@ const struct spa_pod *rf_pipewire_offer(struct spa_pod_builder *builder,
     spa_pod_builder_push_object(builder, &object, SPA_TYPE_OBJECT_Format, SPA_PARAM_EnumFormat);
     spa_pod_builder_add(builder, SPA_FORMAT_mediaType, SPA_POD_Id(SPA_MEDIA_TYPE_video),
                         SPA_FORMAT_mediaSubtype, SPA_POD_Id(SPA_MEDIA_SUBTYPE_raw),
-                        SPA_FORMAT_VIDEO_format, SPA_POD_Id(rf_pipewire_spa_of(format->format)),
+                        SPA_FORMAT_VIDEO_format, SPA_POD_Id(spa_of(format->format)),
                         SPA_FORMAT_VIDEO_size, SPA_POD_Rectangle(&size), SPA_FORMAT_VIDEO_framerate,
                         SPA_POD_Fraction(&rate), 0);
     if (format->format <= REFOCUS_FRAME_YUV420)

@@ -64,8 +64,7 @@ struct rf_pipewire_format {
     bool full_range;
 };
 
-/* enum spa_video_format and back; 0 for none. */
-uint32_t rf_pipewire_spa_of(uint32_t format);
+/* The format for one of enum spa_video_format; 0 for none. */
 uint32_t rf_pipewire_format_of(uint32_t spa);
 /* The format that both sides agreed on; format ANY when it is not one of ours. */
 struct rf_pipewire_format rf_pipewire_read_format(const struct spa_pod *pod);

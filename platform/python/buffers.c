@@ -18,8 +18,8 @@ static char type_of(const char *format)
     return *format && !format[1] ? *format : 0;
 }
 
-int rf_rows_get(struct rf_buffers *buffers, PyObject *object, int writable, const char *what,
-                struct rf_rows *rows)
+static int rows_get(struct rf_buffers *buffers, PyObject *object, int writable, const char *what,
+                    struct rf_rows *rows)
 {
     Py_buffer *const b = &buffers->buffer[buffers->count];
     Py_ssize_t within;
@@ -64,7 +64,7 @@ int rf_rows_get(struct rf_buffers *buffers, PyObject *object, int writable, cons
 int rf_map_rows_get(struct rf_buffers *buffers, PyObject *object, int writable, const char *what,
                     struct rf_rows *rows)
 {
-    if (rf_rows_get(buffers, object, writable, what, rows) != 0)
+    if (rows_get(buffers, object, writable, what, rows) != 0)
         return -1;
     if (rows->row_bytes == rows->columns * rows->item)
         return 0;
@@ -102,7 +102,7 @@ int rf_image_get(struct rf_buffers *buffers, PyObject *tuple, int writable, cons
         const Py_ssize_t count = refocus_plane_rows(format, i, height);
         struct rf_rows rows;
 
-        if (rf_rows_get(buffers, PyTuple_GetItem(planes, i), writable, what, &rows) != 0)
+        if (rows_get(buffers, PyTuple_GetItem(planes, i), writable, what, &rows) != 0)
             return -1;
         if (rows.row_bytes != row_bytes || rows.rows != count) {
             PyErr_Format(PyExc_ValueError,

@@ -28,8 +28,6 @@ struct rf_rows {
 void rf_buffers_release(struct rf_buffers *buffers);
 
 /* All return 0, or -1 with a Python exception. WHAT names the argument in it. */
-int rf_rows_get(struct rf_buffers *buffers, PyObject *object, int writable, const char *what,
-                struct rf_rows *rows);
 /* A map has one sample for each column. */
 int rf_map_rows_get(struct rf_buffers *buffers, PyObject *object, int writable, const char *what,
                     struct rf_rows *rows);

@@ -33,7 +33,14 @@ void rf_transfer_init(struct rf_transfer *transfer, int blend)
     }
 }
 
-void rf_highlight_weights(uint16_t weight[256], double sigma)
+/*
+ * Highlight weights of Yang et al. 2016, eq. 5, in Q15 of the largest:
+ *
+ *     w[c] = exp(-(c - 255)^2 / 2 sigma^2),  c = max(R, G, B)
+ *
+ * at least 1/32767, so that no average is ever empty.
+ */
+static void highlight_weights(uint16_t weight[256], double sigma)
 {
     for (int c = 0; c < 256; c++) {
         const double below = (255 - c) / sigma;
@@ -64,7 +71,13 @@ static bool keeps_code(const struct rf_transfer *transfer, const uint16_t weight
     return true;
 }
 
-bool rf_weights_keep_codes(const struct rf_transfer *transfer, const uint16_t weight[256])
+/*
+ * Whether each code comes back from its weighted mean, although light times weight in 16 bits
+ * (kernels.h, weigh) is rounded. It must do so with the weight of any pixel none of whose
+ * channels is below it. In sRGB it does for weights of 0.64 and more of the largest, from
+ * sigma 272 on.
+ */
+static bool keep_codes(const struct rf_transfer *transfer, const uint16_t weight[256])
 {
     for (int c = 0; c < 256; c++)
         if (weight[c] < 8 || !keeps_code(transfer, weight, c))
@@ -77,8 +90,8 @@ bool rf_weights_of_light(uint16_t light_weight[RF_LIGHT_MAX + 1],
 {
     uint16_t weight[256];
 
-    rf_highlight_weights(weight, sigma);
+    highlight_weights(weight, sigma);
     for (int light = 0; light <= RF_LIGHT_MAX; light++)
         light_weight[light] = weight[transfer->to_code[4 * light]];
-    return rf_weights_keep_codes(transfer, weight);
+    return keep_codes(transfer, weight);
 }

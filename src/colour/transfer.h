@@ -28,25 +28,8 @@ const uint16_t *rf_light_of_codes(uint32_t blend);
 
 void rf_transfer_init(struct rf_transfer *transfer, int blend);
 
-/*
- * Highlight weights of Yang et al. 2016, eq. 5, in Q15 of the largest:
- *
- *     w[c] = exp(-(c - 255)^2 / 2 sigma^2),  c = max(R, G, B)
- *
- * at least 1/32767, so that no average is ever empty.
- */
-void rf_highlight_weights(uint16_t weight[256], double sigma);
-
-/*
- * Whether each code comes back from its weighted mean, although light times weight in 16 bits
- * (kernels.h, weigh) is rounded. It must do so with the weight of any pixel none of whose
- * channels is below it. In sRGB it does for weights of 0.64 and more of the largest, from
- * sigma 272 on.
- */
-bool rf_weights_keep_codes(const struct rf_transfer *transfer, const uint16_t weight[256]);
-
 /* Sets the weight of each Q12 light max(R, G, B) with that sigma. Returns
- * rf_weights_keep_codes(). */
+ * whether each code comes back from its weighted mean. */
 bool rf_weights_of_light(uint16_t light_weight[RF_LIGHT_MAX + 1],
                          const struct rf_transfer *transfer, double sigma);
 

@@ -21,7 +21,6 @@
 enum {
     BAND = 16,
     AT_ONCE = 32, /* pixels between two looks for a cancelled run */
-    MOST_TABLES = 4 * REFOCUS_PLAIN_BLUR_RADIUS + 1,
     MOST_SPIKES = 16,
 };
 

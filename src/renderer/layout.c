@@ -14,12 +14,13 @@
 
 /* The pixels beyond the picture that may be read: the largest offset, one for the pre-filter, and
  * one for rounding. */
-int rf_padding_for(float max_blur_radius)
+static int padding_for(float max_blur_radius)
 {
     return (int)ceilf(max_blur_radius) + 2;
 }
 
-ptrdiff_t rf_pitch_for(int width, int pad)
+/* Elements between the planes of a group. */
+static ptrdiff_t pitch_for(int width, int pad)
 {
     const int tiles = (width + RF_TILE - 1) / RF_TILE;
     const ptrdiff_t pitch = ((ptrdiff_t)tiles * RF_TILE + 2 * pad + 31) / 32;
@@ -135,8 +136,8 @@ static uint64_t lay_out_whole(struct refocus_renderer *r,
     struct rf_arena prepare, estimate;
     uint64_t size;
 
-    photo->pad = rf_padding_for(params->max_blur_radius);
-    photo->pitch = rf_pitch_for(w, photo->pad);
+    photo->pad = padding_for(params->max_blur_radius);
+    photo->pitch = pitch_for(w, photo->pad);
     photo->stride = RF_GROUP * photo->pitch;
     size = group_size(photo, h);
     photo->group = rf_arena_take(arena, size, 2);
@@ -182,7 +183,7 @@ static int up_to_tiles(int v)
 static void shape_blocks(struct rf_in_place *in_place, float max_blur_radius)
 {
     enum { MARK_BLOCK = 128 };
-    const int pad = rf_padding_for(max_blur_radius);
+    const int pad = padding_for(max_blur_radius);
     const int filtered = (1 << rf_prefilter_most_steps(max_blur_radius)) - 1;
 
     in_place->mark_block = MARK_BLOCK;
@@ -229,9 +230,9 @@ static uint64_t lay_out_blocks(struct refocus_renderer *r,
         r->highlights_memory = rf_arena_take(&estimate, rf_estimate_bytes(w, h), 1);
     }
     shape_blocks(in_place, params->max_blur_radius);
-    photo->pad = rf_padding_for(params->max_blur_radius);
+    photo->pad = padding_for(params->max_blur_radius);
     side = rf_block_side(in_place);
-    photo->pitch = rf_pitch_for(side + RF_TILE, 0);
+    photo->pitch = pitch_for(side + RF_TILE, 0);
     photo->stride = RF_GROUP * photo->pitch;
     size = (uint64_t)photo->stride * (uint64_t)(side + RF_TILE + 2 * RF_SPARE_ROWS);
     photo->group = rf_arena_take(arena, size, 2);
@@ -252,7 +253,7 @@ static uint64_t lay_out_blocks(struct refocus_renderer *r,
 static uint64_t work_bytes(const struct refocus_renderer_params *params)
 {
     const struct rf_limits limits = {
-        params->max_width, params->max_height, rf_padding_for(params->max_blur_radius),
+        params->max_width, params->max_height, padding_for(params->max_blur_radius),
         rf_thread_count(params->threads), fminf(params->max_blur_radius, RF_PLAIN_RADIUS)};
     uint64_t most = 0;
 
@@ -336,7 +337,7 @@ static uint64_t lay_out_pyramid(struct refocus_renderer *r, const struct rf_aren
         lay_out_level(&pyramid, &r->pyramid.level[i]);
     /* The pyramid is no longer needed when weights begin: this holds the foreground cells, and then
      * the weights. */
-    r->foreground.stride = rf_pitch_for(across, pad);
+    r->foreground.stride = pitch_for(across, pad);
     r->foreground.most = rf_arena_take(
         &foreground, (uint64_t)r->foreground.stride * (uint64_t)(down + 2 * pad + RF_TILE), 2);
     if (r->foreground.most)
@@ -374,7 +375,7 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     /* The size of the largest window. */
     const int across = w < side ? w : side, down = h < side ? h : side;
     const int threads = rf_thread_count(params->threads),
-              pad = rf_padding_for(params->max_blur_radius);
+              pad = padding_for(params->max_blur_radius);
     uint64_t after, prepared = 0;
 
     r->most_edges = params->depth_edges;

@@ -4,10 +4,6 @@
 
 #include "renderer/renderer.h"
 
-/* Pixels beyond each side of a padded plane, and elements between the planes of a group. */
-int rf_padding_for(float max_blur_radius);
-ptrdiff_t rf_pitch_for(int width, int pad);
-
 /* Strip mode: the rows above and below a window that may be read, though their content is not
  * valid; no fewer than RF_DEQUANTISE_REACH. */
 enum { RF_SPARE_ROWS = 8 };

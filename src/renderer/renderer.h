@@ -173,7 +173,7 @@ struct refocus_renderer {
 
     struct rf_transfer *transfer; /* RF_BLEND_COUNT of them */
     uint16_t *light_weight;       /* eq. 5: weight of Q12 light max(R, G, B), Q15 */
-    bool keep_codes;              /* rf_weights_keep_codes(): light may be premultiplied */
+    bool keep_codes;              /* as rf_weights_of_light() says: light may be premultiplied */
     float weight_sigma;           /* sigma of light_weight, in weight_blend */
     uint32_t weight_blend;
 
