@@ -2,7 +2,7 @@
 #ifndef RF_CLI_COMMANDS_H
 #define RF_CLI_COMMANDS_H
 
-#include "line/list.h"
+#include "line/subcommands.h"
 #include "line/options.h"
 
 extern const struct command render_command;

@@ -59,7 +59,7 @@ static int load(const struct opencv **cv, const char *what)
     return *cv ? EXIT_DONE : report_failure(EXIT_FAILED, what, "%s", why);
 }
 
-const struct option_word ways_order_words[] = {
+const struct option_word made_order_words[] = {
     {"auto", "what only one picture shows tells, else it is the left one"},
     {"left-first", "the left one"},
     {"right-first", "the right one, as where eyes are crossed to see depth"},
@@ -264,7 +264,7 @@ int made_depth(struct input *input, const struct depth_settings *settings)
                            : match(input, settings->right, &settings->stereo, settings);
 }
 
-const struct option_word ways_match_words[] = {
+const struct option_word made_match_words[] = {
     {"checked", "both ways; what disagrees is filled"},
     {"plain", "OpenCV's semi-global matching as it is"},
     {"wls", "filled by weighted least squares; needs the module refocus-ximgproc"},

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 #include <refocus/platform/file.h>
-#include "line/list.h"
+#include "line/subcommands.h"
 #include "line/options.h"
 #include "line/report.h"
 

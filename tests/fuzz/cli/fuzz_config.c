@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "line/list.h"
+#include "line/subcommands.h"
 #include "line/report.h"
 #include "options.h"
 #include "settings/config.h"

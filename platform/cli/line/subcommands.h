@@ -1,6 +1,6 @@
-/* list.h: the list of subcommands, which is in commands/commands.c. */
-#ifndef RF_CLI_LIST_H
-#define RF_CLI_LIST_H
+/* subcommands.h: the list of subcommands, which is in commands/commands.c. */
+#ifndef RF_CLI_SUBCOMMANDS_H
+#define RF_CLI_SUBCOMMANDS_H
 
 #include "line/option.h"
 
