@@ -10,7 +10,6 @@
 #include "tone.h"
 
 enum {
-    MOST_STOPS = 16,
     UNITS = 1 << 16, /* values are multiples of 1 / UNITS, which XMP and ISO 21496-1 both hold */
 };
 
@@ -93,13 +92,13 @@ static double gain_at(const struct work *work, int x, int c)
     const double light = work->sums[x][1][c] / work->counts[x][1];
     const double gain = log2((light + offset) / (base + offset));
 
-    return fmin(fmax(gain, -MOST_STOPS), MOST_STOPS);
+    return fmin(fmax(gain, -RF_GAIN_MOST_STOPS), RF_GAIN_MOST_STOPS);
 }
 
 static void find_range(struct work *work, double *least, double *greatest)
 {
-    *least = MOST_STOPS;
-    *greatest = -MOST_STOPS;
+    *least = RF_GAIN_MOST_STOPS;
+    *greatest = -RF_GAIN_MOST_STOPS;
     for (int y = 0; y < work->height; y++) {
         sum(work, y);
         for (int x = 0; x < work->width; x++) {

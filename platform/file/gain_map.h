@@ -23,6 +23,8 @@ struct rf_gain_values {
     double base_headroom, other_headroom; /* log2 of the brightest over white; of two renditions */
 };
 
+enum { RF_GAIN_MOST_STOPS = 16 }; /* the limit of a gain, either way */
+
 struct rf_gain_map {
     struct rf_raster samples; /* 8 bits, 1 or 3 channels; pixels NULL: there is none */
     struct rf_gain_values values;

@@ -9,7 +9,6 @@
 #include "number.h"
 
 enum {
-    MOST_STOPS = 16,   /* a gain has at the most, either way */
     MOST_OFFSET = 256, /* times white, either way; Adobe's programs write up to 10 and more */
 };
 
@@ -21,8 +20,8 @@ static bool is_within(double value, double least, double most)
 static const char *check(const struct rf_gain_values *v)
 {
     for (int c = 0; c < 3; c++) {
-        if (!is_within(v->least[c], -MOST_STOPS, MOST_STOPS) ||
-            !is_within(v->greatest[c], v->least[c], MOST_STOPS))
+        if (!is_within(v->least[c], -RF_GAIN_MOST_STOPS, RF_GAIN_MOST_STOPS) ||
+            !is_within(v->greatest[c], v->least[c], RF_GAIN_MOST_STOPS))
             return "its range of gains is out of bounds";
         if (!is_within(v->gamma[c], 1.0 / 64, 64))
             return "its gamma is out of bounds";
@@ -31,7 +30,7 @@ static const char *check(const struct rf_gain_values *v)
             return "its offsets are out of bounds";
     }
     return is_within(v->base_headroom, 0, v->other_headroom) &&
-                   is_within(v->other_headroom, 0, MOST_STOPS)
+                   is_within(v->other_headroom, 0, RF_GAIN_MOST_STOPS)
                ? NULL
                : "its photo is not the darker rendition";
 }

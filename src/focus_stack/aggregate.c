@@ -51,7 +51,6 @@ static inline void advance(int16_t *restrict to, const int16_t *restrict from,
 }
 
 enum {
-    BESIDE = 8, /* elements beside the costs of a path: what is never a minimum */
     NEVER = 16384,
     WAYS = 4, /* in a pass: from beside, and from three samples of the row before */
 };
@@ -69,7 +68,7 @@ static void enter(int16_t *to, const uint8_t *cost, int16_t *sum, int n)
 static inline void pass_row(const struct refocus_stack *s, int y, int way, bool first,
                             int16_t *const *last, int16_t *const *next, int n)
 {
-    const int w = s->columns, pitch = n + 2 * BESIDE;
+    const int w = s->columns, pitch = n + 2 * RF_STACK_PATHS_APART;
     int16_t *beside[2] = {next[WAYS - 1], last[WAYS - 1]}; /* this sample and the last one */
 
     for (int i = 0; i < w; i++) {
@@ -100,13 +99,13 @@ static inline void pass_row(const struct refocus_stack *s, int y, int way, bool 
 
 static inline void pass(const struct refocus_stack *s, struct rf_stack_part part, int n)
 {
-    const ptrdiff_t row = (ptrdiff_t)(n + 2 * BESIDE) * s->columns;
+    const ptrdiff_t row = (ptrdiff_t)(n + 2 * RF_STACK_PATHS_APART) * s->columns;
     int16_t *const path = rf_stack_path(s, part.way), *line[2][WAYS];
 
     for (ptrdiff_t i = 0; i < 2 * WAYS * row && !part.begin; i++)
         path[i] = NEVER;
     for (int i = 0; i < 2 * WAYS; i++)
-        line[i & 1][i / 2] = path + i * row + BESIDE;
+        line[i & 1][i / 2] = path + i * row + RF_STACK_PATHS_APART;
     for (int i = part.begin; i < part.end; i++) {
         const int y = part.way > 0 ? i : s->rows - 1 - i;
         const size_t sums = (size_t)s->columns * (size_t)n;

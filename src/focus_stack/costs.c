@@ -5,7 +5,6 @@
 
 enum {
     BAND = 64, /* rows that a worker takes at a time */
-    SQUARES = 3,
     /* Squares of sharpness, in quarters of a squared code: */
     ERROR_NOISE = 64, /* 4 codes of what a blur is wrong by, which noise and rounding make */
     /* The least sharp frame in parts of the sharpest, Q8, since noise is alike in all frames: */
@@ -13,7 +12,7 @@ enum {
     UNSURE = 128, /* depth is unknown up from here */
 };
 
-static const int reach[SQUARES] = {0, 4, 8};
+static const int reach[RF_STACK_SQUARES] = {0, 4, 8};
 
 struct move {
     const struct refocus_stack *stack;
@@ -67,13 +66,14 @@ static void move(struct refocus_stack *s, struct rf_stack_frame *frame)
 
 static uint32_t *columns_of(const struct refocus_stack *s, int worker, int i, int k)
 {
-    return s->column + (size_t)((worker * SQUARES + i) * s->planes + k) * (size_t)s->columns;
+    return s->column +
+           (size_t)((worker * RF_STACK_SQUARES + i) * s->planes + k) * (size_t)s->columns;
 }
 
 /* The sums of columns move from row y - 1 to row y, or are begun there. */
 static void add_row(const struct refocus_stack *s, int worker, int y, bool begin)
 {
-    for (int i = 0; i < SQUARES; i++)
+    for (int i = 0; i < RF_STACK_SQUARES; i++)
         for (int k = 0; k < s->planes; k++) {
             const uint16_t *in = s->plane[k];
             const size_t w = (size_t)s->columns;
@@ -155,7 +155,7 @@ static void cost_row(struct refocus_stack *s, int worker, int y)
     memset(cost, 255, (size_t)w * (size_t)n);
     for (int x = 0; x < w; x++)
         memset(cost + (size_t)x * (size_t)n, 0, (size_t)s->depths);
-    for (int i = 0; i < SQUARES; i++) {
+    for (int i = 0; i < RF_STACK_SQUARES; i++) {
         const int r = reach[i];
         const uint32_t *column[REFOCUS_STACK_MOST_FRAMES];
         uint64_t sum[REFOCUS_STACK_MOST_FRAMES] = {0};

@@ -17,9 +17,11 @@ enum {
     RF_STACK_FEW = 9,                /* frames, up to which depths lie between: model.c */
     RF_STACK_FEW_DEPTHS = 24,
     RF_STACK_MODELS = 6,
-    RF_STACK_GREY = 4096, /* stands for 0 in `colour`, more than any difference below it */
-    RF_STACK_LEVELS = 4,  /* pictures that frames are aligned by, each half the last */
-    RF_STACK_RADII = 24,  /* labels of apertures: radii of blur from 0 on, in samples */
+    RF_STACK_SQUARES = 3,     /* sizes that sharpness is summed over: costs.c */
+    RF_STACK_PATHS_APART = 8, /* elements beside the costs of a path, never a minimum */
+    RF_STACK_GREY = 4096,     /* stands for 0 in `colour`, more than any difference below it */
+    RF_STACK_LEVELS = 4,      /* pictures that frames are aligned by, each half the last */
+    RF_STACK_RADII = 24,      /* labels of apertures: radii of blur from 0 on, in samples */
     RF_STACK_MARGIN =
         24, /* samples by which frames go on beyond their border, RADII at the least */
     RF_STACK_LONGER = 960,   /* samples along the longer side, at the most */

@@ -15,9 +15,7 @@
 enum {
     LEAST_SIDE = 16,
     SMALL_PIXELS = 1 << 18, /* at the most, in the finest picture of the alignment */
-    SQUARES = 3,            /* costs.c */
     PATHS = 8,
-    BESIDE = 16,  /* aggregate.c */
     TELLING = 25, /* the direction tells which end is far from 1 / TELLING on */
 };
 
@@ -46,9 +44,9 @@ static void lay_out(struct refocus_stack *s, struct rf_arena *arena)
     s->guide = rf_arena_take(arena, samples, 3);
     s->cost = rf_arena_take(arena, samples * labels, 1);
     s->sum = rf_arena_take(arena, samples * labels, 2);
-    s->path_size = (size_t)(longer * PATHS * (labels + BESIDE));
-    s->path = rf_arena_take(arena, longer * PATHS * (labels + BESIDE), 2 * 2);
-    s->column = rf_arena_take(arena, (uint64_t)s->columns * SQUARES * (uint64_t)s->planes,
+    s->path_size = (size_t)(longer * PATHS * (labels + 2 * RF_STACK_PATHS_APART));
+    s->path = rf_arena_take(arena, longer * PATHS * (labels + 2 * RF_STACK_PATHS_APART), 2 * 2);
+    s->column = rf_arena_take(arena, (uint64_t)s->columns * RF_STACK_SQUARES * (uint64_t)s->planes,
                               4 * (uint64_t)s->threads);
     s->depth = rf_arena_take(arena, samples, 2);
     s->sure = rf_arena_take(arena, samples, 1);
