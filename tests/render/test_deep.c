@@ -295,16 +295,18 @@ static void same_bytes(void **state)
     struct refocus_renderer *single = deep_renderer(200, 150, 20, 1);
     struct refocus_renderer *many = deep_renderer(200, 150, 20, 4);
     struct refocus_settings region = refocus_settings_default(0.4f, 20);
-    struct deep codes = deep_make(REFOCUS_FORMAT_RGB8, 200, 150);
+    struct deep codes = deep_make(REFOCUS_FORMAT_BGRA8, 200, 150);
 
     (void)state;
     other = deep_make(REFOCUS_FORMAT_RGB16, 200, 150);
     part = deep_make(REFOCUS_FORMAT_RGB16, 80, 50);
     for (int i = 0; i < 4 * 200 * 150; i++) {
-        const int code = i % 4 == 3 ? 255 : p.rgb[i / 4 * 3 + i % 4];
+        const int code = i % 4 == 3 ? i / 4 % 256 : p.rgb[i / 4 * 3 + i % 4];
 
         deep_put(&photo, i / 4 % 200, i / 800, i % 4,
-                 (float)picture_light(code) * (code == 255 && i / 4 % 200 > 60 ? 5 : 1));
+                 i % 4 == 3
+                     ? (float)code / 255
+                     : (float)picture_light(code) * (code == 255 && i / 4 % 200 > 60 ? 5 : 1));
     }
     assert_int_equal(refocus_prepare(single, &photo.image, &map), REFOCUS_OK);
     assert_int_equal(refocus_prepare(many, &photo.image, &map), REFOCUS_OK);
@@ -323,8 +325,10 @@ static void same_bytes(void **state)
     assert_int_equal(deep_render(single, 0.4f, 20, &codes.image), REFOCUS_OK);
     for (int i = 0; i < 3 * 200 * 150; i++)
         assert_in_range((int)(255 * deep_get(&one, i / 3 % 200, i / 600, i % 3) + 0.5f) + 1 -
-                            *deep_at(&codes, i / 3 % 200, i / 600, i % 3),
+                            *deep_at(&codes, i / 3 % 200, i / 600, 2 - i % 3),
                         0, 2);
+    for (int i = 0; i < 200 * 150; i++)
+        assert_int_equal(*deep_at(&codes, i % 200, i / 200, 3), i % 256);
     assert_int_equal(refocus_prepare(single, &plain, &map), REFOCUS_OK);
     assert_int_equal(deep_render(single, 0.4f, 0, &one.image), REFOCUS_OK);
     for (int i = 0; i < 3 * 200 * 150; i++)

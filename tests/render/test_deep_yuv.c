@@ -109,9 +109,11 @@ static void in_focus(void **state)
     picture_free(&p);
 }
 
-/* Colours become R, G and B of the standards, and come from them. */
+/* Colours become R, G and B of the standards, and come from them; also in the corner of an odd
+ * picture, where a sample of chroma has one pixel. */
 static void colours(void **state)
 {
+    enum { SIDE = 15 };
     static const double rgb[][3] = {{0, 0, 0}, {1, 1, 1},       {1, 0, 0},      {0, 1, 0},
                                     {0, 0, 1}, {0.2, 0.6, 0.4}, {0.9, 0.5, 0.1}};
 
@@ -120,16 +122,17 @@ static void colours(void **state)
         for (size_t i = 0; i < sizeof rgb / sizeof *rgb; i++) {
             const uint32_t format = kind % 2 ? REFOCUS_FORMAT_P010 : REFOCUS_FORMAT_P016;
             const double within = format == REFOCUS_FORMAT_P010 ? 2.5 / 876 : 1e-3;
-            struct p016 photo = p016_make(format, 16, 16), back = p016_make(format, 16, 16);
-            float values[16 * 16 * 3];
+            struct p016 photo = p016_make(format, SIDE, SIDE);
+            struct p016 back = p016_make(format, SIDE, SIDE);
+            float values[SIDE * SIDE * 3];
             struct refocus_image floats =
-                refocus_image_packed(REFOCUS_FORMAT_RGB_FLOAT, values, 16, 16, 192);
+                refocus_image_packed(REFOCUS_FORMAT_RGB_FLOAT, values, SIDE, SIDE, 12 * SIDE);
             struct refocus_renderer *renderer;
 
             photo.image.matrix = back.image.matrix = (uint32_t)(kind / 2 % 3);
             photo.image.range = back.image.range = (uint32_t)(kind / 6);
             photo.image.transfer = back.image.transfer = REFOCUS_TRANSFER_LINEAR;
-            fill(&photo, 0, 0, 16, 16, rgb[i]);
+            fill(&photo, 0, 0, SIDE, SIDE, rgb[i]);
             renderer = deep_prepare_flat(&photo.image, 5);
             assert_int_equal(deep_render(renderer, 1, 0, &floats), REFOCUS_OK);
             refocus_renderer_destroy(&renderer);
@@ -140,11 +143,13 @@ static void colours(void **state)
             renderer = deep_prepare_flat(&floats, 5);
             assert_int_equal(deep_render(renderer, 1, 0, &back.image), REFOCUS_OK);
             refocus_renderer_destroy(&renderer);
-            for (int plane = 0; plane < 2; plane++)
-                for (int j = 0; j <= plane; j++)
-                    assert_in_range(code_at(&back, plane, 3, 3, j) + 128 -
-                                        code_at(&photo, plane, 3, 3, j),
-                                    128 - (kind % 2 ? 64 : 16), 128 + (kind % 2 ? 64 : 16));
+            for (int k = 0; k < 6; k++) { /* Y, U and V, inside and in the corner */
+                const int plane = k / 2 > 0, j = k / 2 == 2, at = k % 2 == 0 ? 3 : SIDE >> plane;
+
+                assert_in_range(code_at(&back, plane, at - !plane, at - !plane, j) + 128 -
+                                    code_at(&photo, plane, at - !plane, at - !plane, j),
+                                128 - (kind % 2 ? 64 : 16), 128 + (kind % 2 ? 64 : 16));
+            }
             free(photo.memory);
             free(back.memory);
         }
