@@ -1,9 +1,9 @@
 /* replay_script.c: the script of a replay source is parsed; platform/README.md describes it. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "failure.h"
+#include "file/number.h"
 #include "layout.h"
 #include "pattern.h"
 #include "replay_script.h"
@@ -23,12 +23,7 @@ static const struct {
 
 static bool parse_number(const char *text, double least, double greatest, double *value)
 {
-    char *end;
-
-    if (!text || !*text)
-        return false;
-    *value = strtod(text, &end);
-    return *end == '\0' && *value >= least && *value <= greatest;
+    return text && rf_parse_number(text, value) && *value >= least && *value <= greatest;
 }
 
 static bool parse_size(const char *text, int *width, int *height)

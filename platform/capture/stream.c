@@ -1,12 +1,12 @@
 /* stream.c: the sources `y4m:` and `raw:`: streams of frames out of one file. */
 #include <errno.h>
 #include <fcntl.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 #include "bytes.h"
+#include "file/number.h"
 #include "ring.h"
 #include "samples.h"
 #include "y4m.h"
@@ -58,11 +58,7 @@ static int parse_y4m(const struct refocus_source *source, struct refocus_reason 
 /* A number that is the whole of the text, above 0. */
 static bool parse_rate(const char *text, double *fps)
 {
-    char *end;
-
-    *fps = strtod(text, &end);
-    return strspn(text, "0123456789.") > 0 && !strpbrk(text, "xX") && *end == '\0' &&
-           isfinite(*fps) && *fps > 0;
+    return strspn(text, "0123456789.") > 0 && rf_parse_number(text, fps) && *fps > 0;
 }
 
 /* "640x480", each of at most six digits, and nothing behind it. */

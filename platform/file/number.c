@@ -1,5 +1,5 @@
-/* number.c: decimal numbers are read out of files. strtod() follows the locale and would take
- * "0.5" for 0 in many of them; files always mean a point. */
+/* number.c: decimal numbers are read out of files, and of the names of sources. strtod() follows
+ * the locale and would take "0.5" for 0 in many of them; files always mean a point. */
 #include "number.h"
 
 #include <math.h>

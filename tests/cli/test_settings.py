@@ -39,6 +39,14 @@ class Settings(Case):
         self.same(self.picture('--focus', '1', '--settings', 's.json'), expected)
         self.differs(self.picture('--settings', 's.json'), expected)
 
+    def test_numbers_have_a_point_in_every_locale(self):
+        """Also where a comma would separate: on the command line, in settings and what is printed."""
+        self.write(blur=4.5)
+        command = 'render', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'out.ppm', '--json'
+        for how in ['--blur', '4.5'], ['--settings', 's.json']:
+            done = self.run_it(*command, *how, env={**os.environ, 'LC_ALL': 'de_DE.UTF-8'})
+            self.assertEqual((done.returncode, json.loads(done.stdout)['blur']), (0, 4.5), done.stderr)
+
     def test_saved_settings_make_the_same_picture_and_file(self):
         for more in ((), ('--focus', '0.1', '--blur', '5.3'),
                      ('--aperture', 'polygon:6:15', '--sigma', '128', '--quality', 'best'),

@@ -1,6 +1,7 @@
 /* test_streams.c: sinks and the sources that read what they wrote; names that are refused. */
 #include "check.h"
 
+#include <locale.h>
 #include <unistd.h>
 #include <refocus/platform/convert.h>
 #include <stdbool.h>
@@ -517,6 +518,28 @@ static void replay_replays(void **state)
     refocus_source_close(&source);
 }
 
+/* Rates have a point in a program whose locale has a comma, as far as the machine knows one. */
+static void rates_ignore_the_locale(void **state)
+{
+    static const char *const names[] = {"raw:rate.tmp,RGB24,4x4,29.97",
+                                        "replay::size 4x4;fps 29.97"};
+
+    (void)state;
+    write_text("rate.tmp", "");
+    setlocale(LC_NUMERIC, "de_DE.UTF-8");
+    for (int i = 0; i < 2; i++) {
+        struct refocus_source_mode mode = refocus_source_mode_default();
+        struct refocus_source *source = NULL;
+
+        assert_status(refocus_source_open(&source, names[i], NULL), REFOCUS_OK);
+        assert_status(refocus_source_start(source, NULL, &mode, NULL), REFOCUS_OK);
+        assert_true(mode.fps == 29.97);
+        refocus_source_close(&source);
+    }
+    setlocale(LC_NUMERIC, "C");
+    remove("rate.tmp");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -525,7 +548,7 @@ int main(void)
         cmocka_unit_test(y4m_keeps_codes),    cmocka_unit_test(raw_keeps_codes),
         cmocka_unit_test(raw_formats),        cmocka_unit_test(raw_of_other_samples),
         cmocka_unit_test(y4m_422_comes_back), cmocka_unit_test(sinks_refuse_what_is_wrong),
-        cmocka_unit_test(replay_replays),
+        cmocka_unit_test(replay_replays),     cmocka_unit_test(rates_ignore_the_locale),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
