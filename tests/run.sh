@@ -220,7 +220,7 @@ memory_stage() {
     CC=gcc CXX=g++ build asan --buildtype=debugoptimized -Db_sanitize=address,undefined \
         -Db_lundef=false -Dc_args=-fno-sanitize-recover=all "${one_set[@]}" || return
     ASAN_OPTIONS=allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1 \
-        LSAN_OPTIONS=suppressions=$top/tests/lsan.supp:print_suppressions=0 \
+        LSAN_OPTIONS="suppressions='$top/tests/lsan.supp':print_suppressions=0" \
         run_brief asan --timeout-multiplier 5
 }
 
@@ -237,7 +237,7 @@ thread_stage() {
     if setarch -R true 2>/dev/null; then
         wrap=(setarch -R)
     fi
-    TSAN_OPTIONS=halt_on_error=1:suppressions=$top/tests/tsan.supp run_brief tsan --timeout-multiplier 20
+    TSAN_OPTIONS="halt_on_error=1:suppressions='$top/tests/tsan.supp'" run_brief tsan --timeout-multiplier 20
     wrap=()
 }
 

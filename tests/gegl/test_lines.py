@@ -5,6 +5,7 @@ import math
 import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -144,8 +145,8 @@ class Lines(unittest.TestCase):
         for name, other in (('photo.jpg', SCENES / 'portrait/allfocus.png'), ('out.png', out),
                             ('depth.png', SCENES / 'portrait/disparity.png')):
             self.assertIn(name, line)
-            line = line.replace(name, str(other))
-        self.assertEqual(self.gegl(*line.split()), '')
+            line = line.replace(name, shlex.quote(str(other)))
+        self.assertEqual(self.gegl(*shlex.split(line)), '')
         self.assertGreater(os.path.getsize(out), 1000)
 
     def test_scores(self):

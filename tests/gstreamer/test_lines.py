@@ -4,6 +4,7 @@ the command REFOCUS beside them where there is one."""
 import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -13,6 +14,7 @@ import unittest
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 SCENE = TOP / 'examples/data/portrait'
 EXAMPLES = TOP / 'examples/gstreamer'
+DEPTH, NO_DEPTH = (shlex.quote(str(path)) for path in (SCENE / 'disparity.png', TOP / 'meson.build'))
 PLUGINS = sys.argv.pop(1)
 COMMAND = sys.argv.pop(1) if len(sys.argv) > 1 else None
 SMALL = 'video/x-raw,width=96,height=64,framerate=25/1,format='
@@ -36,7 +38,7 @@ class Lines(unittest.TestCase):
         return done.returncode, done.stdout
 
     def launch(self, line, **environment):
-        return self.run_words(['gst-launch-1.0', '-q', *line.split()], **environment)
+        return self.run_words(['gst-launch-1.0', '-q', *shlex.split(line)], **environment)
 
     def passes(self, line, **environment):
         status, words = self.launch(line, **environment)
@@ -101,7 +103,7 @@ class Lines(unittest.TestCase):
         self.passes(f'videotestsrc num-buffers=3 ! {SMALL}NV12 ! filesink location={path}')
         out = self.bytes_of(f'filesrc location={path} ! '
                             'rawvideoparse format=nv12 width=96 height=64 framerate=25/1 ! '
-                            f'refocus depth-location={SCENE}/disparity.png focus-x=0.5 focus-y=0.5 '
+                            f'refocus depth-location={DEPTH} focus-x=0.5 focus-y=0.5 '
                             'near=0.9 far=20 f-number=2 steady=0.5 aperture=polygon:7 ! OUT')
         self.assertEqual(len(out), pathlib.Path(path).stat().st_size)
         self.assertNotEqual(out, pathlib.Path(path).read_bytes())
@@ -113,8 +115,9 @@ class Lines(unittest.TestCase):
     def test_converted_for_the_method(self):
         """Methods that render no Y, U and V make converters give R, G and B."""
         words = self.run_words(
-            ['gst-launch-1.0', '-v', *f'videotestsrc num-buffers=1 ! {SMALL}NV12 ! videoconvert ! '
-             f'refocus name=r method=blur depth-location={SCENE}/disparity.png ! fakesink'.split()])
+            ['gst-launch-1.0', '-v', *shlex.split(
+                f'videotestsrc num-buffers=1 ! {SMALL}NV12 ! videoconvert ! '
+                f'refocus name=r method=blur depth-location={DEPTH} ! fakesink')])
         self.assertEqual(words[0], 0, words[1])
         self.assertRegex(words[1], r'GstRefocus:r[^\n]*src: caps =[^\n]*format=\(string\)(RGB|BGR)')
 
@@ -137,12 +140,12 @@ class Lines(unittest.TestCase):
                  'no depth: link the pad depth, or give depth-location'),
                 (f'videotestsrc ! refocus depth-location={self.folder}/none.png ! fakesink',
                  'none.png: cannot open it'),
-                (f'videotestsrc ! refocus depth-location={TOP}/meson.build ! fakesink', 'meson.build: '),
+                (f'videotestsrc ! refocus depth-location={NO_DEPTH} ! fakesink', 'meson.build: '),
                 ('audiotestsrc ! refocus ! fakesink', 'could not link'),
                 ('videotestsrc ! video/x-raw,format=ARGB ! refocus ! fakesink', "can't handle caps"),
                 ('videotestsrc ! video/x-raw,interlace-mode=interleaved ! refocus ! fakesink',
                  "can't handle caps"),
-                (f'videotestsrc num-buffers=1 ! refocus aperture=polygon:99 depth-location={SCENE}/disparity.png '
+                (f'videotestsrc num-buffers=1 ! refocus aperture=polygon:99 depth-location={DEPTH} '
                  '! fakesink', "aperture 'polygon:99' is not known")):
             status, words = self.launch(line)
             self.assertEqual(status in (1, 255), True, line)

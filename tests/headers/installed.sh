@@ -7,6 +7,14 @@ source=$1 build=$2 work=$3
 shift 3
 rm -rf "$work"
 mkdir -p "$work/src"
+case $work in
+    *' '*) # A sysroot of pkg-config has none.
+        link=$(mktemp -d)
+        trap 'rm -rf "$link"' EXIT
+        ln -s "$work" "$link/work"
+        work=$link/work
+        ;;
+esac
 DESTDIR=$work/dest meson install -C "$build" --no-rebuild >"$work/install.log"
 
 pc=$(find "$work/dest" -name refocus.pc)
