@@ -260,7 +260,8 @@ class Refusals(Serving):
         token = self.server.path[1:-1]
         other = ('1' if token[0] == '0' else '0') + token[1:]
         for path in '/', '/photos', '//', '/%s/' % other, '/%s' % token, '/%s/' % token.upper(), \
-                '/%s/' % token[:-1], '/%s0/' % token:
+                '/%s/' % token[:-1], '/%s0/' % token, \
+                *('/%s%c%s/' % (token[:i], ord(token[i]) ^ 64, token[i + 1:]) for i in (0, 31)):
             if path == self.server.path:
                 continue
             for name in '', 'photos':
@@ -322,7 +323,7 @@ class Refusals(Serving):
         self.assertFalse(self.server.children())
 
     def test_names_of_uploads(self):
-        for name in '../x.jpg', '/x.jpg', '', '.x.jpg', 'a/b.jpg', 'a%00.jpg', '%ff.jpg', 'x' * 300:
+        for name in '../x.jpg', '/x.jpg', '', '.x.jpg', 'a/b.jpg', 'a%00.jpg', '%ff.jpg', 'a%7f.jpg', 'x' * 300:
             self.refused(400, 'name: ', self.server.post('upload?name=' + name, b'photo'))
 
     def test_damaged_uploads(self):

@@ -354,6 +354,8 @@ class Lines(Case):
                 os.environ['TMPDIR'] = environment
         session = server.post('upload?name=photo.ppm', pictures.read_bytes('photo.ppm')).json
         self.assertEqual(len(os.listdir('temporary')), 1)
+        with open(os.path.join('temporary', *os.listdir('temporary'), 'left-by-a-reader'), 'w'):
+            pass
         self.assertEqual(server.picture(session, 1, {}).status, 200)
         self.assertEqual(server.post('upload?name=photo.ppm', b'damaged').status, 422)
         self.assertEqual(server.close(), (0, '', []))

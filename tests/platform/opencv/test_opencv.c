@@ -127,6 +127,13 @@ static struct refocus_network network_of(float mean_red, float scale)
 
 static void estimate(void **state)
 {
+    static const struct {
+        const char *name;
+        int width, height;
+    } known[] = {{"tcmonodepth", 320, 192},
+                 {"midas-small", 256, 256},
+                 {"depth-anything-small", 518, 518},
+                 {"", 0, 0}};
     static uint8_t pixels[3 * W * H];
     const struct refocus_image photo = picture(pixels);
     struct refocus_network network = network_of(10, 0.5f), fitted = refocus_network_default();
@@ -177,8 +184,11 @@ static void estimate(void **state)
     network.width = 1;
     assert_int_equal(refocus_cv_estimate(&photo, path, &network, &result, &reason),
                      REFOCUS_ERR_ARGUMENT);
-    for (uint32_t i = 0; refocus_cv_network_name(i); i++)
+    for (uint32_t i = 0; refocus_cv_network_name(i); i++) {
         assert_int_equal(refocus_cv_network(i, &network), REFOCUS_OK);
+        assert_string_equal(refocus_cv_network_name(i), known[i].name);
+        assert_true(network.width == known[i].width && network.height == known[i].height);
+    }
     assert_int_equal(refocus_cv_network(99, &network), REFOCUS_ERR_ARGUMENT);
 }
 

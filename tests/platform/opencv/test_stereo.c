@@ -221,7 +221,7 @@ static void stereo_unrectified(void **state)
     static uint8_t left[3 * W * H], right[3 * W * H];
     static float d[W * H];
     const struct refocus_image a = picture(left), b = picture(right);
-    const struct refocus_stereo_params params = refocus_stereo_params_default();
+    struct refocus_stereo_params params = refocus_stereo_params_default();
     struct refocus_stereo_report report = refocus_stereo_report_default();
     struct refocus_cv_reason reason;
 
@@ -236,6 +236,12 @@ static void stereo_unrectified(void **state)
         assert_true(n || (report.vertical_offset == 0 && report.turn == 0 && report.grow == 0));
         check_disparities(d, 96);
     }
+    /* The first camera as the second one sees it. */
+    params.order = REFOCUS_STEREO_RIGHT_FIRST;
+    make_sines(left, right, apart[1]);
+    assert_int_equal(refocus_cv_stereo(&b, &a, &params, d, &report, &reason), REFOCUS_OK);
+    assert_true(fabs((double)report.vertical_offset + 2) < 0.15);
+    assert_true(fabs((double)report.turn + 0.012) < 0.001);
 }
 
 /* The second picture has so much of the codes of the first one. */
