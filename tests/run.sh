@@ -335,7 +335,7 @@ uninitialised_stage() {
     suites=(core papers kernels file capture strokes fuzz)
     CC=clang CXX=clang++ build msan --buildtype=debugoptimized -Db_sanitize=memory -Db_lundef=false \
         -Dauto_features=disabled -Dtests=enabled -Dsimd=enabled -Dexamples=false "${one_set[@]}" \
-        "-Dc_args=-fsanitize-ignorelist=$lists/memory.txt -fsanitize-memory-track-origins" || return
+        "-Dc_args=-fsanitize-ignorelist='$lists/memory.txt' -fsanitize-memory-track-origins" || return
     clang -shared -fPIC -o "$builds/msan/stat.so" "$lists/stat.c" ||
         { fail 'msan: tests/sanitizers/stat.c'; return; }
     run msan --timeout-multiplier 20 --wrapper "env 'LD_PRELOAD=$builds/msan/stat.so'"
@@ -352,7 +352,7 @@ integer_stage() {
     CC=clang CXX=clang++ build integer --buildtype=debugoptimized -Db_lundef=false \
         -Dauto_features=disabled -Dtests=enabled -Dsimd=disabled -Dexamples=false \
         -Djpeg=enabled -Dpng=enabled -Dxmp=enabled "-Dc_link_args=-fsanitize=$checks" \
-        "-Dc_args=-fsanitize=$checks -fno-sanitize-recover=all -fsanitize-ignorelist=$lists/integer.txt" ||
+        "-Dc_args=-fsanitize=$checks -fno-sanitize-recover=all -fsanitize-ignorelist='$lists/integer.txt'" ||
         return
     REFOCUS_BRIEF=1 run integer --timeout-multiplier 5
 }
