@@ -79,7 +79,8 @@ static void go_on(struct server *server, struct process *process)
     process->until_ms = process->used_ms + 1e3 * SECONDS_WORK;
     if (!send_all(process->socket, &request->ask, sizeof request->ask) ||
         !send_all(process->socket, request->body, request->ask.bytes))
-        process_end(server, process, MHD_HTTP_GONE, "its process has failed; open the photo again");
+        process_end(server, process, MHD_HTTP_BAD_GATEWAY,
+                    "its process has failed; open the photo again");
 }
 
 static void queue(struct process *process, struct request *request)
@@ -284,12 +285,13 @@ static void finish(struct server *server, struct process *process)
         go_on(server, process);
 }
 
+/* The request may make the next process fail, too: it is told apart from the end of a session. */
 static void fail(struct server *server, struct process *process)
 {
     const bool opens = process->running && process->running->ask.what == RF_WEB_OPEN;
 
     process_end(server, process,
-                !process->session || opens ? MHD_HTTP_UNPROCESSABLE_CONTENT : MHD_HTTP_GONE,
+                !process->session || opens ? MHD_HTTP_UNPROCESSABLE_CONTENT : MHD_HTTP_BAD_GATEWAY,
                 "its process has failed, perhaps for want of memory; open the photo again");
 }
 

@@ -225,6 +225,18 @@ class Limits(Serving):
         self.refused(410, 'ended|failed', self.server.picture(lost, 1, {}))
         self.assertEqual(self.server.picture(kept, 1, {}).status, 200)
 
+    def test_killed_at_work(self):
+        """What a request makes fail is told apart from a session that has ended."""
+        lost = self.server.open('none.jpg')
+        pid = max(self.server.children())
+        os.kill(pid, signal.SIGSTOP)
+        with concurrent.futures.ThreadPoolExecutor(1) as pool:
+            asked = pool.submit(self.server.picture, lost, 1, {})
+            time.sleep(0.5)
+            os.kill(pid, signal.SIGKILL)
+            self.refused(502, 'failed', asked.result())
+        self.refused(410, 'ended', self.server.picture(lost, 2, {}))
+
     def test_hostile_requests(self):
         noise = random.Random(7)
         session = self.opened()

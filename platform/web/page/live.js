@@ -3,7 +3,7 @@
 // which is opened as a photo.
 import { $, announce, announceError } from './dom.js';
 import { listen, model, settings } from './model.js';
-import { capture, frame } from './server.js';
+import { capture, frame, isLost } from './server.js';
 import { openFile, openLiveAgain } from './opening.js';
 import { theStage } from './viewer.js';
 import { say } from './words.js';
@@ -34,8 +34,8 @@ async function run() {
             else
                 bitmap.close();
         } catch (error) {
-            if (error.status === 410)
-                break; // the session is opened again by others
+            if (isLost(error))
+                break; // it is opened again by others
             announceError(error);
             if (!passes(error))
                 break;

@@ -4,13 +4,16 @@ import { model, openPhoto, setTab } from './model.js';
 import * as server from './server.js';
 import { fromLink } from './settings.js';
 import { strokesMade } from './painting.js';
+import { onPicture, thePictures } from './viewer.js';
 import { say } from './words.js';
 
 const AT_ONCE = 2; // small pictures that are asked for at a time
+const MOST_FAILURES = 2; // then full pictures are taken for what makes its process fail
 
 let listed = { photos: [] };
 let source = null; // { name } in the folder or { file }: what is open
 let opening = false;
+let failures = 0; // processes of this photo that have failed since its last full picture
 
 export function showScreen(screen) {
     document.body.dataset.screen = screen;
@@ -26,7 +29,7 @@ export function showScreen(screen) {
 }
 
 /** True when it was opened; if not, the line says why. */
-async function open(what, look = null, own = {}) {
+async function open(what, look = null, own = {}, failed = 0) {
     const name = what.live ? say('live') : what.name ?? what.file.name;
 
     if (opening)
@@ -45,6 +48,8 @@ async function open(what, look = null, own = {}) {
         if (model.photo)
             server.close(model.photo.session);
         source = what;
+        failures = failed;
+        thePictures().quickAlone = failures >= MOST_FAILURES;
         show(photo, look, own);
         done = true;
     } catch (error) {
@@ -67,21 +72,21 @@ function show(photo, look, own) {
         $('stage').focus({ preventScroll: true });
 }
 
-/** The server has forgotten the session: the photo is opened again, with the settings and the
- * strokes that it had. */
-async function openAgain() {
-    if (!source || opening)
+/** The session is no more: the photo is opened again, with the settings and the strokes that it
+ * had, and by quick pictures alone where full ones make its process fail. */
+async function openAgain(session, failed) {
+    if (!source || opening || session !== model.photo.session)
         return;
-    if (source.live) {
-        await open(source, model.look?.name, model.own);
+    if (failed && failures++ === MOST_FAILURES) { // until something else is asked of it
+        announce(say('failsAlways', { name: $('name').textContent }), true);
         return;
     }
-    const { tab } = model;
-    if (await open(source, model.look?.name, model.own)) {
-        setTab(tab);
-        await strokesMade();
-        announce(say('openedAgain', { name: model.photo.name }));
-    }
+    const quick = failures >= MOST_FAILURES, { tab } = model;
+    if (!await open(source, model.look?.name, model.own, failures) || source.live)
+        return;
+    setTab(tab);
+    await strokesMade();
+    announce(say(quick ? 'quickAlone' : 'openedAgain', { name: model.photo.name }), quick);
 }
 
 export const openFile = (file) => open({ file });
@@ -181,6 +186,10 @@ export async function startOpening() {
 
     startDrop();
     server.onLost(openAgain);
+    onPicture((bitmap, job) => {
+        if (!job.quick && !job.kind)
+            failures = 0;
+    });
     showScreen('open');
     $('open').addEventListener('click', () => {
         showScreen('open');

@@ -22,6 +22,7 @@ export class Pictures {
         this.looks = []; // { settings, size, done }
         this.quick = QUICK_MOST;
         this.held = false; // a finger is down
+        this.quickAlone = false; // full pictures cost too much
         this.paused = 0; // questions of other kinds that are under way
         this.waiting = []; // called when the quick picture is there
         this.rested = 0;
@@ -94,11 +95,13 @@ export class Pictures {
             return { what: 'picture', key: now, size: smaller, quick: true, ...this.job(wanted) };
         if (this.held || performance.now() < this.rested)
             return null;
-        if (!covers(shown.size, wanted.size))
+        const full = !this.quickAlone;
+        if (full && !covers(shown.size, wanted.size))
             return { what: 'picture', key: now, size: wanted.size, ...this.job(wanted) };
         if (wanted.before && (this.before.session !== wanted.session ||
-                !covers(this.before.size, wanted.size)))
-            return { what: 'before', size: wanted.size, session: wanted.session,
+                full && !covers(this.before.size, wanted.size)))
+            return { what: 'before', size: full ? wanted.size : this.quick, quick: !full,
+                session: wanted.session,
                 settings: over(wanted.settings, { [NAMES.blur]: 0 }) };
         const look = this.looks.shift();
         return look ? { what: 'look', quick: true, session: wanted.session, ...look } : null;

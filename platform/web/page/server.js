@@ -21,12 +21,16 @@ async function explain(response) {
         : say('refused', { status: response.status });
 }
 
+const ENDED = 410, FAILED = 502; // a session is no more: forgotten, or its process has failed
 let lost = () => {};
 
-/** `heard` is called when the server has forgotten the session, which it may do for memory. */
+/** `heard(session, failed)` is called when a session is no more: the server has forgotten it, which
+ * it may do for memory, or its process has failed. */
 export function onLost(heard) {
     lost = heard;
 }
+
+export const isLost = (error) => error.status === ENDED || error.status === FAILED;
 
 function address(path, query) {
     const text = new URLSearchParams(query).toString();
@@ -44,9 +48,10 @@ async function ask(method, path, query, body, signal) {
         throw new ServerError(0, say('unreachable'));
     }
     if (!response.ok) {
-        if (response.status === 410)
-            lost();
-        throw new ServerError(response.status, await explain(response));
+        const error = new ServerError(response.status, await explain(response));
+        if (isLost(error))
+            lost(query.session, error.status === FAILED);
+        throw error;
     }
     return response;
 }

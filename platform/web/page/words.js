@@ -28,6 +28,9 @@ const words = {
     noPhoto: 'That is no photo.',
     tooLarge: '{name} is too large: this server takes up to {n} MiB.',
     openedAgain: '{name} is open again, as it was.',
+    failsAlways: 'The process of {name} fails again and again, perhaps for want of memory.',
+    quickAlone: '{name} is open again, by quick pictures alone: its process has failed twice, ' +
+        'perhaps for want of memory. To try full ones, open it anew.',
 
     // the picture
     stage: 'Photo',

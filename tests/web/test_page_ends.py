@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""usage: test_page_ends.py REFOCUS  -- what the page of refocus serve does when a session, its process or the
+server ends.
+
+Exit status 77, after saying so, where Chromium, its driver or Selenium is missing."""
+import os
+import signal
+import sys
+import time
+import unittest
+
+import browser
+from browser import SLOW, difference
+from page import Page, WALL
+
+# Full pictures are asked for once `release` is called.
+HOLD = '''
+const ask = window.fetch;
+window.held = [];
+window.fetch = async (address, ...more) => {
+    if (/^picture\\?/.test(address) && !address.includes('quick=1'))
+        await new Promise((release) => window.held.push(release));
+    return ask(address, ...more);
+};
+'''
+
+
+class Ends(Page):
+    def children(self):
+        with open('/proc/%d/task/%d/children' % (self.server.pid, self.server.pid)) as file:
+            return [int(pid) for pid in file.read().split()]
+
+    def kill_at_full_picture(self):
+        """The process of the photo ends while it works on a full picture, as for want of memory."""
+        b = self.browser
+        b.until(lambda: b.run('return window.held.length > 0'), 'full picture')
+        for pid in self.children():
+            os.kill(pid, signal.SIGSTOP)
+        b.run('window.held.splice(0).forEach((release) => release())')
+        time.sleep(0.5 * SLOW)
+        for pid in self.children():
+            os.kill(pid, signal.SIGKILL)
+
+    def test_full_pictures_that_fail(self):
+        """They are given up after the second time: the photo was opened again and again."""
+        b = self.browser
+        self.allowed = ('status of', )  # Chromium reports what the server refuses
+        self.open()
+        b.run(HOLD)
+        b.tap(*WALL)
+        self.kill_at_full_picture()
+        b.until(lambda: 'as it was' in b.text('said'), 'photo that is open again')
+        self.kill_at_full_picture()
+        b.until(lambda: 'quick pictures alone' in b.text('said'), 'line that says why')
+        before = b.samples()
+        b.find('blur').send_keys(browser.Keys.END)
+        blurred = b.samples()
+        self.assertGreater(difference(before, blurred), 0.05)
+        b.click('compare')
+        self.assertGreater(difference(blurred, b.samples()), 0.05)
+        self.assertEqual(b.run('return window.held.length'), 0)
+        # Opened anew, it is tried again.
+        b.click('open')
+        self.card('deep.jpg').click()
+        b.until(lambda: b.run('return window.held.length > 0'), 'full picture')
+        b.run('window.held.splice(0).forEach((release) => release())')
+        b.rest()
+
+
+if __name__ == '__main__':
+    if browser.missing():
+        print('SKIPPED: ' + browser.missing())
+        sys.exit(77)
+    unittest.main()
