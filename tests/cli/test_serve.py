@@ -132,8 +132,15 @@ class Answers(Serving):
         brush = {'kind': 'brush', 'radius': 12, 'points': [[40, 40], [60, 50]], 'disparity': 0.95}
         settings = {'focus': 0.95, 'blur': 9}
         before = self.server.picture(session, 1, settings).body
-        self.assertEqual(ask('stroke', ground).json, {'strokes': 1, 'undone': 0})
-        self.assertEqual(ask('stroke', brush).json, {'strokes': 2, 'undone': 0})
+        self.assertIsNone(session['range'])
+        made = ask('stroke', ground).json
+        self.assertAlmostEqual(made['range'][0], 0.1, delta=0.001)
+        self.assertAlmostEqual(made['range'][1], 0.9, delta=0.001)
+        self.assertEqual(made, {'strokes': 1, 'undone': 0, 'range': made['range']})
+        ground_range = made['range']
+        made = ask('stroke', brush).json
+        self.assertEqual(made, {'strokes': 2, 'undone': 0, 'range': made['range']})
+        self.assertAlmostEqual(made['range'][1], 0.95, delta=0.001)
         painted = self.server.picture(session, 2, settings).body
         self.assertNotEqual(painted, before)
         file = self.server.get('strokes?session=' + session['session']).json
@@ -145,16 +152,16 @@ class Answers(Serving):
         self.assertTrue(painted == self.rendered(settings, '--strip', '--depth', 'painted.png',
                                                  '--depth-edges', 'as-given',
                                                  photo='photos/none.jpg'))
-        self.assertEqual(ask('undo').json, {'strokes': 1, 'undone': 1})
-        self.assertEqual(ask('undo').json, {'strokes': 0, 'undone': 2})
+        self.assertEqual(ask('undo').json, {'strokes': 1, 'undone': 1, 'range': ground_range})
+        self.assertEqual(ask('undo').json, {'strokes': 0, 'undone': 2, 'range': None})
         self.refused(409, 'none to undo', ask('undo'))
         self.assertTrue(self.server.picture(session, 3, settings).body == before)
-        self.assertEqual(ask('redo').json, {'strokes': 1, 'undone': 1})
-        self.assertEqual(ask('redo').json, {'strokes': 2, 'undone': 0})
+        self.assertEqual(ask('redo').json, {'strokes': 1, 'undone': 1, 'range': ground_range})
+        self.assertEqual(ask('redo').json, made)
         self.refused(409, 'none to do again', ask('redo'))
         self.assertTrue(self.server.picture(session, 4, settings).body == painted)
         ask('undo')
-        self.assertEqual(ask('stroke', brush).json, {'strokes': 2, 'undone': 0})
+        self.assertEqual(ask('stroke', brush).json, made)
         for wrong in ({'kind': 'other'}, {'kind': 'all', 'disparity': 2}, [], 3, b'', b'{"kind"',
                       {'kind': 'brush', 'radius': 5, 'points': []},
                       {'kind': 'brush', 'radius': 5, 'points': [[1e9, 0]], 'disparity': 0.5}):
@@ -191,16 +198,17 @@ class Answers(Serving):
         self.refused(400, 'stroke: ', ask('draft', {'kind': 'other'}))
         self.assertTrue(picture(3) == before)
         ask('draft', short)
-        self.assertEqual(ask('stroke', long).json, {'strokes': 1, 'undone': 0})
+        made = ask('stroke', long).json
+        self.assertEqual(made, {'strokes': 1, 'undone': 0, 'range': made['range']})
         self.assertTrue(picture(4) == drafted)
         ask('draft', {'kind': 'all', 'disparity': 0.5})
         self.assertEqual(ask('draft', {}).json, {'strokes': 1, 'undone': 0, 'selection': None})
         ask('draft', short)
-        self.assertEqual(ask('undo').json, {'strokes': 0, 'undone': 1})
+        self.assertEqual(ask('undo').json, {'strokes': 0, 'undone': 1, 'range': None})
         ask('draft', short)
         self.assertEqual(len(self.server.get('strokes?session=' + session['session'])
                              .json['strokes']), 0)
-        self.assertEqual(ask('redo').json, {'strokes': 1, 'undone': 0})
+        self.assertEqual(ask('redo').json, made)
         self.assertTrue(picture(5) == drafted)
 
     def test_pull(self):

@@ -84,15 +84,18 @@ static json_t *looks_json(void)
     return list;
 }
 
-static json_t *range_json(const struct serving *s)
+json_t *serve_range_json(const struct serving *s)
 {
     const size_t pixels =
         (size_t)s->input.photo->image->width * (size_t)s->input.photo->image->height;
+    const uint16_t *const disparity = serve_disparity(s);
     uint16_t least = 65535, most = 0;
 
+    if (!s->has_depth && !serve_is_painted(s))
+        return json_null();
     for (size_t i = 0; i < pixels; i++) {
-        least = s->placed[i] < least ? s->placed[i] : least;
-        most = s->placed[i] > most ? s->placed[i] : most;
+        least = disparity[i] < least ? disparity[i] : least;
+        most = disparity[i] > most ? disparity[i] : most;
     }
     return json_pack("[f, f]", least / 65535.0, most / 65535.0);
 }
@@ -148,8 +151,8 @@ static json_t *session_json(const struct serving *s, json_t *settings)
         "{s:b, s:s, s:o, s:i, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o}", "live", s->feed != NULL,
         "session", s->work->session, "name", report_text_json(s->work->name), "width",
         (int)photo->width, "height", (int)photo->height, "depth", s->has_depth, "f_number",
-        number > 0 ? json_real(number) : json_null(), "range", range_json(s), "settings", settings,
-        "limits", limits_json(s), "presets", looks_json(), "films", serve_films_json());
+        number > 0 ? json_real(number) : json_null(), "range", serve_range_json(s), "settings",
+        settings, "limits", limits_json(s), "presets", looks_json(), "films", serve_films_json());
 }
 
 void serve_answer_session(struct serving *s)

@@ -9,6 +9,15 @@ static json_t *count_json(const struct serving *s)
                      (int)json_array_size(s->undone));
 }
 
+/* The answer to what has changed the strokes. */
+static json_t *strokes_json(const struct serving *s)
+{
+    json_t *const object = count_json(s);
+
+    json_object_set_new(object, "range", serve_range_json(s));
+    return object;
+}
+
 static int failed(int status, const char *words)
 {
     return report_failure(EXIT_WRONG, "stroke", "%s", words[0] ? words : refocus_strerror(status));
@@ -155,7 +164,7 @@ void serve_answer_stroke(struct serving *s, const char *bytes, size_t size)
     }
     set_draft(s, NULL);
     json_array_clear(s->undone);
-    answer_json(s, count_json(s));
+    answer_json(s, strokes_json(s));
 }
 
 /* The selection of the last stroke, in the size of the reduced photo: first pixel and length of
@@ -251,7 +260,7 @@ void serve_answer_undo(struct serving *s, bool again)
         status = again ? redo(s) : undo(s);
     s->small_stale = s->full_stale = true;
     if (status == EXIT_DONE)
-        answer_json(s, count_json(s));
+        answer_json(s, strokes_json(s));
     else
         answer_failure(s, ANSWER_REPLACED);
 }

@@ -100,6 +100,9 @@ void serve_answer_focus(struct serving *s, const char *bytes, size_t size);
 /* Make what follows from the photo and its size: the reduced one. An exit code. */
 int serve_reduce(struct serving *s);
 
+/* The least and the greatest disparity, null without depth. */
+json_t *serve_range_json(const struct serving *s);
+
 /* live.c: frames of cameras in place of a photo; exit codes. */
 
 /* The settings when no camera is given, and the check of those that are. */

@@ -14,14 +14,19 @@ const percent = (part) => Math.round(100 * part);
 /** The blur is that of a lens, whose f-number is known. */
 const metric = () => Boolean(model.photo.limits.f_number && settings()[NAMES.fNumber]);
 
-const range = () => model.photo.range ?? [0, 1];
+/** Where the focus may be: all of it where there is no depth, or one alone. */
+function range() {
+    const [least, most] = model.photo.range ?? [0, 1];
+
+    return least < most ? [least, most] : [0, 1];
+}
 
 // Each slider: `part(settings)` is where it stands from 0 to 1, `value(part)` what that means, and
 // `text(settings)` what is said of it.
 const SLIDERS = {
     focus: {
         ends: ['far', 'near'],
-        part: (s) => (s[NAMES.focus] - range()[0]) / (range()[1] - range()[0] || 1),
+        part: (s) => (s[NAMES.focus] - range()[0]) / (range()[1] - range()[0]),
         value: (p) => ({ [NAMES.focus]: range()[0] + p * (range()[1] - range()[0]) }),
         text: (s) => say('focusAt', { n: percent(s[NAMES.focus]) }),
     },

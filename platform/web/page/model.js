@@ -87,9 +87,10 @@ export function restore(look, own) {
     tell('settings');
 }
 
-export function depthChanged() {
+/** Strokes have changed the depth; `range` is that of its disparities. */
+export function depthChanged(range) {
     model.depth++;
-    model.photo.depth = true;
+    Object.assign(model.photo, { depth: true, range });
     tell('depth');
 }
 

@@ -58,9 +58,10 @@ function send(made) {
     const { photo } = model, what = inPixels(made);
 
     later(async () => {
+        let range;
         try {
             await drafts.end();
-            await thePictures().pauseFor(() => stroke(photo.session, what));
+            ({ range } = await thePictures().pauseFor(() => stroke(photo.session, what)));
         } finally {
             theStage().set({ path: null, selection: null });
         }
@@ -69,7 +70,7 @@ function send(made) {
         done.push({ kind: made.kind, what });
         undone = [];
         announce(say('painted', { kind: say(made.kind) }));
-        depthChanged();
+        depthChanged(range);
     });
 }
 
@@ -79,16 +80,17 @@ export const strokesMade = () => queue;
 /** Make the strokes that are kept again, on a session that is new. */
 async function paintAgain(photo) {
     const strokes = keptStrokes(photo);
+    let range;
 
     for (const { what } of strokes) {
         if (photo !== model.photo)
             return;
-        await thePictures().pauseFor(() => stroke(photo.session, what));
+        ({ range } = await thePictures().pauseFor(() => stroke(photo.session, what)));
     }
     if (strokes.length === 0 || photo !== model.photo)
         return;
     done = strokes;
-    depthChanged();
+    depthChanged(range);
     announce(say('openedAgain', { name: photo.name }));
 }
 
@@ -96,16 +98,20 @@ async function paintAgain(photo) {
 function step(count) {
     const { photo } = model;
 
+    if (count === 0)
+        return;
     later(async () => {
+        let range;
         for (let i = 0; i < Math.abs(count); i++) {
-            await thePictures().pauseFor(() => (count < 0 ? undo : redo)(photo.session));
+            ({ range } = await thePictures().pauseFor(() =>
+                (count < 0 ? undo : redo)(photo.session)));
             if (count < 0)
                 undone.push(done.pop());
             else
                 done.push(undone.pop());
         }
         announce(say(count < 0 ? 'undone' : 'redone'));
-        depthChanged();
+        depthChanged(range);
     });
 }
 

@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+"""usage: test_page_parts.py REFOCUS  -- what one part of the page of refocus serve does to another.
+
+Exit status 77, after saying so, where Chromium, its driver or Selenium is missing."""
+import sys
+import unittest
+
+import browser
+from browser import difference
+from page import Page
+
+
+class Parts(Page):
+    def strokes(self, count):
+        b = self.browser
+        b.until(lambda: len(b.all('#strokes li')) == count, '%d strokes' % count)
+
+    def slide(self, name, value):
+        """Put a slider somewhere, 0 to 1000; returns what it says."""
+        self.browser.run('''const slider = document.getElementById(arguments[0]);
+            slider.value = arguments[1];
+            slider.dispatchEvent(new Event('input', { bubbles: true }));''', name, value)
+        self.browser.rest()
+        return self.browser.find(name).get_attribute('aria-valuetext')
+
+    def test_focus_follows_what_is_painted(self):
+        """The slider goes over the depth there is now: it stayed at 0 %."""
+        b = self.browser
+        self.open('flat.jpg')
+        b.drag([(0.5, 0.98), (0.5, 0.3)])  # from 80 % to 20 %
+        self.strokes(1)
+        self.tab('adjust')
+        self.assertEqual([self.slide('focus', value) for value in (1000, 500, 0)],
+                         ['80 %', '50 %', '20 %'])
+        self.tab('paint')
+        b.pick('brushes', 'object')
+        self.slide('depth-from', 1000)
+        b.drag([(0.5, 0.5), (0.6, 0.5)])
+        self.strokes(2)
+        self.tab('adjust')
+        self.assertEqual(self.slide('focus', 1000), '100 %')
+        self.tab('paint')
+        b.click('undo')
+        b.until(lambda: b.all('#strokes .undone'), 'undo')
+        self.tab('adjust')
+        self.assertEqual(self.slide('focus', 999), '80 %')
+
+
+if __name__ == '__main__':
+    if browser.missing():
+        print('SKIPPED: ' + browser.missing())
+        sys.exit(77)
+    unittest.main()
