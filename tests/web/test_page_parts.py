@@ -45,6 +45,20 @@ class Parts(Page):
         self.tab('adjust')
         self.assertEqual(self.slide('focus', 999), '80 %')
 
+    def test_key_frames_of_each_view(self):
+        """A focus can be marked while the depth is looked at, with its picture."""
+        b = self.browser
+        self.open()
+        for view in ('depth', 'blur', 'peaking', 'picture'):
+            b.pick('views', view)
+            b.rest()
+            self.tab('pull')
+            b.click('mark')
+        self.assertEqual(len(b.all('#keys li')), 4)
+        pictures = b.run("""return [...document.querySelectorAll('#keys canvas')]
+            .map((one) => one.toDataURL())""")
+        self.assertEqual(len(set(pictures)), 1)
+
 
 if __name__ == '__main__':
     if browser.missing():

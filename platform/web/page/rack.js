@@ -13,8 +13,12 @@ const USUAL = 1.5; // seconds from key to key
 const THUMB = 128;
 
 let keys = []; // { wait, own, look, settings, canvas }: wait is seconds from the one before
-let latest = null; // the picture that is seen
+const latest = thumbnail(); // of the last picture, which is gone with the next one
 let playing = 0, at = 0, time;
+
+function thumbnail() {
+    return make('canvas', { width: THUMB, height: THUMB, 'aria-hidden': 'true' });
+}
 
 const total = () => keys.reduce((sum, key) => sum + key.wait, 0);
 
@@ -77,11 +81,10 @@ function play() {
 }
 
 function mark() {
-    const canvas = make('canvas', { width: THUMB, height: THUMB, 'aria-hidden': 'true' });
+    const canvas = thumbnail();
 
     leave();
-    if (latest)
-        drawSquare(canvas, latest);
+    canvas.getContext('2d').drawImage(latest, 0, 0);
     keys.push({ wait: keys.length ? USUAL : 0, own: { ...model.own }, look: model.look,
         settings: settings(), canvas });
     announce(say('marked', { n: keys.length }));
@@ -174,13 +177,13 @@ export function startRack() {
     $('play').addEventListener('click', () => (playing ? stop() : play()));
     onPicture((bitmap, job) => {
         if (!job.kind)
-            latest = bitmap;
+            drawSquare(latest, bitmap);
     });
     listen((cause) => {
         if (cause === 'photo') {
             leave();
             keys = [];
-            latest = null;
+            latest.width = THUMB; // empties it
             makeSaveButtons();
             showKeys();
         } else if (cause !== 'view') {
