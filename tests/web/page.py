@@ -87,6 +87,11 @@ class Page(unittest.TestCase):
         self.browser.until(lambda: self.browser.text('name') == name, 'open ' + name)
         return self.browser.samples()
 
+    def send(self, path):
+        """Send a file of the device."""
+        self.browser.run("document.getElementById('file').hidden = false")
+        self.browser.find('file').send_keys(path)
+
     def tab(self, name):
         self.browser.click('tab-' + name)
 

@@ -2,12 +2,12 @@
 """usage: test_page_parts.py REFOCUS  -- what one part of the page of refocus serve does to another.
 
 Exit status 77, after saying so, where Chromium, its driver or Selenium is missing."""
+import os
 import sys
 import unittest
 
 import browser
-from browser import difference
-from page import Page
+from page import Page, SCENE, refocus
 
 
 class Parts(Page):
@@ -44,6 +44,27 @@ class Parts(Page):
         b.until(lambda: b.all('#strokes .undone'), 'undo')
         self.tab('adjust')
         self.assertEqual(self.slide('focus', 999), '80 %')
+
+    def test_strokes_of_one_name(self):
+        """What was painted on one `image.jpg` comes again on that one, and on no other."""
+        b = self.browser
+        paths = []
+        for name, blur in ('a', '0'), ('b', '30'):
+            os.mkdir(os.path.join(self.folder, name))
+            paths.append(os.path.join(self.folder, name, 'image.jpg'))
+            refocus('render', SCENE + 'allfocus.png', '--depth', SCENE + 'disparity.png', '--blur',
+                    blur, '--strip', '-o', paths[-1])
+        for i, path in enumerate((paths[0], paths[1], paths[0])):
+            b.run("document.getElementById('name').textContent = ''")
+            self.send(path)
+            b.until(lambda: b.text('name') == 'image.jpg', 'photo that was sent')
+            if i == 2:
+                b.until(lambda: 'are there again' in b.text('said'), 'line')
+            b.rest()
+            self.assertEqual(len(b.all('#strokes li')), i // 2, i)
+            if i == 0:
+                b.drag([(0.5, 0.98), (0.5, 0.3)])
+                self.strokes(1)
 
     def test_key_frames_of_each_view(self):
         """A focus can be marked while the depth is looked at, with its picture."""

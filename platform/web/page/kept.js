@@ -2,8 +2,9 @@
 // is there, also when the page is left or loaded anew.
 const here = new Map();
 
-/** The link of another server leads to other photos. */
-const key = ({ name, width, height }) => `${location.pathname}${name} ${width}x${height}`;
+/** The link of another server leads to other photos, and all that phones send may have one name. */
+const key = ({ name, width, height, sent }) =>
+    `${location.pathname}${name} ${width}x${height} ${sent}`;
 
 export function keepStrokes(photo, strokes) {
     const text = JSON.stringify(strokes);

@@ -4,7 +4,9 @@ import { NAMES, over, without } from './settings.js';
 import { lineThrough, turnOf } from './tilt.js';
 
 export const model = {
-    photo: null, // as the server told it: session, name, width, height, depth, limits, presets...
+    // As the server told it: session, name, width, height, depth, limits, presets... And `sent`,
+    // which tells photos that were sent from each other, '' of others.
+    photo: null,
     look: null, // the preset that was chosen
     own: {}, // settings that the person gave
     depth: 0, // rises whenever strokes change the depth

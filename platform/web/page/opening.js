@@ -48,6 +48,7 @@ async function open(what, look = null, own = {}, failed = 0) {
         if (model.photo)
             server.close(model.photo.session);
         source = what;
+        photo.sent = what.file ? `${what.file.size} ${what.file.lastModified}` : '';
         failures = failed;
         thePictures().quickAlone = failures >= MOST_FAILURES;
         show(photo, look, own);

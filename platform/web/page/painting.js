@@ -91,7 +91,7 @@ async function paintAgain(photo) {
         return;
     done = strokes;
     depthChanged(range);
-    announce(say('openedAgain', { name: photo.name }));
+    announce(say('strokesAgain', { name: photo.name }));
 }
 
 /** Back or forth by a number of strokes. */

@@ -127,6 +127,7 @@ const words = {
     forthTo: 'Forth to stroke {n}, {kind}',
     penDown: 'Brush down.',
     painted: '{kind} painted.',
+    strokesAgain: '{name}: the strokes from before are there again.',
     undone: 'Undone.',
     redone: 'Redone.',
 
