@@ -7,6 +7,7 @@ import sys
 import unittest
 
 import browser
+from browser import difference
 from page import Page, SCENE, refocus
 
 
@@ -65,6 +66,33 @@ class Parts(Page):
             if i == 0:
                 b.drag([(0.5, 0.98), (0.5, 0.3)])
                 self.strokes(1)
+
+    def test_a_stroke_that_is_left(self):
+        """Put down by keys, the brush leaves nothing behind when another tab or photo is opened."""
+        b, keys = self.browser, browser.Keys
+        self.open()
+        b.pick('views', 'depth')
+        depth = b.samples()
+
+        def begin():
+            self.tab('paint')
+            b.pick('brushes', 'object')
+            b.run("document.getElementById('stage').focus()")
+            b.press(keys.ENTER, *[keys.ARROW_LEFT] * 4)
+            self.changes(depth, 'the unfinished stroke', 0.5)
+        begin()
+        self.tab('adjust')
+        b.run("document.getElementById('stage').focus()")
+        b.press(keys.ESCAPE)  # the cross goes
+        b.until(lambda: difference(depth, b.samples()) == 0, 'depth as before')
+        begin()
+        b.click('open')
+        self.open('flat.jpg')
+        b.run("document.getElementById('stage').focus()")
+        b.press(keys.ENTER)
+        self.assertEqual(b.text('said'), 'Brush down.')
+        b.rest()
+        self.assertEqual(b.all('#strokes li'), [])
 
     def test_key_frames_of_each_view(self):
         """A focus can be marked while the depth is looked at, with its picture."""

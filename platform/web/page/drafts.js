@@ -71,7 +71,7 @@ export class Drafts {
         await this.sending;
         const photo = this.sent;
         this.sent = null;
-        if (!photo)
+        if (!photo || photo !== model.photo)
             return;
         await thePictures().pauseFor(() => draft(photo.session, {}));
         draftChanged();

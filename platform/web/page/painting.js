@@ -273,6 +273,8 @@ export function startPainting() {
     listen((cause) => {
         if (cause === 'photo')
             readStrokes();
+        if (cause === 'photo' || cause === 'tab' && model.tab !== 'paint')
+            brush.cancel();
         if (cause === 'photo' || cause === 'tab')
             setBrush(model.tab === 'paint' ? brush : null);
         if (cause === 'depth') {
