@@ -94,6 +94,29 @@ class Parts(Page):
         b.rest()
         self.assertEqual(b.all('#strokes li'), [])
 
+    def test_steps_before_the_last_one_is_done(self):
+        """A stroke in the list that is clicked twice is gone to once; keys go no farther than all."""
+        b = self.browser
+        self.open('flat.jpg')
+        for i in range(4):
+            b.drag([(0.2 + 0.1 * i, 0.98), (0.5, 0.3)])
+            self.strokes(i + 1)
+
+        def undone():
+            b.rest()
+            return len(b.all('#strokes .undone'))
+        b.run("""const stroke = document.querySelectorAll('#strokes button')[2];
+            stroke.click();
+            stroke.click();""")
+        self.assertEqual(undone(), 1)
+        b.run("""for (let i = 0; i < 5; i++)
+            dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true }));""")
+        self.assertEqual(undone(), 4)
+        self.assertEqual(b.text('said'), 'Undone.')
+        b.run("""document.getElementById('redo').click();
+            document.getElementById('redo').click();""")
+        self.assertEqual(undone(), 2)
+
     def test_key_frames_of_each_view(self):
         """A focus can be marked while the depth is looked at, with its picture."""
         b = self.browser

@@ -94,26 +94,31 @@ async function paintAgain(photo) {
     announce(say('strokesAgain', { name: photo.name }));
 }
 
-/** Back or forth by a number of strokes. */
-function step(count) {
+/** Back or forth until so many strokes are done: `wanted()` is asked once those before it are made. */
+function goTo(wanted) {
     const { photo } = model;
 
-    if (count === 0)
-        return;
     later(async () => {
+        const number = Math.min(Math.max(wanted(), 0), done.length + undone.length);
+        const back = number < done.length;
         let range;
-        for (let i = 0; i < Math.abs(count); i++) {
-            ({ range } = await thePictures().pauseFor(() =>
-                (count < 0 ? undo : redo)(photo.session)));
-            if (count < 0)
+        if (photo !== model.photo || number === done.length)
+            return;
+        while (done.length !== number) {
+            ({ range } = await thePictures().pauseFor(() => (back ? undo : redo)(photo.session)));
+            if (photo !== model.photo)
+                return;
+            if (back)
                 undone.push(done.pop());
             else
                 done.push(undone.pop());
         }
-        announce(say(count < 0 ? 'undone' : 'redone'));
+        announce(say(back ? 'undone' : 'redone'));
         depthChanged(range);
     });
 }
+
+const step = (by) => goTo(() => done.length + by);
 
 function showList() {
     const all = [...done, ...[...undone].reverse()];
@@ -128,7 +133,7 @@ function showList() {
             'aria-label': say(i < done.length ? 'backTo' : 'forthTo', values) });
         if (i === done.length - 1)
             button.setAttribute('aria-current', 'step');
-        button.addEventListener('click', () => step(i + 1 - done.length));
+        button.addEventListener('click', () => goTo(() => i + 1));
         return make('li', {}, button);
     }));
 }
