@@ -75,7 +75,12 @@ class Answers(Serving):
                                              session['first']), 1):
             self.assertTrue(self.server.picture(session, request, settings).body ==
                             self.rendered(settings, '--strip'))
-        self.assertNotIn('f-number', self.opened('none.jpg')['first'])
+        self.assertEqual(self.server.picture(session, 3, {'focus': 0.5, 'f-number': 4}).body,
+                         self.server.picture(session, 4, {
+                             'focus': 0.5, 'blur': session['f1_blur'] / 4}).body)
+        flat = self.opened('none.jpg')
+        self.assertNotIn('f-number', flat['first'])
+        self.assertIsNone(flat['f1_blur'])
 
     def test_quick_pictures(self):
         session = self.opened()

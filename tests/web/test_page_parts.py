@@ -131,6 +131,34 @@ class Parts(Page):
             .map((one) => one.toDataURL())""")
         self.assertEqual(len(set(pictures)), 1)
 
+    def metric(self):
+        """Send a photo whose depth is in metres."""
+        path = os.path.join(self.folder, 'metric.jpg')
+        refocus('depth', os.path.join(self.photos, 'flat.jpg'), '--depth', SCENE + 'disparity.png',
+                '--near', '1', '--far', '8', '-o', path)
+        self.send(path)
+        self.browser.until(lambda: self.browser.text('name') == 'metric.jpg', 'photo with metres')
+
+    def test_rack_focus_moves_the_aperture(self):
+        b = self.browser
+        self.metric()
+        for aperture in (1000, 0):
+            self.tab('adjust')
+            self.slide('aperture', aperture)
+            self.tab('pull')
+            b.click('mark')
+        moments = []
+        for moment in (0, 500, 1000):
+            self.slide('moment', moment)
+            moments.append(b.samples())
+        self.assertGreater(difference(moments[0], moments[1]), 0.5)
+        self.assertGreater(difference(moments[1], moments[2]), 0.5)
+        b.all('#keys .card')[0].click()
+        self.assertEqual(difference(moments[0], b.samples()), 0)
+        b.run("document.querySelector('[data-format=apng]').click()")
+        b.until(lambda: b.text('said').startswith('Saved'), 'film')
+        self.downloaded('.apng')
+
 
 if __name__ == '__main__':
     if browser.missing():

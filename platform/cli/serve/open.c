@@ -114,18 +114,24 @@ static json_t *limits_json(const struct serving *s)
                      "highlights", 1, 16);
 }
 
-/* The f-number that has a blur, in tenths; NAN: none does, or it is beyond the limits. */
-static double f_number_of(const struct serving *s, double blur)
+/* The blur of f/1, by which others have 1 / f-number of it; NAN: there are no f-numbers. */
+static double blur_of_f1(const struct serving *s)
 {
     struct lens_settings wide = s->base.lens;
     double most, number;
 
     wide.blur = NAN;
     wide.f_number = WIDEST;
-    if (!has_metres(s) || !(blur > 0) ||
-        input_blur_and_f_number(&s->input, &wide, &most, &number) != EXIT_DONE)
+    if (!has_metres(s) || input_blur_and_f_number(&s->input, &wide, &most, &number) != EXIT_DONE)
         return NAN;
-    number = round(10 * number * most / blur) / 10; /* the blur goes with 1 / number */
+    return number * most;
+}
+
+/* The f-number that has a blur, in tenths; NAN: none does, or it is beyond the limits. */
+static double f_number_of(const struct serving *s, double blur)
+{
+    const double number = blur > 0 ? round(10 * blur_of_f1(s) / blur) / 10 : NAN;
+
     return number >= WIDEST && number <= NARROWEST ? number : NAN;
 }
 
@@ -148,11 +154,12 @@ static json_t *session_json(const struct serving *s, json_t *settings)
     const double number = s->input.photo->info->f_number;
 
     return json_pack(
-        "{s:b, s:s, s:o, s:i, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o}", "live", s->feed != NULL,
-        "session", s->work->session, "name", report_text_json(s->work->name), "width",
-        (int)photo->width, "height", (int)photo->height, "depth", s->has_depth, "f_number",
-        number > 0 ? json_real(number) : json_null(), "range", serve_range_json(s), "settings",
-        settings, "limits", limits_json(s), "presets", looks_json(), "films", serve_films_json());
+        "{s:b, s:s, s:o, s:i, s:i, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "live",
+        s->feed != NULL, "session", s->work->session, "name", report_text_json(s->work->name),
+        "width", (int)photo->width, "height", (int)photo->height, "depth", s->has_depth, "f_number",
+        number > 0 ? json_real(number) : json_null(), "f1_blur", report_number_json(blur_of_f1(s)),
+        "range", serve_range_json(s), "settings", settings, "limits", limits_json(s), "presets",
+        looks_json(), "films", serve_films_json());
 }
 
 void serve_answer_session(struct serving *s)

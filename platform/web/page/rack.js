@@ -2,7 +2,7 @@
 import { $, announce, announceError, make, slider } from './dom.js';
 import { listen, model, restore, settings } from './model.js';
 import { pull } from './server.js';
-import { NAMES, over } from './settings.js';
+import { inPixels, over, NAMES } from './settings.js';
 import { drawSquare } from './looks.js';
 import { saveFile } from './saving.js';
 import { onPicture, showMoment } from './viewer.js';
@@ -19,6 +19,9 @@ let playing = 0, at = 0, time;
 function thumbnail() {
     return make('canvas', { width: THUMB, height: THUMB, 'aria-hidden': 'true' });
 }
+
+/** The settings now; blur moves in pixels from key to key. */
+const still = () => inPixels(settings(), model.photo);
 
 const total = () => keys.reduce((sum, key) => sum + key.wait, 0);
 
@@ -43,7 +46,7 @@ function settingsAt(seconds) {
         if (typeof a === 'number' && typeof b === 'number')
             between[name] = a + smooth * (b - a);
     }
-    return over(settings(), between);
+    return over(still(), between);
 }
 
 function showTime() {
@@ -86,7 +89,7 @@ function mark() {
     leave();
     canvas.getContext('2d').drawImage(latest, 0, 0);
     keys.push({ wait: keys.length ? USUAL : 0, own: { ...model.own }, look: model.look,
-        settings: settings(), canvas });
+        settings: still(), canvas });
     announce(say('marked', { n: keys.length }));
     showKeys();
 }
@@ -138,7 +141,7 @@ async function save(format, button) {
     const list = timed().map((key) => Object.fromEntries([['time', Number(key.time.toFixed(3))],
         ...MOVING.filter((of) => typeof key.settings[of] === 'number')
             .map((of) => [of, key.settings[of]])]));
-    const fixed = settings();
+    const fixed = still();
 
     for (const of of MOVING)
         delete fixed[of];

@@ -23,6 +23,14 @@ export function over(base, change) {
     return settings;
 }
 
+/** Settings whose blur is given in pixels: an f-number has a share of the photo's blur of f/1. */
+export function inPixels(settings, { f1_blur: most, limits }) {
+    const number = settings[NAMES.fNumber];
+
+    return number && most ? over(settings, { [NAMES.blur]: Math.min(most / number, limits.blur) })
+        : settings;
+}
+
 /** The `changes` of which `other` does not speak. */
 export function without(changes, other) {
     const left = {};
