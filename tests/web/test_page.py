@@ -91,10 +91,7 @@ class Use(Page):
         b.pick('views', 'depth')
         depth = b.samples()
         self.allowed = ('status of 4', )
-        b.run('''const name = performance.getEntriesByType('resource')
-                .findLast((one) => one.name.includes('/overlay?')).name;
-            return fetch(name.replace('/overlay?', '/close?'), { method: 'POST' })
-                .then((answer) => answer.text())''')
+        self.close_session()
         b.pick('views', 'blur')
         b.until(lambda: 'as it was' in b.text('said'), 'opening again')
         b.pick('views', 'depth')

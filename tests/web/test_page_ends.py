@@ -66,6 +66,24 @@ class Ends(Page):
         b.run('window.held.splice(0).forEach((release) => release())')
         b.rest()
 
+    def test_key_frames_outlive_the_session(self):
+        b = self.browser
+        self.allowed = ('status of 4', )
+        self.open()
+        self.tab('pull')
+        b.click('mark')
+        b.tap(*WALL)
+        b.rest()
+        b.click('mark')
+        self.close_session()
+        b.pick('views', 'blur')
+        b.until(lambda: 'as it was' in b.text('said'), 'photo that is open again')
+        self.assertEqual(len(b.all('#keys li')), 2)
+        self.assertTrue(b.seen('play'))
+        b.click('open')
+        self.open('flat.jpg')
+        self.assertEqual(len(b.all('#keys li')), 0)
+
 
 if __name__ == '__main__':
     if browser.missing():

@@ -7,6 +7,7 @@ export const model = {
     // As the server told it: session, name, width, height, depth, limits, presets... And `sent`,
     // which tells photos that were sent from each other, '' of others.
     photo: null,
+    again: false, // it was open before, in a session that is no more
     look: null, // the preset that was chosen
     own: {}, // settings that the person gave
     depth: 0, // rises whenever strokes change the depth
@@ -33,9 +34,9 @@ export function settings() {
     return over(over(model.photo.settings, model.look?.settings ?? {}), model.own);
 }
 
-export function openPhoto(photo, look, own) {
+export function openPhoto(photo, look, own, again) {
     Object.assign(model, {
-        photo, own, look: photo.presets?.find((preset) => preset.name === look) ?? null,
+        photo, own, again, look: photo.presets?.find((preset) => preset.name === look) ?? null,
         depth: 0, view: 'picture', mark: null, comparing: false,
     });
     tell('photo');

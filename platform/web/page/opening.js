@@ -29,7 +29,7 @@ export function showScreen(screen) {
 }
 
 /** True when it was opened; if not, the line says why. */
-async function open(what, look = null, own = {}, failed = 0) {
+async function open(what, look = null, own = {}, again = false) {
     const name = what.live ? say('live') : what.name ?? what.file.name;
 
     if (opening)
@@ -49,9 +49,10 @@ async function open(what, look = null, own = {}, failed = 0) {
             server.close(model.photo.session);
         source = what;
         photo.sent = what.file ? `${what.file.size} ${what.file.lastModified}` : '';
-        failures = failed;
+        if (!again)
+            failures = 0;
         thePictures().quickAlone = failures >= MOST_FAILURES;
-        show(photo, look, own);
+        show(photo, look, own, again);
         done = true;
     } catch (error) {
         announceError(error);
@@ -61,11 +62,11 @@ async function open(what, look = null, own = {}, failed = 0) {
     return done;
 }
 
-function show(photo, look, own) {
+function show(photo, look, own, again) {
     document.title = say('titleOf', { name: photo.live ? say('live') : photo.name });
     model.photo = photo;
     showScreen('edit');
-    openPhoto(photo, look, own);
+    openPhoto(photo, look, own, again);
     setTab(photo.depth ? 'adjust' : 'paint');
     announce(say(photo.live ? 'openedLive' : photo.depth ? 'opened' : 'openedFlat',
         { name: photo.name }));
@@ -83,7 +84,7 @@ async function openAgain(session, failed) {
         return;
     }
     const quick = failures >= MOST_FAILURES, { tab } = model;
-    if (!await open(source, model.look?.name, model.own, failures) || source.live)
+    if (!await open(source, model.look?.name, model.own, true) || source.live)
         return;
     setTab(tab);
     await strokesMade();

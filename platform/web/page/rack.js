@@ -185,7 +185,8 @@ export function startRack() {
     listen((cause) => {
         if (cause === 'photo') {
             leave();
-            keys = [];
+            if (!model.again)
+                keys = [];
             latest.width = THUMB; // empties it
             makeSaveButtons();
             showKeys();
