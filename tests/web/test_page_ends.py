@@ -5,13 +5,15 @@ server ends.
 Exit status 77, after saying so, where Chromium, its driver or Selenium is missing."""
 import os
 import signal
+import subprocess
 import sys
 import time
 import unittest
+from urllib.parse import urlsplit
 
 import browser
 from browser import SLOW, difference
-from page import Page, WALL
+from page import Page, REFOCUS, WALL
 
 # Full pictures are asked for once `release` is called.
 HOLD = '''
@@ -83,6 +85,36 @@ class Ends(Page):
         b.click('open')
         self.open('flat.jpg')
         self.assertEqual(len(b.all('#keys li')), 0)
+
+    def test_a_server_that_was_started_anew(self):
+        """Its old link leads nowhere, which the page took for controls that the server lacks."""
+        b = self.browser
+        self.allowed = ('status of 404', )
+
+        def start(port):
+            server = subprocess.Popen([REFOCUS, 'serve', self.photos, '--port', port],
+                                      stdout=subprocess.PIPE, text=True)
+            self.addCleanup(server.stdout.close)
+            self.addCleanup(server.wait, 30 * SLOW)
+            self.addCleanup(server.terminate)
+            return server, server.stdout.readline().strip()
+        server, self.address = start('0')
+        self.load()
+        self.open()
+        server.terminate()
+        server.wait(30 * SLOW)
+        start(str(urlsplit(self.address).port))
+        b.pick('views', 'depth')
+        b.until(lambda: 'started anew' in b.text('said'), 'line that says so')
+        b.click('save')
+        b.click('save-png')
+        b.until(lambda: 'Saving' not in b.text('said'), 'answer')
+        self.assertIn('started anew', b.text('said'))
+        b.click('save')
+        self.assertTrue(b.seen('save-png'))
+        self.assertEqual(len([one for one in b.all('#views label') if one.is_displayed()]), 4)
+        del self.address
+        self.load()
 
 
 if __name__ == '__main__':

@@ -1,7 +1,7 @@
 // The server: every question of the page to it, and what an error says.
 import { say } from './words.js';
 
-/** An answer of 400 or more, or none: `status` is 0 then. The message is one line for people. */
+/** An answer of 400 or more, or none of this server: `status` is 0 then. The message is one line for people. */
 export class ServerError extends Error {
     constructor(status, message) {
         super(message);
@@ -9,16 +9,20 @@ export class ServerError extends Error {
     }
 }
 
+/** An address that the server does not know for one of its own says nothing: that of the link
+ * before it was started anew. */
 async function explain(response) {
+    const { status } = response;
+
     try {
         const { error } = await response.json();
         if (typeof error === 'string' && error)
-            return error;
+            return new ServerError(status, error);
     } catch {
         // no JSON: the status has to do
     }
-    return response.status === 404 ? say('missing')
-        : say('refused', { status: response.status });
+    return status === 404 ? new ServerError(0, say('anew'))
+        : new ServerError(status, say('refused', { status }));
 }
 
 const ENDED = 410, FAILED = 502; // a session is no more: forgotten, or its process has failed
@@ -48,7 +52,7 @@ async function ask(method, path, query, body, signal) {
         throw new ServerError(0, say('unreachable'));
     }
     if (!response.ok) {
-        const error = new ServerError(response.status, await explain(response));
+        const error = await explain(response);
         if (isLost(error))
             lost(query.session, error.status === FAILED);
         throw error;

@@ -170,7 +170,7 @@ const words = {
     // errors
     unreachable: 'The server does not answer. Is refocus serve still running?',
     refused: 'The server refused that ({status}).',
-    missing: 'This server cannot do that.',
+    anew: 'The server was started anew: open its new link.',
 };
 
 /** The text of a key such as 'open' or 'look.plain', with values; undefined when there is none. */
