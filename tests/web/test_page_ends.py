@@ -86,6 +86,29 @@ class Ends(Page):
         self.open('flat.jpg')
         self.assertEqual(len(b.all('#keys li')), 0)
 
+    def test_saving_when_the_session_has_ended(self):
+        """What is saved is asked for again: a photo was opened, and nothing came."""
+        b = self.browser
+        self.allowed = ('status of 4', )
+        self.open()
+        b.tap(*WALL)
+        b.rest()
+        b.click('save')
+        b.click('save-png')
+        whole = self.downloaded('.png')
+        self.close_session()
+        b.click('save')
+        b.click('save-png')
+        self.assertTrue(self.downloaded('.png') == whole)
+        self.assertIn('Saved', b.text('said'))
+        self.tab('pull')
+        b.click('mark')
+        b.click('mark')
+        b.rest()
+        self.close_session()
+        b.run("document.querySelector('[data-format=apng]').click()")
+        self.assertGreater(len(self.downloaded('.apng')), 10000)
+
     def test_a_server_that_was_started_anew(self):
         """Its old link leads nowhere, which the page took for controls that the server lacks."""
         b = self.browser

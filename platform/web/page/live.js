@@ -3,7 +3,7 @@
 // which is opened as a photo.
 import { $, announce, announceError } from './dom.js';
 import { listen, model, settings } from './model.js';
-import { capture, frame, isLost } from './server.js';
+import { askAgain, capture, frame, isLost } from './server.js';
 import { openFile, openLiveAgain } from './opening.js';
 import { theStage } from './viewer.js';
 import { say } from './words.js';
@@ -48,12 +48,10 @@ async function run() {
 }
 
 async function take() {
-    const { photo } = model;
-
     $('capture').disabled = true;
     announce(say('capturing'));
     try {
-        const { blob } = await capture(photo.session, settings());
+        const { blob } = await askAgain(() => capture(model.photo.session, settings()));
         const time = new Date().toISOString().slice(0, 19).replaceAll(':', '-');
         await openFile(new File([blob], `live-${time}.jpg`, { type: 'image/jpeg' }));
     } catch (error) {

@@ -13,6 +13,7 @@ const MOST_FAILURES = 2; // then full pictures are taken for what makes its proc
 let listed = { photos: [] };
 let source = null; // { name } in the folder or { file }: what is open
 let opening = false;
+let again = null; // a promise, once it was opened again
 let failures = 0; // processes of this photo that have failed since its last full picture
 
 export function showScreen(screen) {
@@ -74,21 +75,32 @@ function show(photo, look, own, again) {
         $('stage').focus({ preventScroll: true });
 }
 
-/** The session is no more: the photo is opened again, with the settings and the strokes that it
- * had, and by quick pictures alone where full ones make its process fail. */
-async function openAgain(session, failed) {
-    if (!source || opening || session !== model.photo.session)
-        return;
-    if (failed && failures++ === MOST_FAILURES) { // until something else is asked of it
-        announce(say('failsAlways', { name: $('name').textContent }), true);
-        return;
-    }
+/** The photo is opened again, with the settings and the strokes that it had, and by quick pictures
+ * alone where full ones make its process fail. */
+async function openAgain() {
     const quick = failures >= MOST_FAILURES, { tab } = model;
-    if (!await open(source, model.look?.name, model.own, true) || source.live)
-        return;
+
+    if (!await open(source, model.look?.name, model.own, true))
+        return false;
+    if (source.live)
+        return true;
     setTab(tab);
     await strokesMade();
     announce(say(quick ? 'quickAlone' : 'openedAgain', { name: model.photo.name }), quick);
+    return true;
+}
+
+/** A session is no more. True, once the photo is open in another one. */
+async function onLost(session, failed) {
+    if (!source || session !== model.photo.session)
+        return Boolean(source);
+    if (failed && failures++ === MOST_FAILURES) { // until something else is asked of it
+        announce(say('failsAlways', { name: $('name').textContent }), true);
+        return false;
+    }
+    if (!opening)
+        again = openAgain();
+    return again;
 }
 
 export const openFile = (file) => open({ file });
@@ -187,7 +199,7 @@ export async function startOpening() {
     const link = fromLink(location.hash);
 
     startDrop();
-    server.onLost(openAgain);
+    server.onLost(onLost);
     onPicture((bitmap, job) => {
         if (!job.quick && !job.kind)
             failures = 0;

@@ -1,7 +1,7 @@
 // The rack focus: key frames that were marked, played on the page, and saved as an animation.
 import { $, announce, announceError, make, slider } from './dom.js';
 import { listen, model, restore, settings } from './model.js';
-import { pull } from './server.js';
+import { askAgain, pull } from './server.js';
 import { inPixels, over, NAMES } from './settings.js';
 import { drawSquare } from './looks.js';
 import { saveFile } from './saving.js';
@@ -149,7 +149,7 @@ async function save(format, button) {
     announce(say('pullWaits', { format: name }));
     button.disabled = true;
     try {
-        saveFile(await pull(model.photo.session, format, fixed, list));
+        saveFile(await askAgain(() => pull(model.photo.session, format, fixed, list)));
     } catch (error) {
         announceError(error);
         button.hidden = error.status === 404;

@@ -1,7 +1,7 @@
 // The save menu: files that the server makes, and the link to the settings.
 import { $, announce, announceError, make } from './dom.js';
 import { listen, model, settings } from './model.js';
-import { save } from './server.js';
+import { askAgain, save } from './server.js';
 import { toLink } from './settings.js';
 import { say } from './words.js';
 
@@ -30,7 +30,7 @@ async function saveAs(as, item) {
     $('save').focus();
     announce(say('saving'));
     try {
-        saveFile(await save(model.photo.session, as, settings()));
+        saveFile(await askAgain(() => save(model.photo.session, as, settings())));
     } catch (error) {
         announceError(error);
         item.hidden = error.status === 404;

@@ -26,10 +26,10 @@ async function explain(response) {
 }
 
 const ENDED = 410, FAILED = 502; // a session is no more: forgotten, or its process has failed
-let lost = () => {};
+let lost = () => {}, opened = Promise.resolve(false);
 
 /** `heard(session, failed)` is called when a session is no more: the server has forgotten it, which
- * it may do for memory, or its process has failed. */
+ * it may do for memory, or its process has failed. It promises whether there is another one. */
 export function onLost(heard) {
     lost = heard;
 }
@@ -54,10 +54,21 @@ async function ask(method, path, query, body, signal) {
     if (!response.ok) {
         const error = await explain(response);
         if (isLost(error))
-            lost(query.session, error.status === FAILED);
+            opened = lost(query?.session, error.status === FAILED);
         throw error;
     }
     return response;
+}
+
+/** The answer to a question, which is asked once more where the session had ended. */
+export async function askAgain(question) {
+    try {
+        return await question();
+    } catch (error) {
+        if (error.status !== ENDED || !await opened)
+            throw error;
+        return question();
+    }
 }
 
 const json = (value) => JSON.stringify(value);
