@@ -35,6 +35,13 @@ class Access(Page):
             return b.run(browser.SAMPLES)
         first = frames()
         self.assertGreater(max(first) - min(first), 100)
+        # Settings that are refused stop it until there are others.
+        self.allowed = ('status of 400', )
+        self.load('#photo=live&blur=500')
+        b.until(lambda: 'pixels' in b.text('said'), 'line that says what is wrong')
+        b.click('reset')
+        frames()
+        self.assertTrue(b.text('said').startswith('Live: '), b.text('said'))
         b.tap(*FACE)
         b.until(lambda: b.text('said') == 'Focus set.', 'focus')
         near = frames()

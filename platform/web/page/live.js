@@ -11,6 +11,7 @@ import { say } from './words.js';
 const PAUSE_MS = 500; // after an error that may pass
 
 let running = false;
+let complained = false; // the line says why there is no frame
 
 /** An error that a while may mend: too much is asked, or the server cannot be reached. */
 const passes = (error) => error.status === 503 || error.status === 0 || error.status === 409;
@@ -33,10 +34,14 @@ async function run() {
                 theStage().setPicture('after', bitmap);
             else
                 bitmap.close();
+            if (complained)
+                announce(say('openedLive'));
+            complained = false;
         } catch (error) {
             if (isLost(error))
                 break; // it is opened again by others
             announceError(error);
+            complained = true;
             if (!passes(error))
                 break;
             await new Promise((done) => setTimeout(done, PAUSE_MS));
@@ -64,11 +69,12 @@ export function startLive() {
     $('capture').addEventListener('click', take);
     $('live').addEventListener('click', openLiveAgain);
     listen((cause) => {
-        if (cause !== 'photo')
-            return;
-        $('tab-pull').hidden = Boolean(model.photo.live);
-        document.body.classList.toggle('live', Boolean(model.photo.live));
-        if (model.photo.live && !running)
+        if (cause === 'photo') {
+            $('tab-pull').hidden = Boolean(model.photo.live);
+            document.body.classList.toggle('live', Boolean(model.photo.live));
+        }
+        // Settings that were refused stopped it; these may be better.
+        if (['photo', 'settings', 'view'].includes(cause) && model.photo.live && !running)
             run();
     });
 }
