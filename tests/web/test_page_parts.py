@@ -131,6 +131,25 @@ class Parts(Page):
             .map((one) => one.toDataURL())""")
         self.assertEqual(len(set(pictures)), 1)
 
+    def test_links(self):
+        """A link is followed in the open tab, too; a photo that was sent has none."""
+        b = self.browser
+        self.open()
+        b.rest()
+        self.assertEqual(b.find('copy-link').get_property('hidden'), False)
+        b.driver.get(self.address + '#photo=flat.jpg&blur=5')
+        b.until(lambda: b.text('name') == 'flat.jpg', 'photo of the link')
+        b.rest()
+        self.assertEqual(b.find('blur').get_attribute('aria-valuetext'), '5 px')
+        b.click('open')
+        self.send(os.path.join(self.folder, 'elsewhere.jpg'))
+        b.until(lambda: b.text('name') == 'elsewhere.jpg', 'photo that was sent')
+        self.assertEqual(b.find('copy-link').get_property('hidden'), True)
+        b.until(lambda: b.driver.current_url == self.address, 'address without the photo')
+        self.allowed = ('status of 404', )
+        b.driver.get(self.address + '#photo=nothing.jpg')
+        b.until(lambda: 'no such photo' in b.text('said'), 'line')
+
     def metric(self):
         """Send a photo whose depth is in metres."""
         path = os.path.join(self.folder, 'metric.jpg')

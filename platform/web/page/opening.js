@@ -195,9 +195,17 @@ function startDrop() {
     });
 }
 
-export async function startOpening() {
-    const link = fromLink(location.hash);
+/** Open what the address of the page names, or, of none, what there is alone. */
+async function follow({ photo, look, changes }) {
+    const alone = listed.open ?? (listed.live && !listed.folder ? 'live' : null);
+    const name = photo ?? alone;
 
+    if (name)
+        await open(listed.live && name === 'live' ? { live: true } : { name }, look,
+            photo ? changes : {});
+}
+
+export async function startOpening() {
     startDrop();
     server.onLost(onLost);
     onPicture((bitmap, job) => {
@@ -220,14 +228,11 @@ export async function startOpening() {
         if (file)
             open({ file });
     });
+    addEventListener('hashchange', () => follow(fromLink(location.hash)));
     addEventListener('pagehide', () => model.photo && server.close(model.photo.session));
     try {
         const cards = await list();
-        const name = link.photo ?? listed.open;
-        if (cards.some((one) => one.name === name) || name === listed.open && name)
-            await open({ name }, link.look, link.photo ? link.changes : {});
-        else if (listed.live && (!listed.folder || link.photo === 'live'))
-            await open({ live: true }, link.look, link.changes);
+        await follow(fromLink(location.hash));
         fetchThumbnails(cards);
     } catch (error) {
         announceError(error);

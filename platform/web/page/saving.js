@@ -37,8 +37,10 @@ async function saveAs(as, item) {
     }
 }
 
+/** The link to the photo; of one that was sent, which the server keeps for nobody, to the page. */
 function link() {
-    return new URL(toLink(model.photo.name, model.look?.name, model.own), location).href;
+    return new URL(model.photo.sent ? location.pathname
+        : toLink(model.photo.name, model.look?.name, model.own), location).href;
 }
 
 /** Pages that come over a network without encryption may not write to the clipboard: there the
@@ -76,7 +78,9 @@ export function startSaving() {
         button.id = `save-${as}`;
         menu.append(button);
     }
-    menu.append(item('link', copyLink));
+    const copy = item('link', copyLink);
+    copy.id = 'copy-link';
+    menu.append(copy);
     $('save').addEventListener('click', () => open(menu.hidden));
     addEventListener('keydown', (event) => {
         if (event.key === 'Escape' && !menu.hidden) {
@@ -93,6 +97,7 @@ export function startSaving() {
             open(false);
     });
     listen(() => {
+        copy.hidden = Boolean(model.photo.sent);
         clearTimeout(timer);
         timer = setTimeout(() => history.replaceState(null, '', link()), LINK_MS);
     });
