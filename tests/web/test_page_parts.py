@@ -150,6 +150,37 @@ class Parts(Page):
         b.driver.get(self.address + '#photo=nothing.jpg')
         b.until(lambda: 'no such photo' in b.text('said'), 'line')
 
+    def test_opening_another_before_the_first_is_open(self):
+        """A photo that is being opened says so; one that is being sent is given up."""
+        b = self.browser
+        flat, deep = self.card('flat.jpg'), self.card('deep.jpg')
+        b.run('''const ask = window.fetch;
+            window.fetch = async (address, ...more) => {
+                if (/^(open|upload)[?]/.test(address))
+                    await new Promise((release, refuse) => {
+                        window.release = release;
+                        more[0].signal?.addEventListener('abort', () => refuse(more[0].signal.reason));
+                    });
+                return ask(address, ...more);
+            };''')
+        flat.click()
+        deep.click()
+        self.assertEqual(b.text('said'), 'flat.jpg is still being opened.')
+        b.run('window.release()')
+        b.until(lambda: b.text('name') == 'flat.jpg', 'the first one')
+        b.click('open')
+        self.send(os.path.join(self.folder, 'elsewhere.jpg'))
+        b.until(lambda: b.text('said').startswith('Sending elsewhere.jpg'), 'line')
+        b.click('back')
+        self.assertEqual(b.text('said'), 'elsewhere.jpg is not sent any more.')
+        b.click('open')
+        self.send(os.path.join(self.folder, 'elsewhere.jpg'))
+        b.until(lambda: b.text('said').startswith('Sending elsewhere.jpg'), 'line')
+        self.card('deep.jpg').click()
+        b.run('window.release()')
+        b.until(lambda: b.text('name') == 'deep.jpg', 'the other one')
+        b.rest()
+
     def metric(self):
         """Send a photo whose depth is in metres."""
         path = os.path.join(self.folder, 'metric.jpg')

@@ -12,7 +12,7 @@ const MOST_FAILURES = 2; // then full pictures are taken for what makes its proc
 
 let listed = { photos: [] };
 let source = null; // { name } in the folder or { file }: what is open
-let opening = false;
+let opening = null; // { name, abort } of what is under way; abort(), where it can be given up
 let again = null; // a promise, once it was opened again
 let failures = 0; // processes of this photo that have failed since its last full picture
 
@@ -33,18 +33,23 @@ export function showScreen(screen) {
 async function open(what, look = null, own = {}, again = false) {
     const name = what.live ? say('live') : what.name ?? what.file.name;
 
-    if (opening)
+    if (opening && !opening.abort) {
+        announce(say('stillOpening', { name: opening.name }));
         return false;
+    }
     if (what.file && listed.upload_limit && what.file.size > listed.upload_limit) {
         announce(say('tooLarge', { name, n: Math.floor(listed.upload_limit / (1 << 20)) }), true);
         return false;
     }
+    const sending = what.file ? new AbortController() : null;
+    const mine = { name, abort: sending && (() => sending.abort()) };
     let done = false;
-    opening = true;
+    opening?.abort();
+    opening = mine;
     announce(say(what.file ? 'sending' : 'opening', { name }));
     document.body.classList.add('waiting');
     try {
-        const photo = what.file ? await server.uploadPhoto(what.file)
+        const photo = what.file ? await server.uploadPhoto(what.file, sending.signal)
             : what.live ? await server.openLive() : await server.openPhoto(what.name);
         if (model.photo)
             server.close(model.photo.session);
@@ -56,10 +61,13 @@ async function open(what, look = null, own = {}, again = false) {
         show(photo, look, own, again);
         done = true;
     } catch (error) {
-        announceError(error);
+        if (error.name !== 'AbortError')
+            announceError(error);
     }
-    document.body.classList.remove('waiting');
-    opening = false;
+    if (opening === mine) {
+        document.body.classList.remove('waiting');
+        opening = null;
+    }
     return done;
 }
 
@@ -218,6 +226,10 @@ export async function startOpening() {
         $('choose').focus();
     });
     $('back').addEventListener('click', () => {
+        if (opening?.abort) {
+            opening.abort();
+            announce(say('givenUp', { name: opening.name }));
+        }
         showScreen('edit');
         $('stage').focus();
     });

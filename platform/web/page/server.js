@@ -87,8 +87,9 @@ export async function openPhoto(name) {
     return (await ask('POST', 'open', { photo: name })).json();
 }
 
-export async function uploadPhoto(file) {
-    return (await ask('POST', 'upload', { name: file.name }, file)).json();
+/** The photo is sent until `signal` says that it is not wanted any more. */
+export async function uploadPhoto(file, signal) {
+    return (await ask('POST', 'upload', { name: file.name }, file, signal)).json();
 }
 
 /** The session of the camera, which others may look at, too. */
