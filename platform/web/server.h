@@ -15,14 +15,15 @@ enum {
     MOST_THUMBNAILS = 2, /* processes that make thumbnails */
     MOST_THUMBNAILS_WAITING = 256,
     MOST_UPLOADS = 4,
-    MOST_HELD = 512, /* MiB of answers that clients have not taken yet */
+    UPLOAD_PIECE = 64 << 10, /* bytes */
+    MOST_HELD = 512,         /* MiB of answers that clients have not taken yet */
 };
 
 /* A connection that has done nothing whole by its deadline is ended, however busy it looks. */
 enum {
     SECONDS_HEADERS = 10,
     SECONDS_BODY = 10,
-    SECONDS_UPLOAD = 120,
+    SECONDS_UPLOAD = 60, /* for each piece of a photo */
     SECONDS_ANSWER = 30, /* one more for each 64 KiB */
     SECONDS_IDLE = 60,
     SECONDS_WORK = 600,

@@ -38,8 +38,17 @@ void upload_begin(struct server *server, struct request *request)
         server->uploads++;
 }
 
+/* A photo that goes on by whole pieces is waited for, however long it takes. */
+static void move_deadline(struct request *request, uint64_t before)
+{
+    if (request->uploaded / UPLOAD_PIECE > before / UPLOAD_PIECE)
+        request->line->deadline_ms = server_now_ms() + 1e3 * SECONDS_UPLOAD;
+}
+
 void upload_take(struct server *server, struct request *request, const char *data, size_t size)
 {
+    const uint64_t before = request->uploaded;
+
     if (size > server->setup->most_upload - request->uploaded) {
         upload_drop(server, request);
         answer_error(request, MHD_HTTP_CONTENT_TOO_LARGE,
@@ -61,6 +70,7 @@ void upload_take(struct server *server, struct request *request, const char *dat
         size -= (size_t)written;
         request->uploaded += (uint64_t)written;
     }
+    move_deadline(request, before);
 }
 
 int upload_end(struct server *server, struct request *request)

@@ -22,6 +22,44 @@ def memory_mib(pid, word):
 
 
 class Limits(Serving):
+    @classmethod
+    def setUpClass(cls):
+        """Slow uploads, on a server of their own, are under way beside the other tests."""
+        super().setUpClass()
+        cls.slow = Server()
+        cls.pool = concurrent.futures.ThreadPoolExecutor(2)
+        cls.steady = cls.pool.submit(cls.upload, 66000, 16)
+        cls.trickling = cls.pool.submit(cls.upload, 10, 1)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.slow.close()
+        cls.pool.shutdown()
+        super().tearDownClass()
+
+    @classmethod
+    def upload(cls, piece, seconds):
+        """Send a photo piece by piece for 75 seconds at the most: the first bytes of the answer."""
+        body = b'P6\n330 330\n255\n' + bytes(330 * 330 * 3)
+        end = time.monotonic() + 75
+        with socket.create_connection(('127.0.0.1', cls.slow.port), timeout=120) as line:
+            try:
+                line.sendall(('POST %supload?name=x.ppm HTTP/1.1\r\nHost: %s\r\nContent-Length: %d'
+                              '\r\n\r\n' % (cls.slow.path, cls.slow.host, len(body))).encode())
+                for at in range(0, len(body), piece):
+                    if time.monotonic() > end:
+                        return b'never'
+                    line.sendall(body[at:at + piece])
+                    time.sleep(seconds)
+                return line.recv(100)
+            except ConnectionError:
+                return b''
+
+    def test_slow_uploads(self):
+        """One that goes on is waited for, one that trickles is not."""
+        self.assertRegex(self.steady.result(), rb'^HTTP/1.1 200 ')
+        self.assertEqual(self.trickling.result(), b'')
+
     def test_large_uploads(self):
         server = Server('--max-upload', '1')
         path = '%supload?name=x.ppm HTTP/1.1\r\nHost: %s\r\n' % (server.path, server.host)

@@ -79,6 +79,9 @@ class Use(Page):
         server.stdout.close()
         b.tap(*WALL)
         b.until(lambda: 'does not answer' in b.text('said'), 'line of the error')
+        b.click('open')
+        self.send(os.path.join(self.folder, 'elsewhere.jpg'))
+        b.until(lambda: 'before all of elsewhere.jpg was sent' in b.text('said'), 'line of it')
         b.errors()
         self.load()
 

@@ -49,7 +49,8 @@ async function ask(method, path, query, body, signal) {
     } catch (error) {
         if (error.name === 'AbortError')
             throw error;
-        throw new ServerError(0, say('unreachable'));
+        throw new ServerError(0, body instanceof File ? say('cutOff', { name: body.name })
+            : say('unreachable'));
     }
     if (!response.ok) {
         const error = await explain(response);

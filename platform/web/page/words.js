@@ -171,6 +171,8 @@ const words = {
 
     // errors
     unreachable: 'The server does not answer. Is refocus serve still running?',
+    cutOff: 'The way to the server broke off before all of {name} was sent. If refocus ' +
+        'serve is still running, try again.',
     refused: 'The server refused that ({status}).',
     anew: 'The server was started anew: open its new link.',
 };
