@@ -43,7 +43,7 @@ class Answers(Serving):
         self.assertEqual((session['width'], session['height'], session['depth']),
                          (WIDTH, HEIGHT, True))
         self.assertEqual(session['limits'], {'blur': 127, 'f_number': [1, 22],
-                                             'highlights': [1, 16]})
+                                             'highlights': [1, 16], 'pull_seconds': 20})
         least, most = session['range']
         self.assertTrue(0 <= least < most <= 1)
         self.assertTrue(0 <= session['settings']['focus'] <= 1)

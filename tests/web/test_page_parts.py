@@ -117,6 +117,30 @@ class Parts(Page):
             document.getElementById('redo').click();""")
         self.assertEqual(undone(), 2)
 
+    def test_the_longest_film(self):
+        """What it may take is told when key frames are set, not when it is saved."""
+        b = self.browser
+        self.open()
+        b.rest()
+        self.tab('pull')
+
+        def seconds(value):
+            """Set those to the second key frame; returns what they become, and what is said."""
+            return b.run('''const wait = document.querySelector('#keys input');
+                wait.value = arguments[0];
+                wait.dispatchEvent(new Event('change'));
+                return [wait.value, document.getElementById('said').textContent];''', value)
+        b.click('mark')
+        b.click('mark')
+        self.assertEqual(seconds(7), ['7', 'Key frame 2 marked.'])
+        self.assertEqual(seconds(25), ['20', 'A rack focus takes 20 seconds at the most.'])
+        b.click('mark')
+        self.assertEqual(len(b.all('#keys li')), 2)
+        seconds(19.3)
+        b.click('mark')
+        self.assertEqual([one.get_attribute('value') for one in b.all('#keys input')],
+                         ['19.3', '0.7'])
+
     def test_key_frames_of_each_view(self):
         """A focus can be marked while the depth is looked at, with its picture."""
         b = self.browser

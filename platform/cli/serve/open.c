@@ -109,9 +109,10 @@ enum { WIDEST = 1, NARROWEST = 22 }; /* f-numbers */
 
 static json_t *limits_json(const struct serving *s)
 {
-    return json_pack("{s:i, s:o, s:[i, i]}", "blur", (int)REFOCUS_PLAIN_BLUR_RADIUS, "f_number",
+    return json_pack("{s:i, s:o, s:[i, i], s:i}", "blur", (int)REFOCUS_PLAIN_BLUR_RADIUS,
+                     "f_number",
                      has_metres(s) ? json_pack("[i, i]", WIDEST, NARROWEST) : json_null(),
-                     "highlights", 1, 16);
+                     "highlights", 1, 16, "pull_seconds", SERVE_PULL_SECONDS);
 }
 
 /* The blur of f/1, by which others have 1 / f-number of it; NAN: there are no f-numbers. */

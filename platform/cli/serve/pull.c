@@ -7,7 +7,7 @@
 #include "outputs/encoder.h"
 #include "serve/serving.h"
 
-enum { PULL_FPS = 25, PULL_MOST_SECONDS = 20, PULL_SIDE = 640, PULL_RAYS = 64 };
+enum { PULL_FPS = 25, PULL_SIDE = 640, PULL_RAYS = 64 };
 
 static const struct {
     const char *word, *type;
@@ -39,8 +39,9 @@ static int read_keys(json_t *root, struct keys **keys)
 
     free(text);
     json_decref(file);
-    if (status == EXIT_DONE && keys_seconds(*keys) > PULL_MOST_SECONDS)
-        status = wrong("it may take 20 seconds at the most");
+    if (status == EXIT_DONE && keys_seconds(*keys) > SERVE_PULL_SECONDS)
+        status = report_failure(EXIT_WRONG, "pull", "it may take %d seconds at the most",
+                                SERVE_PULL_SECONDS);
     if (status == EXIT_DONE && keys_most(*keys, "blur", 0) > REFOCUS_PLAIN_BLUR_RADIUS)
         status = wrong("its blur may be 127 pixels at the most");
     return status;

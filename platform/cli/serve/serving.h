@@ -20,6 +20,8 @@ enum {
 /* The most pixels of a reduced photo, and of its longer side. */
 enum { SERVE_QUICK_PIXELS = 600000, SERVE_QUICK_SIDE = 1024, SERVE_QUICK_QUALITY = 85 };
 
+enum { SERVE_PULL_SECONDS = 20 }; /* the longest focus pull */
+
 /* A full renderer can do again what it was made for. */
 struct made_for {
     uint32_t methods;

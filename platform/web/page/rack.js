@@ -9,7 +9,7 @@ import { onPicture, showMoment } from './viewer.js';
 import { say } from './words.js';
 
 const MOVING = [NAMES.focus, NAMES.blur, NAMES.band]; // what differs from key to key
-const USUAL = 1.5; // seconds from key to key
+const USUAL = 1.5, LEAST = 0.1; // seconds from key to key
 const THUMB = 128;
 
 let keys = []; // { wait, own, look, settings, canvas }: wait is seconds from the one before
@@ -83,12 +83,21 @@ function play() {
     playing = requestAnimationFrame(frame);
 }
 
-function mark() {
-    const canvas = thumbnail();
+/** Seconds that are left of the longest film beside so many. */
+const left = (others) => Number((model.photo.limits.pull_seconds - others).toFixed(1));
 
+const sayMost = () => announce(say('pullMost', { n: model.photo.limits.pull_seconds }), true);
+
+function mark() {
+    const canvas = thumbnail(), most = left(total());
+
+    if (most < LEAST) {
+        sayMost();
+        return;
+    }
     leave();
     canvas.getContext('2d').drawImage(latest, 0, 0);
-    keys.push({ wait: keys.length ? USUAL : 0, own: { ...model.own }, look: model.look,
+    keys.push({ wait: keys.length ? Math.min(USUAL, most) : 0, own: { ...model.own }, look: model.look,
         settings: still(), canvas });
     announce(say('marked', { n: keys.length }));
     showKeys();
@@ -111,7 +120,7 @@ function keyItem(key, i) {
     const gone = make('button', { className: 'remove', textContent: '×',
         'aria-label': say('remove', { n }) });
     const wait = i === 0 ? make('span', { textContent: say('start') })
-        : make('input', { type: 'number', min: 0.1, max: 30, step: 0.1, value: key.wait,
+        : make('input', { type: 'number', min: LEAST, max: left(0), step: LEAST, value: key.wait,
             'aria-label': say('secondsTo', { n }) });
 
     show.addEventListener('click', () => {
@@ -120,8 +129,12 @@ function keyItem(key, i) {
     });
     gone.addEventListener('click', () => remove(i));
     wait.addEventListener('change', () => {
-        key.wait = Math.min(Math.max(Number(wait.value) || USUAL, 0.1), 30);
+        const wanted = Math.round(10 * (Number(wait.value) || USUAL)) / 10;
+        const most = left(total() - key.wait);
+        key.wait = Math.min(Math.max(wanted, LEAST), most);
         wait.value = key.wait;
+        if (wanted > most)
+            sayMost();
         at = 0;
         showTime();
     });

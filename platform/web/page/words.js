@@ -149,6 +149,7 @@ const words = {
     time: 'Time',
     timeAt: '{n} s',
     savePull: 'Save as {format}',
+    pullMost: 'A rack focus takes {n} seconds at the most.',
     pullWaits: 'Making the {format}. This takes a while…',
     format: { gif: 'GIF', apng: 'animated PNG', mp4: 'MP4 video', webm: 'WebM video' },
 
