@@ -131,7 +131,9 @@ class Live(Serving):
         self.assertEqual(server.close(), (0, '', []))
         self.fails(2, '--depth: no depth is given; give a source or a depth map', 'serve', '--live', 'replay::size 64x48')
         self.fails(2, '--near: it goes with --live; give that too', 'serve', '--near', '1')
-        self.fails(2, '--depth: it goes with --live; give that too', 'serve', '--depth', 'replay::size 64x48')
+        for command in ('serve', ), ('view', '--page'):
+            self.fails(2, "--depth: it goes with --live; a photo gets its map by 'refocus depth PHOTO "
+                       "--depth MAP -o NEW.jpg'", *command, 'noise.ppm', '--depth', 'map.pgm')
 
 
 if __name__ == '__main__':

@@ -28,6 +28,7 @@ class Use(Page):
         self.assertTrue(b.seen('canvas'))
         b.click('open')
         self.assertTrue(b.seen('choose'))
+        self.assertIn('refocus depth PHOTO --depth MAP -o NEW.jpg', b.text('opening'))
         self.assertFalse(b.seen('canvas'))
         b.click('back')
         self.assertEqual(difference(picture, b.samples()), 0)

@@ -48,9 +48,8 @@ static const struct option options[] = {
      .help = "a camera that the page shows, too: a source as of refocus live --camera",
      .elsewhere = true},
     {OPTION(OPTION_TEXT, "--depth", "SOURCE", struct settings, base.live.depth.file),
-     .needs = "--live",
      .help = "depth beside it: a source as of refocus live --depth, a depth map, or "
-             "estimate:MODEL.onnx",
+             "estimate:MODEL.onnx. A photo gets its map by refocus depth",
      .elsewhere = true},
     DEPTH_UNIT_OPTIONS(struct settings, base.live.depth),
     {.kind = OPTION_HEADING, .help = "Photos"},

@@ -30,6 +30,10 @@ int serve_live_check(struct serve_base *base)
                                    : !isnan(depth->far_m)  ? "--far"
                                                            : NULL;
 
+        if (live->depth.file)
+            return report_failure(EXIT_WRONG, "--depth",
+                                  "it goes with --live; a photo gets its map by 'refocus depth "
+                                  "PHOTO --depth MAP -o NEW.jpg'");
         return option ? report_failure(EXIT_WRONG, option, "it goes with --live; give that too")
                       : EXIT_DONE;
     }

@@ -8,6 +8,8 @@ const words = {
     openTitle: 'Open a photo',
     openHint: 'Drop a photo here, or choose one. Photos with depth refocus at once; for others ' +
         'you paint the depth.',
+    depthHint: 'Depth of a map, or of two views, comes into a photo by the command “refocus depth ' +
+        'PHOTO --depth MAP -o NEW.jpg”, or with --stereo-file.',
     choose: 'Choose a photo…',
     folder: 'In this folder',
     folderEmpty: 'There are no photos in this folder.',
