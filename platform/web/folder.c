@@ -117,11 +117,13 @@ static bool read_names(struct folder *folder, const struct folder *old, DIR *str
         const char *const name = entry->d_name;
         struct stat about;
 
-        if (!rf_check_name(name, strlen(name)) || !rf_check_photo_ending(name) ||
+        if (name[0] == '.' || !rf_check_photo_ending(name) ||
             fstatat(folder->fd, name, &about, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(about.st_mode))
             continue;
-        if (!add(folder, name, about.st_mtime, about.st_size,
-                 known_depth(old, name, about.st_mtime, about.st_size)))
+        if (!rf_check_name(name, strlen(name)))
+            folder->unnamed++;
+        else if (!add(folder, name, about.st_mtime, about.st_size,
+                      known_depth(old, name, about.st_mtime, about.st_size)))
             return false;
     }
     return true;

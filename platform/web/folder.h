@@ -19,6 +19,7 @@ struct folder {
     int file; /* the photo, of which there is one then; -1: none */
     struct folder_photo *photos;
     int count;
+    int unnamed; /* further photos whose names a link cannot have; hidden ones are none */
 };
 
 /* Open it by its path, or with NULL have no photos. False: words in why (256 bytes). */

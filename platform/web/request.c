@@ -252,8 +252,8 @@ static void list_photos(struct server *server, struct request *request)
             list, json_pack("{s:s, s:o}", "name", photo->name, "depth",
                             photo->depth < 0 ? json_null() : json_boolean(photo->depth)));
     }
-    object = json_pack("{s:b, s:b, s:o, s:o, s:I}", "folder", folder->fd >= 0, "live",
-                       server->setup->live, "photos", list, "open",
+    object = json_pack("{s:b, s:b, s:o, s:i, s:o, s:I}", "folder", folder->fd >= 0, "live",
+                       server->setup->live, "photos", list, "unnamed", folder->unnamed, "open",
                        folder->file >= 0 ? json_string(folder->photos[0].name) : json_null(),
                        "upload_limit", (json_int_t)server->setup->most_upload);
     text = object ? json_dumps(object, JSON_COMPACT) : NULL;

@@ -71,7 +71,7 @@ class Limits(Serving):
         answer = server.raw(('POST %sTransfer-Encoding: chunked\r\n\r\n' % path).encode() +
                             17 * chunk + b'0\r\n\r\n')
         self.assertRegex(answer, rb'^HTTP/1.1 413 ')
-        self.assertEqual(server.get('photos').json, {'folder': False, 'live': False, 'photos': [], 'open': None,
+        self.assertEqual(server.get('photos').json, {'folder': False, 'live': False, 'photos': [], 'unnamed': 0, 'open': None,
                                                      'upload_limit': 1 << 20})
         self.assertEqual(server.close(), (0, '', []))
 
@@ -341,9 +341,12 @@ class Lines(Case):
             'arw orf raf rw2 pef srw x3f 3fr iiq rwl').split()]
         for name in shown + ['a.txt', 'a.json', 'a.xmp', 'a.mp4', 'jpg', '.a.jpg']:
             open(os.path.join('mixed', name), 'wb').close()
+        for name in b'a\\b.jpg', b'a\tb.jpg', b'a\xff.jpg', b'.a\tb.jpg', b'a\tb.txt':
+            open(os.path.join(b'mixed', name), 'wb').close()
         server = Server('mixed')
-        names = [photo['name'] for photo in server.get('photos').json['photos']]
-        self.assertEqual(sorted(names), sorted(shown))
+        listed = server.get('photos').json
+        self.assertEqual(sorted(photo['name'] for photo in listed['photos']), sorted(shown))
+        self.assertEqual(listed['unnamed'], 3)
         self.assertEqual(server.close(), (0, '', []))
 
     def test_command_line(self):

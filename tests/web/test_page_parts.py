@@ -3,6 +3,7 @@
 
 Exit status 77, after saying so, where Chromium, its driver or Selenium is missing."""
 import os
+import shutil
 import sys
 import unittest
 
@@ -204,6 +205,23 @@ class Parts(Page):
         b.run('window.release()')
         b.until(lambda: b.text('name') == 'deep.jpg', 'the other one')
         b.rest()
+
+    def test_names_that_cannot_be_shown(self):
+        """Files of the folder are counted; what is sent gets another name."""
+        b = self.browser
+        left = os.path.join(self.photos, 'a\\b.jpg')
+        shutil.copy(os.path.join(self.photos, 'flat.jpg'), left)
+        self.addCleanup(os.remove, left)
+        self.load()
+        self.card('deep.jpg')
+        self.assertTrue(b.seen('unnamed'))
+        self.assertIn(': 1.', b.text('unnamed'))
+        for name, shown in ('.hidden.jpg', 'hidden.jpg'), ('back\\slash.jpg', 'back_slash.jpg'):
+            path = os.path.join(self.folder, name)
+            shutil.copy(os.path.join(self.photos, 'flat.jpg'), path)
+            self.send(path)
+            b.until(lambda: b.text('name') == shown, shown)
+            b.click('open')
 
     def metric(self):
         """Send a photo whose depth is in metres."""

@@ -174,6 +174,8 @@ async function list() {
 
     $('live').hidden = !listed.live;
     $('folder').hidden = !listed.folder;
+    $('unnamed').hidden = !listed.unnamed;
+    $('unnamed').textContent = say('unnamed', { n: listed.unnamed });
     $('folder-empty').hidden = cards.length > 0;
     $('photos').replaceChildren(...cards.map(({ item }) => item));
     return cards;

@@ -88,9 +88,12 @@ export async function openPhoto(name) {
     return (await ask('POST', 'open', { photo: name })).json();
 }
 
+/** The server takes no hidden names, and none with a path or control characters. */
+const plain = (name) => name.replace(/[/\\\x00-\x1f\x7f]/g, '_').replace(/^\.+/, '') || 'photo';
+
 /** The photo is sent until `signal` says that it is not wanted any more. */
 export async function uploadPhoto(file, signal) {
-    return (await ask('POST', 'upload', { name: file.name }, file, signal)).json();
+    return (await ask('POST', 'upload', { name: plain(file.name) }, file, signal)).json();
 }
 
 /** The session of the camera, which others may look at, too. */

@@ -13,6 +13,8 @@ const words = {
     choose: 'Choose a photo…',
     folder: 'In this folder',
     folderEmpty: 'There are no photos in this folder.',
+    unnamed: 'Files that are left out as their names hold a backslash, a control character or what ' +
+        'is not UTF-8: {n}. Give them other names.',
     back: 'Back to the photo',
     live: 'Live view',
     capture: 'Capture',
