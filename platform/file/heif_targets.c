@@ -1,14 +1,15 @@
-/* heif_targets.c: each item of metadata of a HEIF container describes one picture.
+/* heif_targets.c: metadata and auxiliary images of a HEIF container belong to one picture each.
  *
  * iPhones write since iOS 18 that EXIF and XMP describe the main picture and the one that is toned
- * with its gain map. libheif 1.15, that of Debian 12, refuses a file where there is more than one.
- * So one is left, the main picture if it is among them, and the bytes that become free lie behind
- * the number of the main picture, where nothing is read: all else stays in its place in the file.
+ * with its gain map, and since iOS 26 that depth is auxiliary to both. libheif 1.15, that of Debian
+ * 12, refuses a file where there is more than one. So one is left, the main picture if it is among
+ * them, and the bytes that become free lie behind the number of the main picture, where nothing is
+ * read: all else stays in its place in the file.
  *
- *     meta { ... pitm ... iref { cdsc: 67 -> 46, 66 } }
- *     meta { ... pitm 00 00 ... iref { cdsc: 67 -> 46 } }
+ *     meta { ... pitm ... iref { cdsc: 67 -> 46, 66; auxl: 65 -> 46, 66 } }
+ *     meta { ... pitm 00 00 00 00 ... iref { cdsc: 67 -> 46; auxl: 65 -> 46 } }
  *
- * ISO/IEC 14496-12, 8.11.12.
+ * ISO/IEC 14496-12, 8.11.12; ISO/IEC 23008-12, 6.4.4 and 6.5.
  */
 #include "heif_targets.h"
 
@@ -62,7 +63,13 @@ static bool find_boxes(const uint8_t *data, size_t size, struct boxes *boxes)
     return true;
 }
 
-/* Copies references to `out`, and leaves each description one target. Returns how many bytes they
+/* Whether libheif takes one target alone for references of the box at `at`. */
+static bool is_single(const uint8_t *data, size_t at)
+{
+    return memcmp(data + at + 4, "cdsc", 4) == 0 || memcmp(data + at + 4, "auxl", 4) == 0;
+}
+
+/* Copies references to `out`, and leaves such ones one target. Returns how many bytes they
  * have there; 0: they are damaged. */
 static size_t copy_references(const uint8_t *data, const struct boxes *boxes, uint8_t *out)
 {
@@ -79,7 +86,7 @@ static size_t copy_references(const uint8_t *data, const struct boxes *boxes, ui
         if (box.end - box.begin < head)
             return 0;
         count = rf_big_endian(data + box.begin + 8 + id, 2);
-        if (memcmp(data + box.begin + 4, "cdsc", 4) != 0 || count < 2) {
+        if (!is_single(data, box.begin) || count < 2) {
             memcpy(out + length, data + box.begin, box.end - box.begin);
             length += box.end - box.begin;
             continue;

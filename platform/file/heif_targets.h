@@ -1,4 +1,5 @@
-/* heif_targets.h: metadata of a HEIF container describes one picture each, as libheif wants it. */
+/* heif_targets.h: metadata and auxiliary images of a HEIF container belong to one picture each, as
+ * libheif wants it. */
 #ifndef RF_FILE_HEIF_TARGETS_H
 #define RF_FILE_HEIF_TARGETS_H
 
@@ -6,8 +7,8 @@
 
 #include "bytes.h"
 
-/* Where metadata describes several pictures, *changed becomes a copy of the file, as long as it, in
- * which it describes one; the caller frees it. NULL: the file may be read as it is. Returns
+/* Where some belong to several pictures, *changed becomes a copy of the file, as long as it, in
+ * which they belong to one; the caller frees it. NULL: the file may be read as it is. Returns
  * REFOCUS_OK or REFOCUS_ERR_MEMORY. */
 int rf_heif_single_targets(struct rf_bytes file, uint8_t **changed);
 

@@ -90,8 +90,8 @@ def size_of(side):
 
 def phone(path, picture, depth, side, model):
     """A picture and its depth, each a grid of 2 x 2 tiles of side x side pixels: files of one such
-    tile. EXIF describes the picture, and what a gain map makes of it, as iPhones say since iOS 18;
-    here the map is the depth."""
+    tile. EXIF describes the picture, and what a gain map makes of it, as iPhones say since iOS 18,
+    and depth is of both, as since iOS 26; here the map is the depth."""
     (config, tile), (depth_config, depth_tile) = coded(picture), coded(depth)
     grid = struct.pack('>BBBBHH', 0, 0, 1, 1, 2 * side, 2 * side)
     main, aux, toned, exif = 9, 10, 11, 12
@@ -101,7 +101,7 @@ def phone(path, picture, depth, side, model):
               (toned, b'tmap', b'\0' * 62, (4,)),
               (exif, b'Exif', struct.pack('>I', 0) + tiff(model), ())]
     references = ((b'dimg', main, range(1, 5)), (b'dimg', aux, range(5, 9)),
-                  (b'auxl', aux, (main,)), (b'dimg', toned, (main, aux)),
+                  (b'auxl', aux, (main, toned)), (b'dimg', toned, (main, aux)),
                   (b'cdsc', exif, (main, toned)))
     properties = (box(b'hvcC', config), box(b'hvcC', depth_config), size_of(side),
                   size_of(2 * side),

@@ -1,4 +1,4 @@
-/* test_heif_targets.c: metadata of a HEIF that describes several pictures describes one. */
+/* test_heif_targets.c: what a HEIF says to belong to several pictures belongs to one. */
 #include "check.h"
 #include "../../kernels/guarded.h"
 #include "heif_targets.h"
@@ -94,13 +94,14 @@ static const uint8_t *content_of(const uint8_t *at, const uint8_t *end, const ch
     return NULL;
 }
 
-/* Descriptions have one target each; all else is as it was, and where it was but for what lies
- * between the two boxes. */
+/* Descriptions and auxiliary images have one target each; all else is as it was, and where it was
+ * but for what lies between the two boxes. */
 static void one_target(void **state)
 {
     (void)state;
-    for (int i = 0; i < 8; i++) {
-        const struct layout layout = {i % 2, 1 + i / 2, 1 + i / 2, false, "cdsc", 0};
+    for (int i = 0; i < 16; i++) {
+        const int targets = 1 + i / 2 % 4;
+        const struct layout layout = {i % 2, targets, targets, false, i < 8 ? "cdsc" : "auxl", 0};
         const int size = layout.large ? 4 : 2, spare = (layout.targets - 1 + 1) * size;
         struct bytes file = make(&layout);
         const uint8_t *const end = file.data + file.size;
@@ -127,7 +128,7 @@ static void one_target(void **state)
         box = content_of(refs, refs + others - 4, "dimg", &length);
         assert_int_equal(number(box + size, 2), 3);
         for (int n = 0; n < 2; n++) {
-            box = content_of(box + length, refs + others - 4, "cdsc", &length);
+            box = content_of(box + length, refs + others - 4, n ? "cdsc" : layout.type, &length);
             assert_int_equal(length, 2 + 2 * size);
             assert_int_equal(number(box, size), 6 + n);
             assert_int_equal(number(box + size, 2), 1);
@@ -144,7 +145,8 @@ static void others(void **state)
     static const struct layout layouts[] = {{false, 2, 2, true, "cdsc", 0},
                                             {false, 2, 2, false, "cdsc", 3},
                                             {false, 2, 3, false, "cdsc", 0},
-                                            {true, 3, 200, false, "cdsc", 0}};
+                                            {true, 3, 200, false, "cdsc", 0},
+                                            {true, 3, 200, false, "auxl", 0}};
 
     (void)state;
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
