@@ -279,8 +279,8 @@ int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes, s
     made = rf_photo_new();
     if (!made)
         return rf_fail_memory(reason);
-    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, false, false, &made->info,
-                           NULL, reason);
+    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, false, RF_VIEW_PHOTO,
+                           &made->info, NULL, reason);
     if (status == REFOCUS_OK)
         status = picture_as_samples(&read, &max_value);
     if (status == REFOCUS_OK)

@@ -14,6 +14,7 @@
 #include "heic_picture.h"
 #include "heif_boxes.h"
 #include "heif_targets.h"
+#include "heif_tone_map.h"
 #include "heif_turn.h"
 #include "icc.h"
 #include "orient.h"
@@ -141,24 +142,52 @@ static void say_orientation(struct rf_heic *heic)
     }
 }
 
-/* Go on with the other of two pictures instead of the main one. */
+/* Whether the file holds a stereo pair, left first, that its photo is none of. */
+static bool has_pair_beside(struct rf_bytes file, uint32_t pair[2])
+{
+    struct rf_bytes meta, main_id;
+    uint32_t id;
+
+    if (!rf_heif_stereo_pair(file, pair) || !rf_heif_meta(file, &meta) ||
+        !rf_heif_primary(meta, &main_id))
+        return false;
+    id = rf_heif_number(main_id, 0, main_id.size);
+    return id != pair[0] && id != pair[1];
+}
+
+/* Go on with the right one of a stereo pair, or the other of two pictures, instead of the main one.
+ */
 static int take_second(struct rf_heic *heic)
 {
     heif_item_id id[2], main_id = 0;
     struct heif_error error;
 
     heif_context_get_primary_image_ID(heic->context, &main_id);
-    if (heif_context_get_number_of_top_level_images(heic->context) != 2 ||
-        heif_context_get_list_of_top_level_image_IDs(heic->context, id, 2) != 2) {
+    if (!rf_heif_stereo_pair(heic->file, id) &&
+        (heif_context_get_number_of_top_level_images(heic->context) != 2 ||
+         heif_context_get_list_of_top_level_image_IDs(heic->context, id, 2) != 2)) {
         return rf_fail(heic->read->reason, REFOCUS_ERR_UNSUPPORTED,
                        "it does not hold two pictures; give an MPO, a stereo HEIC, or "
                        "two pictures");
     }
     heif_image_handle_release(heic->primary);
     heic->primary = NULL;
-    error = heif_context_get_image_handle(heic->context, id[0] == main_id ? id[1] : id[0],
+    error = heif_context_get_image_handle(heic->context, id[1] == main_id ? id[0] : id[1],
                                           &heic->primary);
     return error.code == heif_error_Ok ? REFOCUS_OK : rf_heic_fail(heic->read, error);
+}
+
+static void say_views(struct rf_heic *heic)
+{
+    uint32_t pair[2];
+
+    if (has_pair_beside(heic->file, pair)) {
+        heic->read->info->views++;
+        rf_note(heic->read->info, "HEIC: a stereo pair lies beside the photo; no depth is made of "
+                                  "it unasked");
+    } else if (rf_heif_stereo_pair(heic->file, pair)) {
+        rf_note_view(heic->read->info, "HEIC", 2);
+    }
 }
 
 static int run(struct rf_heic *heic)
@@ -179,7 +208,7 @@ static int run(struct rf_heic *heic)
         error = heif_context_get_primary_image_handle(heic->context, &heic->primary);
     if (error.code != heif_error_Ok)
         return rf_heic_fail(read, error);
-    if (read->second) {
+    if (read->view == RF_VIEW_SECOND) {
         status = take_second(heic);
         return status == REFOCUS_OK
                    ? rf_heic_decode(heic, heic->primary, RF_HEIC_COLOUR, &read->image)
@@ -188,8 +217,7 @@ static int run(struct rf_heic *heic)
     read->info->stored_bits = heif_image_handle_get_luma_bits_per_pixel(heic->primary);
     status = read_exif(heic);
     say_orientation(heic);
-    if (rf_heif_is_stereo(heic->file))
-        rf_note_view(read->info, "HEIC", 2);
+    say_views(heic);
     if (status == REFOCUS_OK)
         status = read_icc(heic);
     if (status == REFOCUS_OK)
@@ -208,6 +236,22 @@ static int run(struct rf_heic *heic)
     return status;
 }
 
+/* Make the left one of a stereo pair beside the photo the main picture of *changed, a copy of the
+ * file, or NULL where there is none yet. */
+static int choose_first(struct rf_bytes file, uint8_t **changed)
+{
+    uint8_t *const before = *changed;
+    uint32_t pair[2];
+    int status;
+
+    file.data = before ? before : file.data;
+    if (!has_pair_beside(file, pair))
+        return REFOCUS_OK;
+    status = rf_heif_with_main_picture(file, pair[0], changed);
+    free(before);
+    return status;
+}
+
 int rf_read_heic(struct rf_read *read, struct rf_bytes file)
 {
     struct rf_heic heic = {.read = read, .file = file};
@@ -215,11 +259,18 @@ int rf_read_heic(struct rf_read *read, struct rf_bytes file)
     int status = rf_heif_single_targets(file, &changed);
 
     memcpy(read->info->container, rf_heic_is_avif(file) ? "AVIF" : "HEIC", 5);
+    if (status == REFOCUS_OK && read->view == RF_VIEW_FIRST)
+        status = choose_first(file, &changed);
     heic.file.data = changed ? changed : file.data;
     heic.context = rf_heic_context(&read->limits);
     heic.options = heif_decoding_options_alloc();
-    status = status == REFOCUS_OK && heic.context && heic.options ? run(&heic)
-                                                                  : rf_fail_memory(read->reason);
+    if (status == REFOCUS_ERR_FORMAT) {
+        rf_fail(read->reason, status, "damaged HEIC: its stereo pair is not there");
+    } else {
+        status = status == REFOCUS_OK && heic.context && heic.options
+                     ? run(&heic)
+                     : rf_fail_memory(read->reason);
+    }
     if (heic.primary)
         heif_image_handle_release(heic.primary);
     if (heic.options)

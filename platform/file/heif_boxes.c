@@ -69,12 +69,18 @@ bool rf_heif_primary(struct rf_bytes meta, struct rf_bytes *number)
     return true;
 }
 
-bool rf_heif_is_stereo(struct rf_bytes file)
+bool rf_heif_stereo_pair(struct rf_bytes file, uint32_t pair[2])
 {
-    struct rf_bytes meta, groups, pair;
+    enum { COUNT_AT = 8, FIRST_AT = 12, SECOND_AT = 16, END = 20 };
+    struct rf_bytes meta, groups, group;
 
-    return rf_heif_meta(file, &meta) && rf_heif_find(meta, "grpl", &groups) &&
-           rf_heif_find(groups, "ster", &pair);
+    if (!rf_heif_meta(file, &meta) || !rf_heif_find(meta, "grpl", &groups) ||
+        !rf_heif_find(groups, "ster", &group) || group.size < END ||
+        rf_heif_number(group, COUNT_AT, 4) != 2)
+        return false;
+    pair[0] = rf_heif_number(group, FIRST_AT, 4);
+    pair[1] = rf_heif_number(group, SECOND_AT, 4);
+    return true;
 }
 
 bool rf_heif_is_sequence(struct rf_bytes file)

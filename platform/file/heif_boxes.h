@@ -22,8 +22,9 @@ bool rf_heif_meta(struct rf_bytes file, struct rf_bytes *boxes);
 /* The bytes in them that hold the number of the main picture, two or four. */
 bool rf_heif_primary(struct rf_bytes meta, struct rf_bytes *number);
 
-/* Whether two pictures are said to be a stereo pair (ISO/IEC 23008-12, 6.8.7), not of a burst. */
-bool rf_heif_is_stereo(struct rf_bytes file);
+/* The numbers of two pictures that are said to be a stereo pair, the left one first (ISO/IEC
+ * 23008-12, 6.8.7), and not of a burst. */
+bool rf_heif_stereo_pair(struct rf_bytes file, uint32_t pair[2]);
 /* Whether the file holds tracks alone, and no picture. */
 bool rf_heif_is_sequence(struct rf_bytes file);
 

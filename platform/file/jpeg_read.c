@@ -266,7 +266,7 @@ static int read_second(struct rf_read *read, struct rf_bytes file, const struct 
             if (begin < parts->end || begin > file.size || size > file.size - begin || size < 4 ||
                 !rf_is_jpeg((struct rf_bytes){file.data + begin, (size_t)size}))
                 continue;
-            read->second = false;
+            read->view = RF_VIEW_PHOTO;
             return rf_read_jpeg(read, (struct rf_bytes){file.data + begin, (size_t)size});
         }
     }
@@ -274,7 +274,7 @@ static int read_second(struct rf_read *read, struct rf_bytes file, const struct 
     const struct rf_bytes behind = find_behind(file, parts->end);
 
     if (!parts->mpf.data && behind.data) {
-        read->second = false;
+        read->view = RF_VIEW_PHOTO;
         return rf_read_jpeg(read, behind);
     }
     return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
@@ -290,7 +290,7 @@ int rf_read_jpeg(struct rf_read *read, struct rf_bytes file)
     status = find_parts(read, file, &parts);
     if (status != REFOCUS_OK)
         return status;
-    if (read->second)
+    if (read->view == RF_VIEW_SECOND)
         return read_second(read, file, &parts);
     status = rf_exif_take(read, parts.exif, true);
     read->kept.original_orientation = read->kept.depth_orientation = read->orientation;

@@ -21,7 +21,7 @@ static int read_container(struct rf_read *read, struct rf_bytes file)
 {
     const struct rf_format *const format = rf_format_of_content(file);
 
-    if (read->second && !(format && format->has_second)) {
+    if (read->view == RF_VIEW_SECOND && !(format && format->has_second)) {
         return rf_fail(read->reason, REFOCUS_ERR_UNSUPPORTED,
                        "it is no stereo file; give an MPO, a stereo HEIC, or two pictures");
     }
@@ -98,18 +98,18 @@ struct rf_photo *rf_photo_new(void)
 }
 
 int rf_read_begin(struct rf_read *read, struct rf_bytes file,
-                  const struct refocus_read_limits *limits, bool picture_always, bool second,
+                  const struct refocus_read_limits *limits, bool picture_always, enum rf_view view,
                   struct refocus_photo_info *info, struct rf_gain_map *gain,
                   struct refocus_reason *reason)
 {
     int status;
 
     memset(read, 0, sizeof *read);
-    read->gain = second ? NULL : gain;
+    read->gain = view == RF_VIEW_SECOND ? NULL : gain;
     read->depth.struct_size = sizeof read->depth; /* no meaning yet */
     read->reason = reason;
     read->picture_always = picture_always;
-    read->second = second;
+    read->view = view;
     read->info = info;
     read->orientation = 1;
     read->file_bytes = file.size;
@@ -236,7 +236,7 @@ int rf_read_finish(struct rf_read *read, int status, struct rf_photo **photo)
 }
 
 static int read_memory(struct refocus_photo **photo, const void *bytes, size_t size,
-                       const struct refocus_read_limits *limits, bool second,
+                       const struct refocus_read_limits *limits, enum rf_view view,
                        struct refocus_reason *reason)
 {
     struct refocus_reason unused;
@@ -254,7 +254,7 @@ static int read_memory(struct refocus_photo **photo, const void *bytes, size_t s
     made = rf_photo_new();
     if (!made)
         return rf_fail_memory(reason);
-    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, true, second, &made->info,
+    status = rf_read_begin(&read, (struct rf_bytes){bytes, size}, limits, true, view, &made->info,
                            &made->gain, reason);
     status = rf_read_finish(&read, status, &made);
     *photo = made ? &made->shown : NULL;
@@ -262,7 +262,7 @@ static int read_memory(struct refocus_photo **photo, const void *bytes, size_t s
 }
 
 static int read_path(struct refocus_photo **photo, const char *path,
-                     const struct refocus_read_limits *limits, bool second,
+                     const struct refocus_read_limits *limits, enum rf_view view,
                      struct refocus_reason *reason)
 {
     struct refocus_reason unused;
@@ -279,7 +279,7 @@ static int read_path(struct refocus_photo **photo, const char *path,
     if (status == REFOCUS_OK)
         status = rf_load(path, own.max_bytes, rf_format_is_known, reason, &file);
     if (status == REFOCUS_OK) {
-        status = read_memory(photo, file.data, file.size, limits, second, reason);
+        status = read_memory(photo, file.data, file.size, limits, view, reason);
         free(file.data);
     }
     return status;
@@ -289,20 +289,27 @@ int refocus_photo_read_memory(struct refocus_photo **photo, const void *bytes, s
                               const struct refocus_read_limits *limits,
                               struct refocus_reason *reason)
 {
-    return read_memory(photo, bytes, size, limits, false, reason);
+    return read_memory(photo, bytes, size, limits, RF_VIEW_PHOTO, reason);
 }
 
 int refocus_photo_read(struct refocus_photo **photo, const char *path,
                        const struct refocus_read_limits *limits, struct refocus_reason *reason)
 {
-    return read_path(photo, path, limits, false, reason);
+    return read_path(photo, path, limits, RF_VIEW_PHOTO, reason);
+}
+
+int refocus_photo_read_first(struct refocus_photo **photo, const char *path,
+                             const struct refocus_read_limits *limits,
+                             struct refocus_reason *reason)
+{
+    return read_path(photo, path, limits, RF_VIEW_FIRST, reason);
 }
 
 int refocus_photo_read_second(struct refocus_photo **photo, const char *path,
                               const struct refocus_read_limits *limits,
                               struct refocus_reason *reason)
 {
-    return read_path(photo, path, limits, true, reason);
+    return read_path(photo, path, limits, RF_VIEW_SECOND, reason);
 }
 
 const struct rf_gain_map *rf_photo_gain_map(const struct refocus_photo *photo)

@@ -24,10 +24,10 @@ int rf_read_limits(struct refocus_read_limits *limits, const struct refocus_read
 /* A photo of nothing yet; NULL without memory. */
 struct rf_photo *rf_photo_new(void);
 
-/* Read the file, or the second picture of a stereo file. The info must be new and stay where it
+/* Read a picture of the file. The info must be new and stay where it
  * is, and so must the place for a gain map, which may be NULL: none is wanted. */
 int rf_read_begin(struct rf_read *read, struct rf_bytes file,
-                  const struct refocus_read_limits *limits, bool picture_always, bool second,
+                  const struct refocus_read_limits *limits, bool picture_always, enum rf_view view,
                   struct refocus_photo_info *info, struct rf_gain_map *gain,
                   struct refocus_reason *reason);
 /* Turn everything upright and hand it over, or, when status is an error, free it; returns the

@@ -19,6 +19,9 @@ struct rf_kept {
     int original_orientation, depth_orientation;
 };
 
+/* The picture of a file that is meant: its photo, or one of a stereo file. */
+enum rf_view { RF_VIEW_PHOTO, RF_VIEW_FIRST, RF_VIEW_SECOND };
+
 /* The middle of the subject by EXIF. The sides and the point are those of the camera's pixels. */
 struct rf_subject {
     double x, y;            /* fractions of the sides; x -1: not said */
@@ -52,7 +55,7 @@ struct rf_read {
     /* Gain map and portrait matte of a JPEG, behind its main picture in the file. */
     struct rf_bytes companion[2];
     int companions;
-    bool second; /* the second picture of a stereo file is meant */
+    enum rf_view view;
 };
 
 /* Sizes are checked here and nowhere else, in 64 bits and before memory is asked for: sides are

@@ -51,7 +51,7 @@ def representation():
     return struct.pack('>II', len(nal) + 4, len(nal)) + nal
 
 
-def container(path, items, references, properties, hidden, main=1, inside=()):
+def container(path, items, references, properties, hidden, main=1, inside=(), groups=b''):
     """A HEIC of items, (number, kind, data, properties); of properties, which are counted from 1,
     those with bit 7 are essential. Data of the kinds in `inside` lie in the description itself."""
     information = b''.join(full(b'infe', 2, number in hidden, struct.pack(
@@ -76,7 +76,7 @@ def container(path, items, references, properties, hidden, main=1, inside=()):
             full(b'pitm', 0, 0, struct.pack('>H', main)),
             full(b'iinf', 0, 0, struct.pack('>H', len(items)), information),
             full(b'iref', 0, 0, references),
-            box(b'iprp', box(b'ipco', *properties), associations),
+            box(b'iprp', box(b'ipco', *properties), associations), groups,
             box(b'idat', *(data for _, kind, data, _ in items if kind in inside)),
             full(b'iloc', 1, 0, struct.pack('>BBH', 0x44, 0, len(items)), places))
     with open(path, 'wb') as file:
@@ -84,8 +84,19 @@ def container(path, items, references, properties, hidden, main=1, inside=()):
                    box(b'mdat', *(data for _, kind, data, _ in items if kind not in inside)))
 
 
-def size_of(side):
-    return full(b'ispe', 0, 0, struct.pack('>II', side, side))
+def size_of(width, height=None):
+    return full(b'ispe', 0, 0, struct.pack('>II', width, height or width))
+
+
+def pair_beside(path, picture, photo_size, left, right, size):
+    """A photo that has a stereo pair beside it, as an iPhone's since iOS 26; of each file the one
+    picture. EXIF is of the left one."""
+    (config, photo), (view_config, view) = coded(picture), coded(left)
+    items = [(1, b'hvc1', photo, (0x81, 3)), (2, b'hvc1', coded(right)[1], (0x82, 4)),
+             (3, b'hvc1', view, (0x82, 4)), (4, b'Exif', struct.pack('>I', 0) + tiff(b'eye'), ())]
+    properties = (box(b'hvcC', config), box(b'hvcC', view_config), size_of(*photo_size), size_of(*size))
+    container(path, items, ((b'cdsc', 4, (3,)),), properties, (4,), groups=box(
+        b'grpl', full(b'ster', 0, 0, struct.pack('>IIII', 9, 2, 3, 2))))
 
 
 def phone(path, picture, depth, side, model):

@@ -1,4 +1,5 @@
 """Small pictures, made and read with the standard library alone."""
+import random
 import struct
 import zlib
 
@@ -7,6 +8,18 @@ def ppm(path, width, height, pixel):
     data = bytes(v for y in range(height) for x in range(width) for v in pixel(x, y))
     with open(path, 'wb') as file:
         file.write(b'P6\n%d %d\n255\n' % (width, height) + data)
+
+
+def stereo_pair(left, right):
+    """Grey noise of 160 x 96 pixels: what is near moves by 16 pixels, the others by 4."""
+    rng = random.Random(3)
+    noise = [[rng.randrange(256) for _ in range(200)] for _ in range(96)]
+
+    def seen(x, y, shift):
+        near = 50 <= x + (16 if shift else 0) < 110 and 24 <= y < 72
+        return noise[y][x + 20 + ((16 if near else 4) if shift else 0)]
+    for name, shift in (left, 0), (right, 1):
+        ppm(name, 160, 96, lambda x, y, s=shift: (seen(x, y, s),) * 3)
 
 
 def pgm(path, width, height, value, greatest=255):

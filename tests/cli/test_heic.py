@@ -108,6 +108,27 @@ class Heic(Case):
             want = (40 if x % side < 32 else 220) / 255
             self.assertLess(abs(depth[width * 70 + x] - want), 0.03)
 
+    def test_pair_beside_the_photo(self):
+        """Depth of the pair is that of the left picture, which is the photo then."""
+        pictures.stereo_pair('left.ppm', 'right.ppm')
+        pictures.ppm('main.ppm', 64, 64, lambda x, y: (4 * x, 200 - 2 * y, 60))
+        for name, width, height in (('main', 64, 64), ('left', 160, 96), ('right', 160, 96)):
+            pictures.pgm('flat.pgm', width, height, lambda x, y: 9)
+            self.succeeds('render', name + '.ppm', '--depth', 'flat.pgm', '--blur', '0', '--strip',
+                          '--no-editable', '--jpeg-quality', '100', '-o', name + '.heic')
+        heif_files.pair_beside('spatial.heic', 'main.heic', (64, 64), 'left.heic', 'right.heic',
+                               (160, 96))
+        info = self.reports('info', 'spatial.heic')
+        self.assertEqual((info['picture'], info['views'], info['camera']), ([64, 64], 1, None))
+        self.assertIn('a stereo pair lies beside the photo', ''.join(info['evidence']))
+        if 'OpenCV' not in VERSION:
+            self.skipTest('this build has no OpenCV')
+        self.succeeds('depth', 'spatial.heic', '--stereo-file', '-o', 'within.pfm')
+        self.succeeds('depth', 'left.heic', 'right.heic', '-o', 'given.pfm')
+        self.same(pictures.read_bytes('within.pfm'), pictures.read_bytes('given.pfm'))
+        self.same(self.samples('spatial.heic', '--stereo-file', '--blur', '0'),
+                  self.samples('left.heic', '--depth', 'given.pfm', '--blur', '0'))
+
     def gain_map_file(self, name, **how):
         """The left half of a photo of one colour has the gain 1, the right half 4."""
         side = 64

@@ -21,14 +21,7 @@ class Ways(Case):
             file.write(network())
         pictures.ppm('red.ppm', 320, 192,
                      lambda x, y: (230 if x >= 160 else 40, 90, x * y & 127))
-        rng = random.Random(3)
-        noise = [[rng.randrange(256) for _ in range(200)] for _ in range(96)]
-
-        def seen(x, y, shift):
-            near = 50 <= x + (16 if shift else 0) < 110 and 24 <= y < 72
-            return noise[y][x + 20 + ((16 if near else 4) if shift else 0)]
-        for name, shift in ('left.ppm', 0), ('right.ppm', 1):
-            pictures.ppm(name, 160, 96, lambda x, y, s=shift: (seen(x, y, s),) * 3)
+        pictures.stereo_pair('left.ppm', 'right.ppm')
 
     def both(self, photo, way, depth_way, command, *arguments):
         """The command by a map of `refocus depth`, and in one step."""

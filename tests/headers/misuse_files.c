@@ -34,6 +34,8 @@ static void reading(void)
 
     REFUSED(refocus_photo_read, NULL, NAME, NULL, NULL);
     REFUSED(refocus_photo_read, &photo, NULL, NULL, &reason);
+    REFUSED(refocus_photo_read_first, NULL, NAME, NULL, NULL);
+    REFUSED(refocus_photo_read_first, &photo, NULL, NULL, NULL);
     REFUSED(refocus_photo_read_second, NULL, NAME, NULL, NULL);
     REFUSED(refocus_photo_read_second, &photo, NULL, NULL, NULL);
     REFUSED(refocus_photo_read_memory, NULL, bytes, sizeof bytes, NULL, NULL);

@@ -121,7 +121,8 @@ struct refocus_photo_info {
      *  photo; max_blur_radius 0: it is none. */
     double edited_focus_disparity, edited_max_blur_radius;
     int32_t views; /**< pictures from beside the first, as in an MPO and in a HEIC of two pictures:
-                        the first of them is what refocus_photo_read_second() reads */
+                        the first of them is what refocus_photo_read_second() reads; 1 also where
+                        a HEIC holds a stereo pair beside its photo */
     uint32_t reserved;       /**< 0 */
     double subject_distance; /**< EXIF SubjectDistance in metres, where the lens was focused;
                                   INFINITY; 0: not said */
@@ -191,7 +192,7 @@ REFOCUS_API int refocus_photo_read_memory(struct refocus_photo **photo, const vo
 /**
  * The second picture of a stereo file: of an MPO (a JPEG with the other view behind it,
  * CIPA DC-007), of a JPEG with another one right behind it, as Leia's tablets write (LIF), or of a
- * HEIC with two pictures. refocus_photo_read() reads the first one. That is the left one as a
+ * HEIC with two pictures. refocus_photo_read_first() reads the first one. That is the left one as a
  * rule, but some files have the right one first (`order` of struct refocus_stereo_params).
  *
  * @return as refocus_photo_read(); REFOCUS_ERR_UNSUPPORTED when there is only one
@@ -200,6 +201,18 @@ REFOCUS_API int refocus_photo_read_memory(struct refocus_photo **photo, const vo
 REFOCUS_API int refocus_photo_read_second(struct refocus_photo **photo, const char *path,
                                           const struct refocus_read_limits *limits,
                                           struct refocus_reason *reason);
+
+/**
+ * The first picture of a stereo file, which refocus_photo_read_second() reads the other one of. It
+ * is what refocus_photo_read() reads, but for a HEIC that holds a stereo pair beside its photo, as
+ * iPhones write since iOS 26: there it is the left one of the pair, smaller than the photo and
+ * without the photo's depth and gain map.
+ *
+ * @return as refocus_photo_read()
+ */
+REFOCUS_API int refocus_photo_read_first(struct refocus_photo **photo, const char *path,
+                                         const struct refocus_read_limits *limits,
+                                         struct refocus_reason *reason);
 
 /** Free a photo and set the handle to NULL. A NULL handle is fine. */
 REFOCUS_API void refocus_photo_free(struct refocus_photo **photo);

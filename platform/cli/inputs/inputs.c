@@ -129,14 +129,16 @@ void input_tell_bits(const struct refocus_photo *photo, const char *name)
                        strcmp(photo->info->container, "HEIC") == 0 ? "rounded" : "dithered");
 }
 
-int input_take_photo(struct input *input, const char *photo, const char *instead)
+/* Read a photo, or the first picture of a stereo file. */
+static int take_photo(struct input *input, const char *photo, bool first, const char *instead)
 {
     struct refocus_reason reason = {""};
     int status;
 
     memset(input, 0, sizeof *input);
     input->photo_name = input->depth_name = photo;
-    status = standard_photo(&input->photo, photo, &reason);
+    status = first ? refocus_photo_read_first(&input->photo, photo, limits_taken(), &reason)
+                   : standard_photo(&input->photo, photo, &reason);
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, photo, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
@@ -146,12 +148,26 @@ int input_take_photo(struct input *input, const char *photo, const char *instead
     return EXIT_DONE;
 }
 
+int input_take_photo(struct input *input, const char *photo, const char *instead)
+{
+    return take_photo(input, photo, false, instead);
+}
+
 int input_read_photo(struct input *input, const char *photo, const char *instead)
 {
     const int status = input_take_photo(input, photo, instead);
 
     if (status == EXIT_DONE)
         input_tell_bits(input->photo, photo);
+    return status;
+}
+
+int input_read_left(struct input *input, const char *left, bool within)
+{
+    const int status = take_photo(input, left, within, "a photo");
+
+    if (status == EXIT_DONE)
+        input_tell_bits(input->photo, left);
     return status;
 }
 
@@ -264,7 +280,8 @@ struct refocus_scene input_scene(const struct input *input, const struct refocus
 
 int input_read(struct input *input, const char *photo, const struct depth_settings *settings)
 {
-    int status = input_take_photo(input, photo, "the photo, and this file to --depth");
+    int status =
+        take_photo(input, photo, settings->stereo.within, "the photo, and this file to --depth");
 
     if (status != EXIT_DONE)
         return status;

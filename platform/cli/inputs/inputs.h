@@ -101,7 +101,9 @@ int input_check_depth(const struct depth_settings *settings);
 /* Read a photo into a new input, which it names; ended by input_free(), also after an
  * error. What to give instead of a depth map ends the words of that error. */
 int input_read_photo(struct input *input, const char *photo, const char *instead);
-/* Likewise, without the line of input_tell_bits(). */
+/* Likewise the left picture of a pair, whose other one may be within the same file. */
+int input_read_left(struct input *input, const char *left, bool within);
+/* Likewise a photo, without the line of input_tell_bits(). */
 int input_take_photo(struct input *input, const char *photo, const char *instead);
 
 /* Print one line where a photo has more than the 8 bits a channel that are rendered. */

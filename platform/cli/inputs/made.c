@@ -149,7 +149,7 @@ static int match(struct input *input, const char *right, const struct stereo_set
 int input_read_stereo(struct input *input, const char *left, const char *right,
                       const struct stereo_settings *how, const struct depth_settings *settings)
 {
-    int status = input_read_photo(input, left, "a photo");
+    int status = input_read_left(input, left, how->within);
 
     if (status == EXIT_DONE)
         status = match(input, right, how, settings);

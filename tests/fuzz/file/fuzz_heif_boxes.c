@@ -37,6 +37,7 @@ static void find_gain_map(struct rf_bytes file)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     const struct rf_bytes file = {data, size};
+    uint32_t pair[2];
 
     for (uint32_t item = 0; item < 3; item++) {
         const int orientation = rf_heif_orientation(file, item);
@@ -44,7 +45,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             abort();
     }
     rf_heif_is_sequence(file);
-    rf_heif_is_stereo(file);
+    rf_heif_stereo_pair(file, pair);
     change(file);
     find_gain_map(file);
     return 0;

@@ -1,12 +1,12 @@
-/* fuzz_photo.c: any bytes as a photo of any format, and as the second one of a stereo file. */
+/* fuzz_photo.c: any bytes as a photo of any format, and as either one of a stereo file. */
 #include "fuzz.h"
 
-static void read_second(const uint8_t *data, size_t size)
+static void read_view(const uint8_t *data, size_t size, enum rf_view view)
 {
     struct fuzz_reading reading;
 
     fuzz_begin(&reading);
-    if (rf_read_begin(&reading.read, (struct rf_bytes){data, size}, &fuzz_limits, true, true,
+    if (rf_read_begin(&reading.read, (struct rf_bytes){data, size}, &fuzz_limits, true, view,
                       &reading.info, NULL, &reading.reason) != REFOCUS_OK &&
         reading.reason.text[0] == '\0')
         abort();
@@ -28,6 +28,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         fuzz_check_photo(photo);
     }
     refocus_photo_free(&photo);
-    read_second(data, size);
+    read_view(data, size, RF_VIEW_FIRST);
+    read_view(data, size, RF_VIEW_SECOND);
     return 0;
 }

@@ -179,13 +179,15 @@ static void heif_stereo(void **state)
     (void)state;
     for (int i = 0; i < 3; i++) {
         struct bytes file = bytes_copy("\0\0\0\24ftypheic\0\0\0\0mif1", 20);
+        uint32_t pair[2];
 
-        bytes_add(&file, "\0\0\0\64meta\0\0\0\0\0\0\0\50grpl\0\0\0\40", 24);
+        bytes_add(&file, "\0\0\0\60meta\0\0\0\0\0\0\0\44grpl\0\0\0\34", 24);
         bytes_add(&file, names[i], 4);
-        bytes_add(&file, "\0\0\0\0\0\0\0\3\0\0\0\2\0\0\0\1\0\0\0\2\0\0\0\0", 24);
-        assert_true(rf_heif_is_stereo((struct rf_bytes){file.data, file.size}) == (i == 0));
+        bytes_add(&file, "\0\0\0\0\0\0\0\3\0\0\0\2\0\0\0\7\0\0\0\4", 20);
+        assert_true(rf_heif_stereo_pair((struct rf_bytes){file.data, file.size}, pair) == (i == 0));
+        assert_true(i > 0 || (pair[0] == 7 && pair[1] == 4));
         for (size_t size = 0; size < file.size; size++)
-            assert_false(rf_heif_is_stereo((struct rf_bytes){file.data, size}));
+            assert_false(rf_heif_stereo_pair((struct rf_bytes){file.data, size}, pair));
         bytes_free(&file);
     }
 }
