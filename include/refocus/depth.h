@@ -34,6 +34,9 @@ enum refocus_depth_flags {
     REFOCUS_DEPTH_2047_IS_UNKNOWN = 4, /**< nor does 2047, as in raw Kinect frames */
 };
 
+/** Most values of refocus_depth_map.unknown. */
+enum { REFOCUS_DEPTH_MOST_UNKNOWN = 4 };
+
 /**
  * A depth map as a sensor or a file gives it. The caller owns the samples. Start from
  * refocus_depth_map_default().
@@ -66,6 +69,13 @@ struct refocus_depth_map {
      *  rest, and no nine of which lie in a square. A sample of 3 mm would leave 1/200 of it to
      *  what is 0.4 to 1.2 m away. */
     double near_m, far_m;
+
+    /** Samples of these values hold none, beside those of flags: -16 of OpenCV's matchers, say. The
+     *  first unknown_count of them count, 0 to REFOCUS_DEPTH_MOST_UNKNOWN. Of floats, give what a
+     *  float is exactly. */
+    double unknown[REFOCUS_DEPTH_MOST_UNKNOWN];
+    int32_t unknown_count;
+    int32_t reserved; /**< 0 */
 };
 
 /** A map of 8-bit disparities without samples yet; the samples follow. */
@@ -78,6 +88,21 @@ static inline struct refocus_depth_map refocus_depth_map_default(void)
     map.sample = REFOCUS_SAMPLE_U8;
     map.meaning = REFOCUS_DEPTH_DISPARITY;
     return map;
+}
+
+/** Whether flags or unknown of the map say that a sample of this value holds none: 1 or 0. */
+static inline int refocus_depth_is_code(const struct refocus_depth_map *map, double value)
+{
+    if ((value == 0 && (map->flags & REFOCUS_DEPTH_ZERO_IS_UNKNOWN)) ||
+        (value == 2047 && (map->flags & REFOCUS_DEPTH_2047_IS_UNKNOWN)) ||
+        ((map->flags & REFOCUS_DEPTH_MAX_IS_UNKNOWN) &&
+         ((value == 255 && map->sample == REFOCUS_SAMPLE_U8) ||
+          (value == 65535 && map->sample == REFOCUS_SAMPLE_U16))))
+        return 1;
+    for (int i = 0; i < map->unknown_count && i < REFOCUS_DEPTH_MOST_UNKNOWN; i++)
+        if (value == map->unknown[i])
+            return 1;
+    return 0;
 }
 
 /** The findings of refocus_depth_to_disparity(), which are written as far as struct_size goes.

@@ -37,8 +37,8 @@ static int refuse_words(const struct rf_gst_settings *settings, struct refocus_r
 
     if (refocus_depth_set_invalid(&map, settings->invalid) != REFOCUS_OK)
         snprintf(reason->text, sizeof reason->text,
-                 "invalid '%.60s' is not known; give zero, max or 2047, or several with commas",
-                 settings->invalid);
+                 "invalid '%.60s' is not known; give zero, max or numbers, up to %d, with commas",
+                 settings->invalid, REFOCUS_DEPTH_MOST_UNKNOWN);
     else
         snprintf(reason->text, sizeof reason->text,
                  "depth-unit '%.60s' is not known; give disparity, inverse, mm, m, or a number per "
@@ -101,7 +101,6 @@ static bool describe(const GstVideoFrame *frame, const struct rf_gst_settings *s
 static bool has_reading(const struct refocus_depth_map *map)
 {
     const bool bytes = map->sample == REFOCUS_SAMPLE_U8;
-    const int most = bytes ? UINT8_MAX : UINT16_MAX;
 
     for (int y = 0; y < map->height; y++) {
         const uint8_t *const row = (const uint8_t *)map->samples + y * map->stride;
@@ -111,9 +110,7 @@ static bool has_reading(const struct refocus_depth_map *map)
 
             if (!bytes)
                 memcpy(&v, row + 2 * (size_t)x, sizeof v);
-            if (!((v == 0 && map->flags & REFOCUS_DEPTH_ZERO_IS_UNKNOWN) ||
-                  (v == most && map->flags & REFOCUS_DEPTH_MAX_IS_UNKNOWN) ||
-                  (v == 2047 && map->flags & REFOCUS_DEPTH_2047_IS_UNKNOWN)))
+            if (!refocus_depth_is_code(map, v))
                 return true;
         }
     }

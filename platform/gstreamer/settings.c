@@ -109,7 +109,7 @@ static const struct row rows[] = {
      "The meaning of samples of depth: disparity (bright is near; the default of the pad), "
      "inverse, mm, m, or a number per metre such as 5000/m; NULL: for a file what it says itself"},
     {TEXT, READY, "invalid", AT(invalid), 0, 0, 0, NULL, NULL, "Invalid",
-     "Samples of depth that hold no value, with commas: zero, max (255 or 65535), 2047; in "
+     "Samples of depth that hold no value, with commas: zero, max (255 or 65535), and numbers; in "
      "distances zero never does"},
     {INTEGER, READY, "threads", AT(threads), 0, 64, 0, NULL, NULL, "Threads",
      "Threads that render; 0: one for each processor. They do not change a byte"},

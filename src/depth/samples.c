@@ -33,7 +33,8 @@ int rf_check_map(const struct refocus_depth_map *map)
         return REFOCUS_ERR_ARGUMENT;
 
     const int bytes = sample_bytes(map->sample);
-    if (bytes == 0 || (map->flags & ~(uint32_t)KNOWN_FLAGS) != 0 ||
+    if (bytes == 0 || (map->flags & ~(uint32_t)KNOWN_FLAGS) != 0 || map->unknown_count < 0 ||
+        map->unknown_count > REFOCUS_DEPTH_MOST_UNKNOWN ||
         !rf_good_stride(map->stride, (ptrdiff_t)map->width * bytes, map->height))
         return REFOCUS_ERR_ARGUMENT;
 

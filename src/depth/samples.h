@@ -22,18 +22,6 @@ int rf_check_map(const struct refocus_depth_map *map);
  * found nothing there. More of them are a sky that is beyond the range. */
 bool rf_greatest_is_below(const struct refocus_depth_map *map, int percent);
 
-/* The codes that sensors have for "no value". */
-static inline bool rf_is_code(const struct refocus_depth_map *map, double v)
-{
-    const double most = map->sample == REFOCUS_SAMPLE_U8    ? 255
-                        : map->sample == REFOCUS_SAMPLE_U16 ? 65535
-                                                            : NAN;
-
-    return (v == 0 && (map->flags & REFOCUS_DEPTH_ZERO_IS_UNKNOWN)) ||
-           (v == most && (map->flags & REFOCUS_DEPTH_MAX_IS_UNKNOWN)) ||
-           (v == 2047 && (map->flags & REFOCUS_DEPTH_2047_IS_UNKNOWN));
-}
-
 static inline const char *rf_row_of(const struct refocus_depth_map *map, int y)
 {
     return (const char *)map->samples + y * map->stride;
@@ -64,7 +52,7 @@ static inline double rf_value_of(const struct refocus_depth_map *map, const char
  * NAN when it is none. */
 static inline double rf_rank_of(const struct refocus_depth_map *map, double v)
 {
-    if (!isfinite(v) || (map->flags && rf_is_code(map, v)))
+    if (!isfinite(v) || ((map->flags || map->unknown_count) && refocus_depth_is_code(map, v)))
         return NAN;
     if (map->meaning == REFOCUS_DEPTH_DISPARITY)
         return v;

@@ -37,8 +37,8 @@ class DepthAndInfo(Case):
                    'or .jpeg', 'depth', 'depth.pgm', '-o', 'd.bmp')
         self.fails(1, 'd.jpg: depth is saved into JPEG photos; the photo is none',
                    'depth', 'photo.ppm', '--depth', 'depth.pgm', '-o', 'd.jpg')
-        self.fails(2, "--invalid: 'zero,7' is not known; give zero, max or 2047, or several with "
-                   'commas', 'depth', 'depth.pgm', '-o', 'd.png', '--invalid', 'zero,7')
+        self.fails(2, "--invalid: 'zero,x' is not known; give zero, max or numbers, up to 4, with "
+                   'commas', 'depth', 'depth.pgm', '-o', 'd.png', '--invalid', 'zero,x')
         self.assertFalse(os.path.exists('d.jpg') or os.path.exists('d.tif'))
 
     def test_depth_repair(self):

@@ -151,7 +151,8 @@ class Files(Live):
         self.assertEqual(plain[0], 2)
         self.assertEqual(maps(*[(65535, 14), (65535, 17)] * 5), plain)  # 16 are a hundredth
         self.assertGreater(maps(*[(65535, 200)] * 10)[0], 60)
-        for codes, code in ('max', 65535), ('zero,2047', 2047):
+        for codes, code in ('max', 65535), ('zero,2047', 2047), (
+                '65520,-1', 65520):
             more = ['--invalid', codes]
             self.assertEqual(maps(*[(code, 200)] * 10), plain)
         self.fails(2, "--invalid: 'most' is not known", '--camera', 'y4m:in.y4m', '--depth', 'depth.pgm',

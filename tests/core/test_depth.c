@@ -38,6 +38,41 @@ static struct refocus_depth_map distances_of(uint32_t sample, const void *sample
     return map;
 }
 
+/* Values of any type that stand for none are filled, and are no end of the range. */
+static void test_unknown_values(void **state)
+{
+    (void)state;
+    static const uint8_t u8[] = {10, 7, 20, 7, 30, 9};
+    static const uint16_t u16[] = {10, 65520, 20, 65520, 30, 9};
+    static const float f32[] = {10, -16, 20, -16, 30, 9};
+    const struct {
+        uint32_t sample;
+        const void *samples;
+        double code;
+    } maps[] = {{REFOCUS_SAMPLE_U8, u8, 7},
+                {REFOCUS_SAMPLE_U16, u16, 65520},
+                {REFOCUS_SAMPLE_F32, f32, -16}};
+
+    for (int i = 0; i < 3; i++) {
+        struct refocus_depth_map map = map_of(maps[i].sample, maps[i].samples, 6, 1);
+        struct refocus_depth_report report = refocus_depth_report_default();
+        uint16_t out[6];
+
+        map.unknown[0] = 9;
+        map.unknown[1] = maps[i].code;
+        map.unknown[2] = 10; /* beyond the count */
+        map.unknown_count = 2;
+        assert_int_equal(refocus_depth_to_disparity(&map, out, 12, &report), REFOCUS_OK);
+        assert_int_equal(report.unknown, 3);
+        assert_true(report.value_far == 10 && report.value_near == 30);
+        assert_true(out[0] == 0 && out[2] == 32768 && out[4] == 65535);
+        map.unknown_count = REFOCUS_DEPTH_MOST_UNKNOWN + 1;
+        assert_int_equal(refocus_depth_to_disparity(&map, out, 12, &report), REFOCUS_ERR_ARGUMENT);
+        map.unknown_count = -1;
+        assert_int_equal(refocus_depth_to_disparity(&map, out, 12, &report), REFOCUS_ERR_ARGUMENT);
+    }
+}
+
 static void test_disparity_samples(void **state)
 {
     (void)state;
@@ -582,6 +617,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(other_sizes),
+        cmocka_unit_test(test_unknown_values),
         cmocka_unit_test(test_disparity_samples),
         cmocka_unit_test(test_distances),
         cmocka_unit_test(test_unknown_samples),

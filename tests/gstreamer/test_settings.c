@@ -191,7 +191,7 @@ static void wrong_from_the_beginning(void **state)
 {
     static const char *const wrong[][3] = {
         {"aperture", "polygon", "aperture 'polygon' is not known"},
-        {"invalid", "zero,7", "invalid 'zero,7' is not known; give zero, max or 2047"}};
+        {"invalid", "zero,x", "invalid 'zero,x' is not known; give zero, max or numbers"}};
 
     (void)state;
     for (size_t i = 0; i < G_N_ELEMENTS(wrong); i++) {

@@ -75,7 +75,9 @@ static void bad_depth_maps(void)
                                  BAD(refocus_depth_map, value_far, (double)-INFINITY),
                                  BAD(refocus_depth_map, near_m, -1),
                                  BAD(refocus_depth_map, near_m, (double)NAN),
-                                 BAD(refocus_depth_map, far_m, (double)NAN)};
+                                 BAD(refocus_depth_map, far_m, (double)NAN),
+                                 BAD(refocus_depth_map, unknown_count, -1),
+                                 BAD(refocus_depth_map, unknown_count, INT32_MAX)};
     const struct refocus_repair_params repair = refocus_repair_params_default();
     const struct refocus_depth_map good = depth_map();
     uint32_t flags = REFOCUS_DEPTH_MAX_IS_UNKNOWN;
@@ -92,6 +94,9 @@ static void bad_depth_maps(void)
         REFUSED(refocus_depth_repair, &map, &repair, out, 2 * W, NULL);
         REFUSED(refocus_depth_follow_flags, &map, &flags);
         assert_int_equal(flags, REFOCUS_DEPTH_MAX_IS_UNKNOWN);
+        map.flags = 0;
+        GIVES(0, refocus_depth_is_code, &map, -16);
+        GIVES(0, refocus_depth_is_code, &map, (double)NAN);
     }
     misuse_spoil(NULL, NULL);
 }

@@ -304,10 +304,10 @@ REFOCUS_API int refocus_depth_read_memory(struct refocus_photo **depth, const vo
  *  REFOCUS_ERR_ARGUMENT */
 REFOCUS_API int refocus_depth_set_unit(struct refocus_depth_map *map, const char *unit);
 
-/** Words of the command line for samples that hold no value: "zero", "max", "2047", or several
- *  with commas; NULL = none. Adds to @p map's flags, so it comes after
+/** Words of the command line for samples that hold no value: "zero", "max" and numbers such as
+ *  "-16", several with commas; NULL = none. Adds to @p map's flags and unknown, so it comes after
  *  refocus_depth_set_unit(). @return REFOCUS_OK or REFOCUS_ERR_ARGUMENT, which changes
- *  nothing */
+ *  nothing: also where there are more numbers than unknown has places */
 REFOCUS_API int refocus_depth_set_invalid(struct refocus_depth_map *map, const char *codes);
 
 struct refocus_depth_write;

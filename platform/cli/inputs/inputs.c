@@ -32,8 +32,9 @@ int input_check_depth(const struct depth_settings *settings)
     limits_take(&settings->limits);
     if (refocus_depth_set_invalid(&map, settings->invalid) != REFOCUS_OK)
         return report_failure(EXIT_WRONG, "--invalid",
-                              "'%s' is not known; give zero, max or 2047, or several with commas",
-                              settings->invalid);
+                              "'%s' is not known; give zero, max or numbers, up to %d, with "
+                              "commas",
+                              settings->invalid, REFOCUS_DEPTH_MOST_UNKNOWN);
 
     if (settings->file && standard_is(settings->file))
         return report_failure(EXIT_WRONG, "--depth",

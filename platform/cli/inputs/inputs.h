@@ -78,9 +78,10 @@ extern const struct option_word gain_map_words[];
 #define INVALID_OPTION(type, member)                                                               \
     {                                                                                              \
         OPTION(OPTION_TEXT, "--invalid", "CODES", type, member.invalid),                           \
-            .help = "samples that hold no value, with commas: zero, max (255 or 65535), 2047; "    \
-                    "NaN and infinity never do, nor in distances zero, and 65535 if less than a "  \
-                    "hundredth has it"                                                             \
+            .help =                                                                                \
+                "samples that hold no value, up to 4 with commas: zero, max (255 or 65535), or "   \
+                "numbers as in --invalid=-16; NaN and infinity never do, nor in distances zero, "  \
+                "and 65535 if less than a hundredth has it"                                        \
     }
 #define REPAIR_OPTIONS(type, member)                                                               \
     INVALID_OPTION(type, member),                                                                  \

@@ -92,8 +92,7 @@ static int clear_codes(struct samples *samples, struct refocus_depth_map *map, c
     map->flags |= samples->flags;
     refocus_depth_set_invalid(map, invalid);
     for (size_t i = 0; map->meaning == REFOCUS_DEPTH_DISTANCE && i < count; i++)
-        if ((samples->own[i] == UINT16_MAX && map->flags & REFOCUS_DEPTH_MAX_IS_UNKNOWN) ||
-            (samples->own[i] == 2047 && map->flags & REFOCUS_DEPTH_2047_IS_UNKNOWN))
+        if (refocus_depth_is_code(map, samples->own[i]))
             samples->own[i] = 0;
     return REFOCUS_OK;
 }

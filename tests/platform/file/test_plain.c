@@ -251,7 +251,8 @@ static void unit_words(void **state)
 
 static void invalid_words(void **state)
 {
-    static const char *const bad[] = {"7", "zero,7", "ma", "maxi", ",max", "max,,zero", "max zero"};
+    static const char *const bad[] = {"x",         "zero,x",   "ma",        "maxi", ",max",
+                                      "max,,zero", "max zero", "1,2,3,4,5", "1e99", "nan"};
     struct refocus_depth_map map = refocus_depth_map_default();
 
     (void)state;
@@ -260,11 +261,46 @@ static void invalid_words(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         assert_int_equal(refocus_depth_set_invalid(&map, bad[i]), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(map.flags, 0);
+    assert_int_equal(map.unknown_count, 0);
     assert_int_equal(refocus_depth_set_invalid(&map, "max"), REFOCUS_OK);
     assert_int_equal(map.flags, REFOCUS_DEPTH_MAX_IS_UNKNOWN);
     assert_int_equal(refocus_depth_set_invalid(&map, "2047,zero"), REFOCUS_OK);
     assert_int_equal(map.flags, REFOCUS_DEPTH_ZERO_IS_UNKNOWN | REFOCUS_DEPTH_MAX_IS_UNKNOWN |
                                     REFOCUS_DEPTH_2047_IS_UNKNOWN);
+    for (int again = 0; again < 2; again++) {
+        assert_int_equal(refocus_depth_set_invalid(&map, "-16,0.1,0"), REFOCUS_OK);
+        assert_int_equal(map.unknown_count, 2);
+        assert_true(map.unknown[0] == -16 && map.unknown[1] == (double)0.1f);
+    }
+    map.unknown_count = 0;
+    map.struct_size = REFOCUS_SIZE_TO(struct refocus_depth_map, far_m);
+    assert_int_equal(refocus_depth_set_invalid(&map, "-16"), REFOCUS_ERR_ARGUMENT);
+    assert_int_equal(refocus_depth_set_invalid(&map, "max"), REFOCUS_OK);
+}
+
+/* A sample that stands for no value is no end of the inverse of floats, be it the least or the
+ * greatest. */
+static void invalid_ends(void **state)
+{
+    static const float samples[] = {-1, 2, 5, 3, 99, 4};
+    struct refocus_depth_map map = refocus_depth_map_default();
+
+    (void)state;
+    map.sample = REFOCUS_SAMPLE_F32;
+    map.samples = samples;
+    map.width = 3;
+    map.height = 2;
+    map.stride = 12;
+    assert_int_equal(refocus_depth_set_unit(&map, "inverse"), REFOCUS_OK);
+    assert_int_equal(refocus_depth_set_invalid(&map, "50"), REFOCUS_OK);
+    assert_true(map.value_near == -1 && map.value_far == 99);
+    assert_int_equal(refocus_depth_set_invalid(&map, "-1"), REFOCUS_OK);
+    assert_true(map.value_near == 2 && map.value_far == 99);
+    map.stride = 5;
+    assert_int_equal(refocus_depth_set_invalid(&map, "99"), REFOCUS_ERR_ARGUMENT);
+    map.stride = 12;
+    assert_int_equal(refocus_depth_set_invalid(&map, "99"), REFOCUS_OK);
+    assert_true(map.value_near == 2 && map.value_far == 5);
 }
 
 static void range_overrules(void **state)
@@ -466,6 +502,7 @@ int main(void)
         cmocka_unit_test(ends_of_floats),
         cmocka_unit_test(unit_words),
         cmocka_unit_test(invalid_words),
+        cmocka_unit_test(invalid_ends),
         cmocka_unit_test(range_overrules),
         cmocka_unit_test(unknown_content),
         cmocka_unit_test(limits_are_kept),
