@@ -92,9 +92,10 @@ static int apply_unit(struct rf_read *read, const char *unit, double max_value)
     if (unit || !said) {
         const int status = rf_depth_set_unit(map, unit ? unit : "disparity", max_value);
         if (status != REFOCUS_OK) {
-            return rf_fail(read->reason, status,
-                           "the depth unit is none of disparity, inverse, m, mm, or a "
-                           "number per metre such as 5000/m");
+            return rf_fail(
+                read->reason, status,
+                "the depth unit is none of disparity, disparity/16, inverse, m, mm, or a "
+                "number per metre such as 5000/m");
         }
         if (meaning != map->meaning)
             map->near_m = map->far_m = 0.0;
@@ -133,7 +134,7 @@ int refocus_depth_read_memory(struct refocus_photo **depth, const void *bytes, s
     status = check_range(near_m, far_m, reason);
     if (status == REFOCUS_OK && unit && rf_depth_set_unit(&probe, unit, 255.0) != REFOCUS_OK) {
         status = rf_fail(reason, REFOCUS_ERR_ARGUMENT,
-                         "the depth unit is none of disparity, inverse, m, mm, or a "
+                         "the depth unit is none of disparity, disparity/16, inverse, m, mm, or a "
                          "number per metre such as 5000/m");
     }
     if (status == REFOCUS_OK && !bytes && size > 0)

@@ -31,6 +31,17 @@ static double metres_in(const char *unit)
     return 1.0 / per_metre;
 }
 
+/* Whether a unit is "disparity/N": N-ths of a pixel, in which matchers store whole numbers. The
+ * range is measured then, as their type's is not that of the scene. */
+static bool is_fixed_point(const char *unit)
+{
+    static const char word[] = "disparity/";
+    double parts;
+
+    return strncmp(unit, word, sizeof word - 1) == 0 &&
+           rf_parse_number(unit + sizeof word - 1, &parts) && parts > 0.0;
+}
+
 /* Floats have no greatest code, but for those that were whole numbers. "Greatest is nearest" needs
  * no measuring here, see value_near in depth.h; for the inverse the ends of the map are its ends.
  */
@@ -60,14 +71,14 @@ static void set_float_ends(struct refocus_depth_map *map, bool inverse)
 
 int rf_depth_set_unit(struct refocus_depth_map *map, const char *unit, double max_value)
 {
-    const bool inverse = strcmp(unit, "inverse") == 0;
+    const bool inverse = strcmp(unit, "inverse") == 0, fixed_point = is_fixed_point(unit);
     double metres;
 
-    if (inverse || strcmp(unit, "disparity") == 0) {
+    if (inverse || fixed_point || strcmp(unit, "disparity") == 0) {
         map->meaning = REFOCUS_DEPTH_DISPARITY;
         map->flags = 0;
         map->metres_per_unit = map->metres_at_zero = 0.0;
-        if (max_value == 0.0) {
+        if (fixed_point || max_value == 0.0) {
             set_float_ends(map, inverse);
         } else {
             map->value_near = inverse ? 0.0 : max_value;

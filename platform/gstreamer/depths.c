@@ -41,8 +41,8 @@ static int refuse_words(const struct rf_gst_settings *settings, struct refocus_r
                  settings->invalid, REFOCUS_DEPTH_MOST_UNKNOWN);
     else
         snprintf(reason->text, sizeof reason->text,
-                 "depth-unit '%.60s' is not known; give disparity, inverse, mm, m, or a number per "
-                 "metre such as 5000/m",
+                 "depth-unit '%.60s' is not known; give disparity, disparity/16, inverse, mm, m, "
+                 "or a number per metre such as 5000/m",
                  settings->depth_unit);
     return REFOCUS_ERR_ARGUMENT;
 }

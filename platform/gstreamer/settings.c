@@ -107,7 +107,8 @@ static const struct row rows[] = {
      "File of a depth map that holds for all frames, when the pad depth is not there"},
     {TEXT, READY, "depth-unit", AT(depth_unit), 0, 0, 0, NULL, NULL, "Depth unit",
      "The meaning of samples of depth: disparity (bright is near; the default of the pad), "
-     "inverse, mm, m, or a number per metre such as 5000/m; NULL: for a file what it says itself"},
+     "disparity/16 (16ths of a pixel, range of each map), inverse, mm, m, or a number per metre "
+     "such as 5000/m; NULL: for a file what it says itself"},
     {TEXT, READY, "invalid", AT(invalid), 0, 0, 0, NULL, NULL, "Invalid",
      "Samples of depth that hold no value, with commas: zero, max (255 or 65535), and numbers; in "
      "distances zero never does"},

@@ -91,6 +91,59 @@ class DepthAndInfo(Case):
         pictures.pgm('other.pgm', W, H, lambda x, y: (100, 32767, 0)[x % 3], 65535)
         self.assertIn('doubtful', self.succeeds('info', 'other.pgm'))
 
+    def test_an_end_apart(self):
+        """A value that many samples of disparity share beyond a gap may stand for none."""
+        told = '%d %% of its samples are %s, apart from all others, and taken for what is %s; if ' \
+            'they hold no value, give --invalid=%s'
+
+        def seen(code, part, first, step):
+            """Every part-th sample has the code, the others go up in 48 steps."""
+            return lambda x, y: code if (x + W * y) % part == 0 else first + step * x
+        maps = ((-1, 4, 0, 0.0625, 'farthest'), (-16, 4, 3, 1, 'farthest'),
+                (0, 100, 12, 1, 'farthest'), (65520, 4, 0, 16, 'nearest'))
+        for code, part, first, step, end in maps:
+            pictures.pfm('ends.pfm', W, H, seen(code, part, first, step))
+            line = told % (100 / part, code, end, code)
+            for arguments in (('render', 'photo.ppm', '--depth', 'ends.pfm', '-o', 'a.ppm'),
+                              ('depth', 'ends.pfm', '-o', 'a.png')):
+                self.warns('ends.pfm: ' + line, *arguments)
+                self.warns('ends.pfm: ' + line, *arguments, '--depth-unit', 'disparity')
+                self.succeeds(*arguments, '--invalid=%d' % code)
+            self.assertIn('doubtful      %s\n' % line, self.succeeds('info', 'ends.pfm'))
+            found = self.reports('info', 'ends.pfm', '--invalid=%d' % code)['depth']
+            self.assertEqual(found['unknown'], -(-W * H // part))
+        for code, part, first, step in ((0, 110, 12, 1), (0, 4, 3, 1), (5, 4, 20, 1), (65, 4, 0, 1),
+                                        (90, 4, 0, 2)):
+            pictures.pfm('ends.pfm', W, H, seen(code, part, first, step))
+            self.assertNotIn('apart', self.succeeds('info', 'ends.pfm'))
+
+    def test_parts_of_a_pixel(self):
+        """Whole numbers of parts of a pixel use little of 16 bits, and have their own range."""
+        told = 'its samples from 16 to 768 use 1.1 % of their range, and leave as little of the ' \
+            'blur; if they are parts of a pixel, give --depth-unit disparity/16 (OpenCV) or /256 ' \
+            '(KITTI), by which the range is measured'
+        sharp = pictures.read_pnm('photo.ppm')
+        for name, value in ('parts.pgm', 16), ('parts.pfm', 1):
+            write = pictures.pfm if name.endswith('pfm') else pictures.pgm
+            write(name, W, H, lambda x, y, v=value: v * (x + 1),
+                  **({} if write is pictures.pfm else {'greatest': 65535}))
+        lens = '--focus-at', '0,0', '--blur', '9', '--depth-edges', 'as-given', '-o', 'a.ppm'
+        self.warns('parts.pgm: ' + told, 'render', 'photo.ppm', '--depth', 'parts.pgm',
+                   '--depth-unit', 'disparity', *lens)
+        self.assertEqual(pictures.read_pnm('a.ppm'), sharp)
+        self.succeeds('render', 'photo.ppm', '--depth', 'parts.pfm', *lens)
+        wanted = pictures.read_pnm('a.ppm')
+        self.assertNotEqual(wanted, sharp)
+        for unit in 'disparity/16', 'disparity/256':
+            self.succeeds('render', 'photo.ppm', '--depth', 'parts.pgm', '--depth-unit', unit,
+                          *lens)
+            self.assertEqual(pictures.read_pnm('a.ppm'), wanted)
+        for unit in 'disparity/', 'disparity/0', 'disparity/-1', 'disparity/inf', 'disparity/x':
+            self.fails(2, re.compile("^refocus: --depth-unit: '%s' is not known" % unit), 'depth', 'parts.pgm',
+                       '--depth-unit', unit, '-o', 'a.png')
+        pictures.pgm('parts.pgm', W, H, lambda x, y: x * 140, 65535)  # a tenth, and a little
+        self.assertNotIn('little', self.succeeds('info', 'parts.pgm', '--depth-unit', 'disparity'))
+
     def test_lower_half_farther(self):
         """Where 3 of 4 samples that differ say so, and a quarter differs."""
         told = ('as disparities, %s = near, its lower half is the farther one; if that is wrong, '

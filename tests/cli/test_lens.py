@@ -228,7 +228,7 @@ class Lens(Case):
                          (0.25, 'infinity', 0))
         self.assertEqual(depth('metres.pfm', 'm', '--far', '1')['clamped'], W * H // 2)
         for unit in ('feet', '0/m', '-5/m', '/m', 'nan/m', '5000', 'MM'):
-            self.fails(2, "--depth-unit: '%s' is not known; give disparity, inverse, mm, m or a "
+            self.fails(2, "--depth-unit: '%s' is not known; give disparity, disparity/16, inverse, mm, m or a "
                           "number per metre such as 5000/m" % unit,
                        *self.render('--depth-unit', unit))
         # Dark is near: the left half, sharp when 1 is in focus.

@@ -214,6 +214,9 @@ class Depth(Case):
         low, high = (refocus.depth_to_disparity(values, unit)[0] for values, unit in (
             (metres, 'inverse'), (-metres, 'disparity')))
         self.same(low, high)
+        low, high = (refocus.depth_to_disparity(millimetres.astype(kind), unit)[0]
+                     for kind, unit in (('f', 'disparity'), ('H', 'disparity/16')))
+        self.same(low, high)
 
     def test_upsampling_and_edges(self):
         small = self.disparity[::4, ::4].copy()

@@ -282,8 +282,9 @@ REFOCUS_API void refocus_light_destroy(struct refocus_light **light);
  *
  * @param unit  how to read the samples, the words of the command line: "disparity"
  *              (bright = near), "inverse" (dark = near), "mm", "m", or a number per
- *              metre such as "5000/m". NULL: what the file says, else "disparity". In
- *              distances 0 means unknown.
+ *              metre such as "5000/m"; or "disparity/16", whole numbers in 16ths of a pixel (any
+ *              number of parts), of which the range is measured as that of floats is. NULL: what
+ * the file says, else "disparity". In distances 0 means unknown.
  * @param near_m, far_m  z0 and z1 in metres; 0 = what the file says, else measured
  * @return as refocus_photo_read(), and REFOCUS_ERR_ARGUMENT for a unit it does not
  *         know, REFOCUS_ERR_NO_DEPTH for a colour picture

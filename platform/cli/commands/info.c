@@ -85,7 +85,7 @@ static int measure_depth(struct input *input, const struct settings *settings,
     refocus_depth_set_invalid(map, settings->depth.invalid);
     params.speckle = (int32_t)settings->depth.speckle;
     found->unit_is_doubtful =
-        !settings->depth.unit && unit_is_doubtful(input->photo, false, found->unit_line);
+        unit_is_doubtful(input->photo, &settings->depth, false, found->unit_line);
     input->disparity = samples <= SIZE_MAX / 2 ? malloc((size_t)samples * 2) : NULL;
     status = input->disparity ? refocus_depth_repair(map, &params, input->disparity,
                                                      (ptrdiff_t)map->width * 2, report)

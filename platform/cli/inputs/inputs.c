@@ -41,10 +41,11 @@ int input_check_depth(const struct depth_settings *settings)
                               "'-' is standard input, which is for the photo; give a file");
     map.sample = REFOCUS_SAMPLE_U16;
     if (settings->unit && refocus_depth_set_unit(&map, settings->unit) != REFOCUS_OK)
-        return report_failure(EXIT_WRONG, "--depth-unit",
-                              "'%s' is not known; give disparity, inverse, mm, m or a "
-                              "number per metre such as 5000/m",
-                              settings->unit);
+        return report_failure(
+            EXIT_WRONG, "--depth-unit",
+            "'%s' is not known; give disparity, disparity/16, inverse, mm, m or a "
+            "number per metre such as 5000/m",
+            settings->unit);
     if ((settings->file != NULL) + input_depth_is_made(settings) > 1 ||
         (settings->model && (settings->right || settings->stereo.within)) ||
         (settings->right && settings->stereo.within))
@@ -118,7 +119,7 @@ static void tell_doubt(const struct input *input, const struct depth_settings *s
 {
     char line[UNIT_LINE];
 
-    if (!settings->unit && unit_is_doubtful(input->side, input->orientation > 1, line))
+    if (unit_is_doubtful(input->side, settings, input->orientation > 1, line))
         report_warning(input->depth_name, "%s", line);
 }
 

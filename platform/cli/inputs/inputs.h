@@ -30,8 +30,9 @@ extern const struct option_word gain_map_words[];
 #define DEPTH_UNIT_OPTIONS(type, member)                                                           \
     {OPTION(OPTION_TEXT, "--depth-unit", "U", type, member.unit),                                  \
      .brief = "disparity (bright = near), inverse, mm, m, or 5000/m",                              \
-     .help = "what its samples are: disparity (bright = near), inverse (dark = near), mm, m, or "  \
-             "a number per metre such as 5000/m; default: what the file says, else disparity"},    \
+     .help = "what its samples are: disparity (bright = near), inverse (dark = near), "            \
+             "disparity/16 (16ths of a pixel, range measured), mm, m, or a number per metre "      \
+             "such as 5000/m; default: what the file says, else disparity"},                       \
         DEPTH_RANGE_OPTIONS(type, member)
 #define DEPTH_WAYS_OPTIONS(type, member)                                                           \
     ESTIMATE_OPTIONS(type, member.model, member.network, NULL),                                    \

@@ -5,7 +5,8 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
+#include "inputs/ends.h"
+#include "inputs/samples.h"
 
 /* Rooms and streets in millimetres, and in fifths of them, lie within these, and have a nearest and
  * a farthest place; disparities that fill 16 bits do not. */
@@ -18,17 +19,8 @@ enum { LESS = 3, OF_LESS = 4, OF_ALL = 4 };
 /* A sample, or 0 where there is none: 0 itself stands for that in many maps. */
 static double sample_at(const struct refocus_depth_map *map, int32_t x, int32_t y)
 {
-    const uint8_t *const row = (const uint8_t *)map->samples + y * map->stride;
-    uint16_t code;
-    float value;
+    const double value = sample_stored(map, x, y);
 
-    if (map->sample == REFOCUS_SAMPLE_U8)
-        return row[x];
-    if (map->sample == REFOCUS_SAMPLE_U16) {
-        memcpy(&code, row + 2 * (size_t)x, sizeof code);
-        return code;
-    }
-    memcpy(&value, row + 4 * (size_t)x, sizeof value);
     return isfinite(value) ? value : 0;
 }
 
@@ -86,11 +78,15 @@ static bool are_upside_down(const struct refocus_depth_map *map, char line[UNIT_
            OF_LESS * less >= LESS * differ;
 }
 
-bool unit_is_doubtful(const struct refocus_photo *photo, bool turned, char line[UNIT_LINE])
+bool unit_is_doubtful(const struct refocus_photo *photo, const struct depth_settings *settings,
+                      bool turned, char line[UNIT_LINE])
 {
     const struct refocus_depth_map *const map = photo->depth;
 
-    return photo->info->depth_source == REFOCUS_DEPTH_SOURCE_FILE &&
-           map->meaning == REFOCUS_DEPTH_DISPARITY &&
-           (are_distances(map, line) || (!turned && are_upside_down(map, line)));
+    if (photo->info->depth_source != REFOCUS_DEPTH_SOURCE_FILE ||
+        map->meaning != REFOCUS_DEPTH_DISPARITY)
+        return false;
+    return (!settings->unit &&
+            (are_distances(map, line) || (!turned && are_upside_down(map, line)))) ||
+           ends_are_doubtful(map, settings->invalid != NULL, line);
 }

@@ -21,7 +21,8 @@ def depth_to_disparity(depth: Buffer, unit: str = 'disparity', *, near_m: float 
 
     `depth` is uint8, uint16 or float32. `unit` is, as on the command line, 'disparity' (bright =
     near), 'inverse' (dark = near), 'mm', 'm', or a number per metre such as '5000/m'. Integers of
-    disparity span their type, floats the least to the greatest value there is. In distances 0
+    disparity span their type, floats and integers of 'disparity/16' (16ths of a pixel, or other
+    parts) the least to the greatest value there is. In distances 0
     means unknown, unless `zero_is_unknown` says otherwise; NaN and infinity always do. Unknown
     samples, and patches of fewer than `speckle`, are filled. `confidence` (uint8) receives 255
     for samples as measured and 0 for filled ones.
@@ -36,7 +37,7 @@ def depth_to_disparity(depth: Buffer, unit: str = 'disparity', *, near_m: float 
             near, far = (float(known.max()), float(known.min())) if known.size else (0.0, 0.0)
         if unit == 'inverse':
             near, far = far, near
-    else:
+    elif not _is_fixed_point(unit):
         metres = _metres_per_unit(unit)
     is_distance = metres > 0
     unknown = is_distance if zero_is_unknown is None else zero_is_unknown
@@ -49,6 +50,13 @@ def depth_to_disparity(depth: Buffer, unit: str = 'disparity', *, near_m: float 
         (_ZERO if unknown else 0) | (_MAX if max_is_unknown else 0), near, far, metres, near_m,
         far_m, speckle, confidence)
     return out, made(DepthReport, report)
+
+
+def _is_fixed_point(unit: str) -> bool:
+    try:
+        return unit.startswith('disparity/') and 0 < float(unit[10:]) < float('inf')
+    except ValueError:
+        return False
 
 
 def _metres_per_unit(unit: str) -> float:

@@ -235,6 +235,9 @@ static void unit_words(void **state)
     map.sample = REFOCUS_SAMPLE_U16;
     assert_int_equal(refocus_depth_set_unit(&map, "inverse"), REFOCUS_OK);
     assert_true(map.value_far == 65535);
+    assert_int_equal(refocus_depth_set_unit(&map, "disparity/256"), REFOCUS_OK);
+    assert_int_equal(map.meaning, REFOCUS_DEPTH_DISPARITY);
+    assert_true(map.value_near == 0 && map.value_far == 0);
     assert_int_equal(refocus_depth_set_unit(&map, "5000/m"), REFOCUS_OK);
     assert_int_equal(map.meaning, REFOCUS_DEPTH_DISTANCE);
     assert_near(map.metres_per_unit, 0.0002);
