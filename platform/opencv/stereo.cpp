@@ -4,10 +4,12 @@
 #include "stereo_exposure.hpp"
 #include "stereo_order.hpp"
 #include "stereo_rectify.hpp"
+#include "stereo_span.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include <opencv2/calib3d.hpp>
@@ -129,6 +131,7 @@ float match_both(const cv::Mat &left, const cv::Mat &right, int least, int count
 struct search {
     refocus_cv::misalignment apart;
     int least = 0, count = 0;
+    double from = 0, to = 0; /* the range of the reduced size, in parts of the width */
     float matched = -1;
     cv::Mat disparity;
 };
@@ -160,6 +163,9 @@ search look(const cv::Mat &left, const cv::Mat &right)
 
     cv::resize(left, a, cv::Size(width, cvRound(left.rows / scale)), 0, 0, cv::INTER_AREA);
     cv::resize(right, b, a.size(), 0, 0, cv::INTER_AREA);
+    const refocus_cv::span span = refocus_cv::find_span(a, b, ROWS, {-count / 3 / 16 * 16, count});
+    best.from = span.least / (double)width;
+    best.to = (span.least + span.count) / (double)width;
     for (int i = 0; i <= 2 * ROWS + 1; i++) { /* 0, 1, -1, 2, -2, ...; then turned and scaled */
         refocus_cv::misalignment apart = best.apart;
 
@@ -168,7 +174,7 @@ search look(const cv::Mat &left, const cv::Mat &right)
         if (i <= 2 * ROWS)
             apart.down = i % 2 ? (i + 1) / 2 : -i / 2;
         const float matched =
-            match_both(a, straightened(b, apart), -count / 3 / 16 * 16, count, disparity);
+            match_both(a, straightened(b, apart), span.least, span.count, disparity);
 
         if (matched > best.matched + 0.01f) {
             best.matched = matched;
@@ -221,7 +227,7 @@ struct matches {
     refocus_cv::misalignment apart;
     float matched = 0, order = 0; /* as in refocus_stereo_report */
     int status = REFOCUS_OK;      /* an error where there are none */
-    const char *why = nullptr;    /* the reason of an error */
+    std::string why;              /* the reason of an error */
 };
 
 /* Votes of both pictures: disparities of the first one have been checked, and those of the second
@@ -240,6 +246,14 @@ float find_order(const pair &p, const matches &m, const cv::Mat &back, const cv:
     return refocus_cv::order_of(votes);
 }
 
+/* The reason of an error: it says which pairs are matched. */
+std::string unlike(const char *what, const search &s)
+{
+    return cv::format("%s, whose rows may lie a fiftieth of the width apart, and disparities from "
+                      "%.0f to %.0f %% of it; give a rectified pair, left before right",
+                      what, 100 * s.from, 100 * s.to);
+}
+
 matches match_in_order(const pair &p, const refocus_stereo_params *params,
                        const rf_ximgproc *contrib)
 {
@@ -251,8 +265,7 @@ matches match_in_order(const pair &p, const refocus_stereo_params *params,
 
     if (s.matched < params->least_match / 2) {
         m.status = REFOCUS_ERR_NO_DEPTH;
-        m.why = "the two pictures do not match, whose rows may lie a fiftieth of the width apart; "
-                "give a rectified pair, left before right";
+        m.why = unlike("the two pictures do not match", s);
         return m;
     }
     for (int i = 0; i < ROUNDS; i++)
@@ -265,8 +278,7 @@ matches match_in_order(const pair &p, const refocus_stereo_params *params,
     remove_far_chance(m.disparity);
     m.status = m.matched < params->least_match ? (int)REFOCUS_ERR_NO_DEPTH : (int)REFOCUS_OK;
     if (m.status != REFOCUS_OK)
-        m.why = "too few pixels of the two pictures match, whose rows may lie a fiftieth of the "
-                "width apart; give a rectified pair, left before right";
+        m.why = unlike("too few pixels of the two pictures match", s);
     else if (params->method == REFOCUS_STEREO_PLAIN)
         m.disparity = raw;
     else if (params->method == REFOCUS_STEREO_WLS) {
@@ -335,7 +347,7 @@ int stereo(const refocus_image *left, const refocus_image *right,
                                 "-Dximgproc=enabled, or match without it");
     const matches m = match_in_any(load(left, right, size), params, contrib);
     if (m.status)
-        return refocus_cv::fail(reason, m.status, m.why);
+        return refocus_cv::fail(reason, m.status, m.why.c_str());
     cv::resize(m.disparity * scale, full, cv::Size(left->width, left->height), 0, 0,
                cv::INTER_NEAREST);
     double least = 0, greatest = 0;

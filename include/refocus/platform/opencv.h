@@ -95,7 +95,8 @@ static inline struct refocus_stereo_report refocus_stereo_report_default(void)
  * Disparities of a rectified stereo pair, in pixels of the first picture: a point at x
  * in it is at x - disparity in the second one, or at x + disparity if that is the left one.
  * Semi-global matching (Hirschmueller 2008), both ways; where they disagree by more than a pixel
- * there is NaN. The range of disparities is found at a reduced size.
+ * there is NaN. The range of disparities is found at a reduced size, where from -8 to 24 % of the
+ * width are searched, or what patches of the first picture that are found in the second one say.
  *
  * Pictures need not be rectified to the pixel: a shift, a turn and another scale of the second one,
  * by a fiftieth at the most, are told by patches of the first one, and undone.

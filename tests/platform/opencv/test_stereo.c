@@ -21,9 +21,12 @@ static uint8_t noise(void)
     return (uint8_t)(state_of >> 24);
 }
 
+/* Disparities of the square and of the wall. */
+static int square = NEAR, wall = FAR;
+
 static int disparity_at(int x, int y)
 {
-    return x >= 120 && x < 220 && y >= 60 && y < 150 ? NEAR : FAR;
+    return x >= 120 && x < 220 && y >= 60 && y < 150 ? square : wall;
 }
 
 /* A textured square before a textured wall; the right picture lies @p lower pixels lower. */
@@ -37,7 +40,7 @@ static void make_pair(uint8_t *left, uint8_t *right, int lower)
             for (int x = 0; x < W; x++) {
                 const int d = disparity_at(x, y), to = y + lower;
 
-                if ((d == NEAR) == pass && x - d >= 0 && to >= 0 && to < H)
+                if ((d == square) == pass && x - d >= 0 && x - d < W && to >= 0 && to < H)
                     memcpy(right + 3 * (to * W + x - d), left + 3 * (y * W + x), 3);
             }
 }
@@ -90,6 +93,28 @@ static void stereo(void **state)
         assert_true(fabsf(report.vertical_offset - (float)lower) < 0.5f);
         check_disparities(d, 97);
     }
+}
+
+/* Pictures are apart by a seventh of their width to either side, or what is near by a third. */
+static void stereo_spans(void **state)
+{
+    static const int disparities[][2] = {{FAR - 48, NEAR - 48}, {FAR + 48, NEAR + 48}, {FAR, 105}};
+    static uint8_t left[3 * W * H], right[3 * W * H];
+    static float d[W * H];
+    const struct refocus_image a = picture(left), b = picture(right);
+    struct refocus_stereo_params params = refocus_stereo_params_default();
+
+    (void)state;
+    params.order = REFOCUS_STEREO_LEFT_FIRST;
+    for (int i = 0; i < 3; i++) {
+        wall = disparities[i][0];
+        square = disparities[i][1];
+        make_pair(left, right, 0);
+        assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, NULL, NULL), REFOCUS_OK);
+        check_disparities(d, 97);
+    }
+    wall = FAR;
+    square = NEAR;
 }
 
 /* Copies a patch of the left picture to where it has disparity -10: beyond the wall. Returns how
@@ -304,7 +329,8 @@ static void stereo_refuses(void **state)
     assert_non_null(strstr(reason.text, "match"));
     make_pair(left, right, W / 30);
     assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, NULL, &reason), REFOCUS_ERR_NO_DEPTH);
-    assert_non_null(strstr(reason.text, "rows may lie a fiftieth of the width apart"));
+    assert_non_null(strstr(reason.text, "rows may lie a fiftieth of the width apart, and "
+                                        "disparities from -10 to 20 % of it;"));
     assert_int_equal(refocus_cv_stereo(&a, &a, &params, d, NULL, &reason), REFOCUS_ERR_NO_DEPTH);
     assert_non_null(strstr(reason.text, "one shift"));
     b.width--;
@@ -357,6 +383,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stereo),
         cmocka_unit_test(stereo_exposures),
+        cmocka_unit_test(stereo_spans),
         cmocka_unit_test(stereo_far_chance),
         cmocka_unit_test(stereo_order),
         cmocka_unit_test(stereo_unrectified),
