@@ -151,7 +151,7 @@ static bool has_pair_beside(struct rf_bytes file, uint32_t pair[2])
     if (!rf_heif_stereo_pair(file, pair) || !rf_heif_meta(file, &meta) ||
         !rf_heif_primary(meta, &main_id))
         return false;
-    id = rf_heif_number(main_id, 0, main_id.size);
+    id = rf_big_endian(main_id.data, main_id.size);
     return id != pair[0] && id != pair[1];
 }
 

@@ -76,10 +76,10 @@ bool rf_heif_stereo_pair(struct rf_bytes file, uint32_t pair[2])
 
     if (!rf_heif_meta(file, &meta) || !rf_heif_find(meta, "grpl", &groups) ||
         !rf_heif_find(groups, "ster", &group) || group.size < END ||
-        rf_heif_number(group, COUNT_AT, 4) != 2)
+        rf_big_endian(group.data + COUNT_AT, 4) != 2)
         return false;
-    pair[0] = rf_heif_number(group, FIRST_AT, 4);
-    pair[1] = rf_heif_number(group, SECOND_AT, 4);
+    pair[0] = rf_big_endian(group.data + FIRST_AT, 4);
+    pair[1] = rf_big_endian(group.data + SECOND_AT, 4);
     return true;
 }
 
