@@ -6,6 +6,8 @@
 
 #include "support/compare.h"
 
+#define SURE_SKIRT 3.0f /* hue is sure where a third of the light around is the skirt */
+
 uint64_t rf_estimate_bytes(int max_width, int max_height)
 {
     struct rf_light_grid grid = {.width = rf_smaller(max_width, RF_GRID_SIDE),
@@ -113,22 +115,25 @@ bool rf_estimate_reaches(const struct rf_estimate_row *row, float least,
     return any;
 }
 
-bool rf_skirt_hue(const struct rf_light_grid *grid, int x, int y, float hue[3])
+float rf_skirt_hue(const struct rf_light_grid *grid, int x, int y, float hue[3])
 {
-    const struct rf_grid_place near = rf_grid_place(grid, 2, x, y);
-    const struct rf_grid_place far = rf_grid_place(grid, 4, x, y);
-    float skirt[3], luminance;
+    static const float of_luminance[3] = {218.0f / 1024, 732.0f / 1024, 74.0f / 1024};
+    const struct rf_grid_place near = rf_grid_place(grid, 1, x, y);
+    const struct rf_grid_place far = rf_grid_place(grid, 3, x, y);
+    float skirt[3], luminance = 0, around = 0;
 
-    for (int c = 0; c < 3; c++)
-        skirt[c] = fmaxf(rf_unclipped_at(grid, RF_GRID_RED + (unsigned)c, &near) -
-                             rf_unclipped_at(grid, RF_GRID_RED + (unsigned)c, &far),
-                         0);
-    luminance = (218 * skirt[0] + 732 * skirt[1] + 74 * skirt[2]) / 1024;
+    for (int c = 0; c < 3; c++) {
+        const float light = rf_unclipped_at(grid, RF_GRID_RED + (unsigned)c, &near);
+
+        skirt[c] = fmaxf(light - rf_unclipped_at(grid, RF_GRID_RED + (unsigned)c, &far), 0);
+        luminance += of_luminance[c] * skirt[c];
+        around += of_luminance[c] * light;
+    }
     if (luminance < 0.002f)
-        return false;
+        return 0;
     for (int c = 0; c < 3; c++)
         hue[c] = fminf(skirt[c] / luminance, 3);
-    return true;
+    return fminf(SURE_SKIRT * luminance / around, 1);
 }
 
 int rf_clipped_size(const struct rf_light_grid *grid, int x, int y)

@@ -21,7 +21,7 @@ struct row {
     struct rf_estimate_row estimate;
     int y, cell; /* the row of cells that it lies in */
     int hue_of;  /* the cell that the hue is of */
-    bool mixes;  /* there is a hue */
+    float known; /* how far the hue is known, 0 to 1 */
     float hue[3];
     struct rf_highlight run;
     float light[3]; /* Q12, of all its pixels */
@@ -61,20 +61,23 @@ static float gain_at(const struct row *row, const int colour[3], int x)
     return gain * (float)most < row->listing->least ? 0 : gain;
 }
 
-/* Adds the light that a pixel has lost, Q12. Half of it has its own hue, half that of what is
- * around the clipped pixels; a channel far below white has lost none, whatever a fixed gain adds to
- * it. */
+/* Adds the light that a pixel has lost, Q12. The lens has spread the highlight's own light around
+ * it, so the whole light has the hue of what is around the clipped pixels, as far as that is its
+ * own, and what of that the pixel does not show is lost: of a warm lamp that is clipped to white,
+ * which holds too much blue, hardly any blue. A channel far below white has lost none, whatever a
+ * fixed gain adds to it. */
 static void add_light(struct row *row, const int colour[3], float gain, int cell)
 {
     const float luminance =
         (218 * (float)colour[0] + 732 * (float)colour[1] + 74 * (float)colour[2]) * (1 / 1024.0f);
 
     if (row->hue_of != cell)
-        row->mixes = rf_skirt_hue(row->estimate.grid, cell, row->cell, row->hue);
+        row->known = rf_skirt_hue(row->estimate.grid, cell, row->cell, row->hue);
     row->hue_of = cell;
     for (int c = 0; c < 3; c++) {
         const float own = (float)colour[c];
-        const float lost = row->mixes ? gain * 0.5f * (own + luminance * row->hue[c]) : gain * own;
+        const float whole = (1 + gain) * (own + row->known * (luminance * row->hue[c] - own));
+        const float lost = whole > own ? whole - own : 0;
 
         row->light[c] +=
             row->listing->estimate->scale > 0 ? lost * nearness_to_white(colour[c]) : lost;

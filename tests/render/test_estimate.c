@@ -141,6 +141,20 @@ static void colours(void **state)
     assert_true(part[1] > 2 * 0.4 * part[2]);
 }
 
+/* A warm lamp that is clipped to white has lost half a white of blue and seven of red: its disc
+ * does not become as white as what is left of it. */
+static void colours_of_white(void **state)
+{
+    const struct thing lamp = {ELLIPSE, 8, 8, {8, 4, 1.5}};
+    double part[3];
+
+    (void)state;
+    added(black, &lamp, 0, 0.05, 1, part);
+    assert_true(part[0] > 3);
+    if (part[2] > 0.5 * part[0])
+        fail_msg("a warm lamp gets %.2f of red, %.2f of blue", part[0], part[2]);
+}
+
 static void scales(void **state)
 {
     const struct thing lamp = {ELLIPSE, 8, 8, {6, 6, 6}};
@@ -386,10 +400,18 @@ static void same_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lamps),      cmocka_unit_test(day),          cmocka_unit_test(petals),
-        cmocka_unit_test(colours),    cmocka_unit_test(scales),       cmocka_unit_test(steady),
-        cmocka_unit_test(crowded),    cmocka_unit_test(held_no_more), cmocka_unit_test(unclipped),
-        cmocka_unit_test(same_bytes), cmocka_unit_test(video),
+        cmocka_unit_test(lamps),
+        cmocka_unit_test(day),
+        cmocka_unit_test(petals),
+        cmocka_unit_test(colours),
+        cmocka_unit_test(colours_of_white),
+        cmocka_unit_test(scales),
+        cmocka_unit_test(steady),
+        cmocka_unit_test(crowded),
+        cmocka_unit_test(held_no_more),
+        cmocka_unit_test(unclipped),
+        cmocka_unit_test(same_bytes),
+        cmocka_unit_test(video),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
