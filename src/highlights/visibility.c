@@ -235,9 +235,12 @@ void rf_visibility_begin(struct rf_visibility *tile, const struct rf_splat *spla
     /* Where a surface is Gaussian noise, one pixel in 250 is nearer than another by 3.75 standard
      * deviations. */
     tile->nearer = rf_larger(NEARER, plan->noise + plan->noise / 2);
-    for (int k = 0; k < plan->slabs; k++)
-        if (!merges(tile, &plan->slab[k], splat->window.blur.unit))
+    for (int k = 0; k < plan->slabs; k++) {
+        const bool closes_crack = k > 0 && plan->slab[k].low < plan->slab[k - 1].low;
+
+        if (!closes_crack && !merges(tile, &plan->slab[k], splat->window.blur.unit))
             tile->slab[tile->slabs++] = plan->slab[k];
+    }
 }
 
 /* How far apart, in pixels, rays to two runs pass a slab at most. */

@@ -11,6 +11,8 @@ enum {
     HALF = 128,           /* 1/256 pixel, as all of these */
     OVERLAP = 32,         /* a slab reaches so far into each of those beside it */
     CLOSED = 2 * OVERLAP, /* so that the slab of what is sharp overlaps them as much in all */
+    CRACKED = 2 * 256,    /* up to this blur cracks between slabs are closed */
+    MOST_NOISY = 8 * 256, /* by this, at the most, noise widens the slab that closes a crack */
     WIDE = 16 * 256,      /* where slabs begin to be wider than a pixel */
     MOST_SPREAD = 60416,  /* blurs within it hit no slab of up to 20 pixels modulo 2^16 */
 };
@@ -19,6 +21,7 @@ enum {
  * them before it is widened by an eighth on each side. */
 enum { LARGEST = RF_PLAIN_RADIUS * 256, WIDEST = (2 * (LARGEST + HALF) - WIDE) / WIDE };
 static_assert(WIDEST * 256 * 5 / 4 <= 20 * 256, "no slab is wider than 20 pixels");
+static_assert(2 * (256 + 2 * OVERLAP) + 2 * MOST_NOISY <= 20 * 256, "nor is one of two of a pixel");
 static_assert(MOST_SPREAD + 20 * 256 <= UINT16_MAX + 1, "told apart modulo 2^16");
 
 static_assert(2 * RF_UNIT_RADIUS * 256 <= MOST_SPREAD && RF_UNIT_RADIUS << RF_MAX_UNIT < 1024 &&
@@ -232,12 +235,61 @@ static void cover_bounded(const struct rf_bins_in_reach *in_reach, const struct 
     }
 }
 
+/* Whether a ray may pass a surface between slab k, which is not the deepest, and the one before it.
+ */
+static bool has_crack(const struct rf_tile_plan *plan, int k, int unit)
+{
+    const struct rf_slab *const slab = &plan->slab[k], *const before = slab - 1;
+
+    return k > 0 && k < plan->slabs - 1 && abs(slab->centre) <= CRACKED >> unit &&
+           slab->low <= before->low + before->width;
+}
+
+/* The blurs of slab k and of the one before it, seen in the middle between them. Noise takes a
+ * pixel farther than that. */
+static struct rf_slab closing_slab(const struct rf_tile_plan *plan, int k, int noise)
+{
+    const struct rf_slab *const slab = &plan->slab[k], *const before = slab - 1;
+    const int more = rf_smaller(noise / 4, MOST_NOISY);
+
+    return (struct rf_slab){
+        (int16_t)(before->low - more),
+        (uint16_t)(slab->low + slab->width - before->low + 2 * more),
+        (int16_t)((before->low + before->width + slab->low) >> 1),
+    };
+}
+
+/* Closes the cracks between slabs near the focus. Where the blurs of a pixel and of its neighbour
+ * are in two slabs, a ray that looks for each in the place of the other passes the surface, and one
+ * bright pixel of the background shows in a subject in focus. Such a ray looks once more, in the
+ * middle between both, for the blurs of either. Farther out of focus such dots do not show. */
+static void close_cracks(struct rf_tile_plan *plan, int unit)
+{
+    const int slabs = plan->slabs, noise = plan->noise >> unit;
+    int cracks = 0;
+
+    for (int k = 1; k < slabs; k++)
+        cracks += has_crack(plan, k, unit);
+    for (int k = slabs - 1; cracks; k--) {
+        if (has_crack(plan, k, unit)) {
+            plan->slab[k + cracks] = closing_slab(plan, k, noise);
+            plan->joined[k + cracks] = false;
+            cracks--;
+            plan->slabs++;
+        }
+        plan->slab[k + cracks] = plan->slab[k];
+        plan->joined[k + cracks] = plan->joined[k];
+    }
+}
+
 void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,
                   const struct rf_reach *reach, int tx, int ty, struct rf_tile_plan *plan)
 {
     const struct rf_bins_in_reach in_reach = rf_collect(view, bins, reach, tx, ty);
 
     cover_bounded(&in_reach, reach, plan);
+    if (in_reach.all.most - in_reach.all.least < MOST_SPREAD)
+        close_cracks(plan, reach->scale.unit);
     plan->highlight = rf_in_pixels(in_reach.all.highlight, reach->scale.unit);
     plan->undersampled = in_reach.all.undersampled > 0;
     plan->brightest = in_reach.all.brightest;

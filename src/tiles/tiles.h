@@ -33,8 +33,9 @@ struct rf_tile_plan {
     bool undersampled;  /* a highlight that is narrow beside the gaps of the rays is in reach */
     uint16_t brightest; /* brightest light of the tiles in reach, as in rf_bins */
     int noise;          /* blurs that reach it vary so far from pixel to pixel, 1/256 pixel */
-    struct rf_slab slab[RF_MAX_SLABS];
-    bool joined[RF_MAX_SLABS]; /* slab k overlaps slab k - 1, and a test may be of both */
+    struct rf_slab slab[RF_MAX_SLABS]; /* nearest first; one that closes a crack begins before the
+                                          two that it follows */
+    bool joined[RF_MAX_SLABS];         /* slab k overlaps slab k - 1, and a test may be of both */
 };
 
 /* Blurs that reach from a tile to another that is some tiles away. */

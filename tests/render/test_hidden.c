@@ -108,10 +108,40 @@ static void has_no_seams(void **state)
     free(rgb);
 }
 
+/* A grey subject in focus before a white wall, on a map with Gaussian noise, or nearly: 1/200 of
+ * the range is a fifth of a pixel of blur. No light of the wall comes through the subject. */
+static void noise_lets_nothing_through(void **state)
+{
+    struct picture p = picture_flat(WIDTH, HEIGHT, (const uint8_t[]){255, 255, 255}, 0);
+    struct refocus_renderer *renderer;
+    uint8_t *rgb = malloc(3 * WIDTH * HEIGHT);
+    uint32_t seed = 1;
+
+    (void)state;
+    assert_non_null(rgb);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        int sum = 0;
+
+        for (int k = 0; k < 12; k++)
+            sum += (int)(noise(&seed) % 657) - 328; /* a variance of twelve times 190 squared */
+        p.disparity[i] = (uint16_t)(i % WIDTH < TILE ? 1000 + sum / 2 : 40000 + sum / 2);
+        if (i % WIDTH >= TILE)
+            memset(p.rgb + 3 * i, 90, 3);
+    }
+    renderer = prepare(&p, 40);
+    render(renderer, 40000 / 65535.0f, 40, 64, rgb);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        if (i % WIDTH >= TILE + 2 && abs(rgb[3 * i] - 90) > 20)
+            fail_msg("(%d, %d): %d", i % WIDTH, i / WIDTH, rgb[3 * i]);
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+    free(rgb);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(stays_dark),
-                                       cmocka_unit_test(has_no_seams)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(stays_dark), cmocka_unit_test(has_no_seams),
+                                       cmocka_unit_test(noise_lets_nothing_through)};
 
     return cmocka_run_group_tests_name("hidden", tests, NULL, NULL);
 }

@@ -356,8 +356,32 @@ static struct twin_plan cover(const struct bins *bins, double width, const struc
     return plan;
 }
 
+/* Near the focus the crack between two slabs is closed by one of both, behind them, if another
+ * follows. Ends are whole 1/256 of a unit. */
+static struct twin_plan with_closed_cracks(const struct twin_plan *open, double noise, double unit)
+{
+    struct twin_plan plan = *open;
+    const double more = fmin(floor(64 * noise / unit), 8 * 256) * unit / 256;
+
+    plan.slabs = 0;
+    for (int k = 0; k < open->slabs; k++) {
+        const struct twin_slab *const slab = &open->slab[k];
+        struct twin_slab both = *slab;
+
+        plan.slab[plan.slabs++] = *slab;
+        if (k == 0 || k == open->slabs - 1 || fabs(slab->centre) > 2 || slab->low >= slab[-1].high)
+            continue;
+        both.centre = ceil(256 / unit * slab[-1].high) - 1 + 256 / unit * slab->low;
+        both.centre = floor(both.centre / 2) * unit / 256;
+        both.low = slab[-1].low - more;
+        both.high += more;
+        plan.slab[plan.slabs++] = both;
+    }
+    return plan;
+}
+
 /* Slabs of noise get wider until there are at most 8 of them. */
-static struct twin_plan bounded_plan(const struct bins *bins, double width)
+static struct twin_plan bounded_plan(const struct bins *bins, double width, double unit)
 {
     /* in whole 1/256 pixels, as the end of a slab may lie on an edge of a bin */
     const double noise = bins->noisy ? floor(256 * bins->noise / bins->noisy) / 256 : 0;
@@ -369,7 +393,7 @@ static struct twin_plan bounded_plan(const struct bins *bins, double width)
         merging.ratio *= 2;
         plan = cover(bins, width, &merging, &noisy);
     }
-    return plan;
+    return bins->most - bins->least < 236 * unit ? with_closed_cracks(&plan, noise, unit) : plan;
 }
 
 struct twin_plan *twin_plans(const struct twin *t, int across, int down)
@@ -386,7 +410,7 @@ struct twin_plan *twin_plans(const struct twin *t, int across, int down)
             t->unit > 1 ? reach_from_blocks(tiles, across, down, i % across, i / across)
                         : reach_of_tile(t, tiles, across, down, width, i % across, i / across);
 
-        plans[i] = bounded_plan(&reach, width);
+        plans[i] = bounded_plan(&reach, width, t->unit);
     }
     free(tiles);
     return plans;
