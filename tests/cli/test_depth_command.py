@@ -103,6 +103,9 @@ class DepthAndInfo(Case):
                 (0, 100, 12, 1, 'farthest'), (65520, 4, 0, 16, 'nearest'))
         for code, part, first, step, end in maps:
             pictures.pfm('ends.pfm', W, H, seen(code, part, first, step))
+            if code == 0:
+                self.assertNotIn('apart', self.succeeds('info', 'ends.pfm'))
+                pictures.pgm('ends.pfm', W, H, seen(code, part, first, step))
             line = told % (100 / part, code, end, code)
             for arguments in (('render', 'photo.ppm', '--depth', 'ends.pfm', '-o', 'a.ppm'),
                               ('depth', 'ends.pfm', '-o', 'a.png')):
@@ -114,7 +117,7 @@ class DepthAndInfo(Case):
             self.assertEqual(found['unknown'], -(-W * H // part))
         for code, part, first, step in ((0, 110, 12, 1), (0, 4, 3, 1), (5, 4, 20, 1), (65, 4, 0, 1),
                                         (90, 4, 0, 2)):
-            pictures.pfm('ends.pfm', W, H, seen(code, part, first, step))
+            pictures.pgm('ends.pfm', W, H, seen(code, part, first, step))
             self.assertNotIn('apart', self.succeeds('info', 'ends.pfm'))
 
     def test_parts_of_a_pixel(self):

@@ -11,13 +11,13 @@
 enum { BINS = 4096, LAST = BINS - 1 };
 
 /* A code for no value is an end of a map of DISTINCT parts at least, which is no drawing of a few
- * surfaces, and a hundredth of the samples has it. The least one, which is no distance beyond that
- * of infinity, 0, lies from the others six times as far as the next DISTINCT of them lie from each
- * other, and six parts at least: 0, 144, 160, 176 ... of KITTI, but not 0, 158, 181, 273 of a sky.
- * The greatest lies farther from them than they lie from the least. */
+ * surfaces, and a hundredth of the samples has it. The least one is beyond infinity, or 0 of whole
+ * numbers, which have no NaN; it lies from the others six times as far as the next DISTINCT of them
+ * lie from each other, and six parts at least: 0, 144, 160, 176 ... of KITTI, but not 0, 158, 181,
+ * 273 of a sky. The greatest lies farther from them than they lie from the least. */
 enum { DISTINCT = 16, OF_SAMPLES = 100, SPACINGS = 6 };
 
-/* Codes of less than a tenth of the range leave less than a tenth of the blur. */
+/* Codes below a tenth of the greatest one leave less than a tenth of the blur. */
 enum { SMALL_PART = 10 };
 
 struct ends {
@@ -72,10 +72,10 @@ static void sort(struct ends *ends, const struct refocus_depth_map *map)
         }
 }
 
-static bool is_least_apart(const struct ends *ends)
+static bool is_least_apart(const struct ends *ends, bool floats)
 {
-    return ends->least <= 0 && OF_SAMPLES * ends->at_least >= ends->known &&
-           ends->low >= SPACINGS &&
+    return (floats ? ends->least < 0 : ends->least == 0) &&
+           OF_SAMPLES * ends->at_least >= ends->known && ends->low >= SPACINGS &&
            ends->low * (DISTINCT - 1) >= SPACINGS * (ends->low_next - ends->low);
 }
 
@@ -103,7 +103,7 @@ static bool are_few(const struct refocus_depth_map *map, double low, double high
 {
     const double most = fabs(map->value_near - map->value_far);
 
-    if (map->sample == REFOCUS_SAMPLE_F32 || SMALL_PART * (high - low) >= most)
+    if (map->sample == REFOCUS_SAMPLE_F32 || SMALL_PART * high >= most)
         return false;
     snprintf(line, ENDS_LINE,
              "its samples from %.0f to %.0f use %.1f %% of their range, and leave as little of the "
@@ -116,15 +116,17 @@ static bool are_few(const struct refocus_depth_map *map, double low, double high
 bool ends_are_doubtful(const struct refocus_depth_map *map, bool codes_given, char line[ENDS_LINE])
 {
     struct ends ends = {.known = 0};
+    bool least;
 
     measure(&ends, map);
     if (!(ends.greatest > ends.least))
         return false;
     sort(&ends, map);
+    least = is_least_apart(&ends, map->sample == REFOCUS_SAMPLE_F32);
     if (ends.used < DISTINCT)
         return false;
-    if (!codes_given && (is_least_apart(&ends) || is_greatest_apart(&ends))) {
-        tell_code(&ends, map, is_least_apart(&ends), line);
+    if (!codes_given && (least || is_greatest_apart(&ends))) {
+        tell_code(&ends, map, least, line);
         return true;
     }
     return are_few(map, ends.least, ends.greatest, line);
