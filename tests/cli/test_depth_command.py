@@ -202,6 +202,7 @@ class DepthAndInfo(Case):
         brush = {'kind': 'brush', 'radius': 3, 'points': [[5, 5]], 'disparity': 1}
         self.strokes('s.json', ground, brush)
         report = self.reports('depth', 'photo.ppm', '--strokes', 's.json', '-o', 'a.png')
+        self.assertEqual(report['depth']['source'], 'strokes')
         self.assertEqual(report['evidence'], ['painted: 2 strokes'])
         self.assertEqual((report['width'], report['height']), (W, H))
         width, height, bits, channels, rows = pictures.read_png('a.png')

@@ -66,6 +66,11 @@ class Ways(Case):
                       '0.2', '--blur', '3', '--rays', '8')
         report = self.reports('render', 'left.ppm', '--stereo', 'right.ppm', '-o', 'out.ppm')
         self.assertEqual((report['depth']['width'], report['depth']['height']), (160, 96))
+        for source, arguments in (('stereo', ('left.ppm', 'right.ppm')),
+                                  ('network', ('red.ppm', '--estimate', 'red.onnx'))):
+            found = self.reports('depth', *arguments, '-o', 'map.png')
+            self.assertEqual(found['depth']['source'], source)
+        self.assertEqual(report['depth']['source'], 'stereo')
         self.fails(1, re.compile(r'^refocus: right.ppm: '), 'render', 'red.ppm', '--stereo',
                    'right.ppm', '-o', 'new.ppm')
         self.fails(1, re.compile(r'^refocus: red.ppm: it is no stereo file'), 'render',

@@ -285,6 +285,7 @@ static void begin(struct input *input)
     *map = refocus_depth_map_default();
     input->made.depth = map;
     input->made.info = &input->made_info;
+    snprintf(input->made_info.container, sizeof input->made_info.container, "focus-stack");
     map->width = input->width = input->photo->image->width;
     map->height = input->height = input->photo->image->height;
     input->report.value_near = map->value_near = 1;

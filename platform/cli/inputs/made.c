@@ -21,8 +21,9 @@ static int read_right(struct refocus_photo **photo, const char *name, bool secon
     return EXIT_DONE;
 }
 
-/* Take floats that grow towards the camera as the depth of the photo. */
-static void take(struct input *input, float *samples, int width, int height,
+/* Take floats that grow towards the camera as the depth of the photo, and the way they were made.
+ */
+static void take(struct input *input, const char *way, float *samples, int width, int height,
                  const struct depth_settings *settings)
 {
     struct refocus_depth_map *map = &input->made_map;
@@ -30,6 +31,7 @@ static void take(struct input *input, float *samples, int width, int height,
     *map = refocus_depth_map_default();
     input->made.depth = map;
     input->made.info = &input->made_info;
+    snprintf(input->made_info.container, sizeof input->made_info.container, "%s", way);
     input->made_samples = samples;
     map->samples = samples;
     map->width = width;
@@ -142,7 +144,8 @@ static int match(struct input *input, const char *right, const struct stereo_set
     snprintf(input->made_info.evidence[2], REFOCUS_INFO_LENGTH, "stereo: %s",
              order_evidence(&params, &report));
     input->made_info.evidence_count = 3;
-    take(input, samples, input->photo->image->width, input->photo->image->height, settings);
+    take(input, "stereo", samples, input->photo->image->width, input->photo->image->height,
+         settings);
     return EXIT_DONE;
 }
 
@@ -191,7 +194,7 @@ static int estimate_depth(struct input *input, const char *model,
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, model, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));
-    take(input, estimate.samples, estimate.width, estimate.height, settings);
+    take(input, "network", estimate.samples, estimate.width, estimate.height, settings);
     return EXIT_DONE;
 }
 
@@ -257,8 +260,6 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
 
 int made_depth(struct input *input, const struct depth_settings *settings)
 {
-    snprintf(input->made_info.container, sizeof input->made_info.container, "%s",
-             settings->model ? "network" : "stereo pair");
     input->depth_name = settings->model ? settings->model : input->photo_name;
     return settings->model ? estimate_depth(input, settings->model, &settings->network, settings)
                            : match(input, settings->right, &settings->stereo, settings);

@@ -16,6 +16,7 @@ void painted_begin(struct input *input, const struct depth_settings *settings)
     *map = refocus_depth_map_default();
     input->made.depth = map;
     input->made.info = &input->made_info;
+    snprintf(input->made_info.container, sizeof input->made_info.container, "strokes");
     map->width = input->width = input->photo->image->width;
     map->height = input->height = input->photo->image->height;
     input->report.value_near = map->value_near = 1;

@@ -252,10 +252,14 @@ json_t *report_depth_json(const struct refocus_photo *from,
 {
     const struct refocus_depth_map *map = from->depth;
     const bool disparity = map->meaning == REFOCUS_DEPTH_DISPARITY;
+    /* Depth that was made comes from no container, and its way is named there. */
+    const char *const source = from->info->depth_source == REFOCUS_DEPTH_SOURCE_NONE
+                                   ? from->info->container
+                                   : report_depth_source(from->info->depth_source);
     json_t *json =
-        json_pack("{s:s, s:i, s:i, s:s, s:o, s:o, s:I, s:I, s:I, s:I}", "source",
-                  report_depth_source(from->info->depth_source), "width", (int)map->width, "height",
-                  (int)map->height, "meaning", disparity ? "disparity" : "distance", "near_m",
+        json_pack("{s:s, s:i, s:i, s:s, s:o, s:o, s:I, s:I, s:I, s:I}", "source", source, "width",
+                  (int)map->width, "height", (int)map->height, "meaning",
+                  disparity ? "disparity" : "distance", "near_m",
                   report_metres_json(report->near_m), "far_m", report_metres_json(report->far_m),
                   "unknown", (json_int_t)report->unknown, "clamped", (json_int_t)report->clamped,
                   "specks", (json_int_t)report->specks, "strays", (json_int_t)report->strays);
