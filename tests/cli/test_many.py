@@ -48,6 +48,14 @@ class Many(Case):
         self.succeeds(*self.many('-o', 'out/', photos=['b.ppm']))  # one is no batch: no last line
         os.remove('out.ppm')
 
+    def test_a_folder_of_photos(self):
+        """It is not taken for a photo, whether the folder of the results is there or not."""
+        os.makedirs('photos', exist_ok=True)
+        for output in 'out', 'none', 'new.png':
+            self.fails(1, 'photos: it is a folder; give the names of the photos in it', 'render',
+                       'photos', '-o', output)
+        os.rmdir('photos')
+
     def test_patterns(self):
         self.renders(3, 0, '-o', 'out/{n}-{name}-{blur}-{quality}-{{x}.png', '--jobs', '2')
         self.assertEqual(self.written(), ['%d-%s-4-auto-{x}.png' % (i + 1, name)

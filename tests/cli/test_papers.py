@@ -86,6 +86,14 @@ class Papers(Case):
             self.assertRegex(text, r'(?m)^%s +\S+ +\S+ +\S+ +\S+ +\d' % method)
         width = pictures.read_png('crops.png')[0]
         self.assertGreater(width, 12 * min(W, 96))
+        # options that differ at their end are told apart above their crops
+        alike = ','.join('search:rays=full:iterations=%d' % n for n in (1, 2))
+        self.succeeds('compare', *common, '--reference', 'gt.ppm', '--methods', alike, '-o',
+                      'crops.png')
+        rows = pictures.read_png('crops.png')[4][22:76]
+        one, other = ([row[3 * (4 + i * (2 * W + 4)):][:6 * W] for row in rows] for i in (2, 3))
+        self.assertEqual(one[:36], other[:36])
+        self.assertNotEqual(one, other)
         report = self.reports('compare', *common, '--reference', 'gt.ppm', '--methods',
                               'blur,sweep,blur')
         self.assertEqual([m['method'] for m in report['methods']], ['photo', 'blur', 'sweep'])

@@ -74,8 +74,10 @@ int many_name(struct many *many, const struct command *command, const void *sett
     char *folder = NULL;
     int status = EXIT_DONE;
 
-    while (files[values.count])
-        values.count++;
+    for (; files[values.count]; values.count++)
+        if (is_folder(files[values.count]))
+            return report_failure(EXIT_FAILED, files[values.count],
+                                  "it is a folder; give the names of the photos in it");
     if (output && is_folder(output)) {
         folder = pattern_in(output);
         if (!folder)

@@ -11,7 +11,6 @@ enum {
     ZOOM = 2,
     GAP = 4,
     LINE = ZOOM * (GLYPH_HEIGHT + 2),
-    LABEL = 3 * LINE + 2 * GAP
 };
 
 struct place {
@@ -82,15 +81,59 @@ static void draw_crop(const struct refocus_image *image, int left, int top, cons
     }
 }
 
+/* Letters that fit into a line above a crop, one at least. */
+static int letters_of(int w)
+{
+    const int letters = w / (GLYPH_WIDTH + 1);
+
+    return letters > 0 ? letters : 1;
+}
+
+/* Lines that the options behind a method's name take, one at least. */
+static int lines_of(const struct compared *item, int letters)
+{
+    const int length = (int)strlen(item->name + strcspn(item->name, ":"));
+
+    return length > 1 ? (length - 2) / letters + 1 : 1;
+}
+
+/* The name of a method, its options in `lines` lines, and its score. */
+static void label(const struct refocus_image *image, const struct compared *item, int left, int w,
+                  int lines)
+{
+    const int letters = letters_of(w), length = (int)strcspn(item->name, ":");
+    const char *options = item->name + length + (item->name[length] == ':');
+    char text[64];
+
+    snprintf(text, sizeof text, "%.*s", length, item->name);
+    text_draw(image, left, GAP, ZOOM, w * ZOOM, text);
+    for (int i = 1; *options; i++) {
+        snprintf(text, sizeof text, "%.*s", letters, options);
+        text_draw(image, left, GAP + i * LINE, ZOOM, w * ZOOM, text);
+        options += strlen(text);
+    }
+    if (!item->scored)
+        return;
+    snprintf(text, sizeof text, "%.2f db", item->scores.psnr);
+    text_draw(image, left, GAP + (lines + 1) * LINE, ZOOM, w * ZOOM, text);
+}
+
 struct refocus_image compare_picture(const struct comparison *c, const uint16_t *disparity)
 {
     const int w = c->width < CROP ? c->width : CROP, h = c->height < CROP ? c->height : CROP;
     struct place place[CROPS];
     const int crops = find_crops(disparity, c->width, c->height, w, h, place);
     const int cell_w = w * ZOOM + GAP, cell_h = h * ZOOM + GAP;
-    const int width = c->count * cell_w + GAP, height = LABEL + crops * cell_h + GAP;
-    struct refocus_image image =
-        refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, (ptrdiff_t)width * 3);
+    const int width = c->count * cell_w + GAP;
+    int lines = 1, top, height;
+    struct refocus_image image;
+
+    for (int i = 0; i < c->count; i++)
+        if (lines_of(&c->item[i], letters_of(w)) > lines)
+            lines = lines_of(&c->item[i], letters_of(w));
+    top = (lines + 2) * LINE + 2 * GAP;
+    height = top + crops * cell_h + GAP;
+    image = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, width, height, (ptrdiff_t)width * 3);
 
     image.plane[0] = malloc((size_t)width * 3 * (size_t)height);
     if (!image.plane[0])
@@ -99,19 +142,10 @@ struct refocus_image compare_picture(const struct comparison *c, const uint16_t 
     for (int i = 0; i < c->count; i++) {
         const struct compared *item = &c->item[i];
         const int left = GAP + i * cell_w;
-        const int length = (int)strcspn(item->name, ":");
-        char text[64] = "";
 
-        snprintf(text, sizeof text, "%.*s", length, item->name);
-        text_draw(&image, left, GAP, ZOOM, w * ZOOM, text);
-        snprintf(text, sizeof text, "%s", item->name + length + (item->name[length] == ':'));
-        text_draw(&image, left, GAP + LINE, ZOOM, w * ZOOM, text);
-        text[0] = '\0';
-        if (item->scored)
-            snprintf(text, sizeof text, "%.2f db", item->scores.psnr);
-        text_draw(&image, left, GAP + 2 * LINE, ZOOM, w * ZOOM, text);
+        label(&image, item, left, w, lines);
         for (int k = 0; k < crops; k++)
-            draw_crop(&image, left, LABEL + k * cell_h, item->rgb, c->width, place[k], w, h);
+            draw_crop(&image, left, top + k * cell_h, item->rgb, c->width, place[k], w, h);
     }
     return image;
 }
