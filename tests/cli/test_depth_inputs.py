@@ -110,6 +110,19 @@ class DepthInputs(Case):
         self.refused('metres.pfm', '(it|a PFM file) is a depth map, not a photo', 'metres.pfm', '--depth',
                      'depth.pgm')
 
+    def test_map_of_one_half(self):
+        """That of one of two pictures side by side does not lie on its side."""
+        pictures.ppm('pair.ppm', 2 * W, H, lambda x, y: (x, y, 9))
+        pictures.pgm('half.pgm', W, H, lambda x, y: 9 * x & 255)
+        for command in 'render', 'sheet':
+            self.fails(1, 'half.pgm: its 48x32 samples are of one half of the photo of 96x32 pixels; '
+                       'give that half as the photo, of two pictures side by side the first one',
+                       command, 'pair.ppm', '--depth', 'half.pgm', '-o', 'new.ppm')
+        for width, height, why in (42, H, 'another shape'), (34, 2 * W, 'on their side'):
+            pictures.pgm('half.pgm', width, height, lambda x, y: 5 * x)
+            self.fails(1, re.compile(why), 'render', 'pair.ppm', '--depth', 'half.pgm', '-o',
+                       'new.ppm')
+
     def test_shape(self):
         """The map of another picture, or one on its side; squares, as networks make them, and a
         few samples are for any shape."""

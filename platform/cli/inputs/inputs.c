@@ -239,6 +239,12 @@ static int settle_shape(struct input *input, const struct depth_settings *settin
                               "its %dx%d samples lie on their side once --orient-depth has turned "
                               "them; leave that out, or give 0 or 180",
                               (int)map->width, (int)map->height);
+    if (shape_is_of_half(width, height, photo))
+        return report_failure(
+            EXIT_FAILED, input->depth_name,
+            "its %dx%d samples are of one half of the photo of %dx%d pixels; give "
+            "that half as the photo, of two pictures side by side the first one",
+            (int)map->width, (int)map->height, (int)photo->width, (int)photo->height);
     if (shape_lies_on_its_side(width, height, photo))
         return report_failure(
             EXIT_FAILED, input->depth_name,

@@ -1,6 +1,7 @@
 /* shape.c: a depth map has to have the shape of its photo, and is turned where it lies on its side.
  */
 #include "inputs/shape.h"
+#include <stdlib.h>
 #include "line/report.h"
 
 static bool shape_is_told(int width, int height)
@@ -22,6 +23,14 @@ bool shape_is_another(int width, int height, const struct refocus_image *photo)
 bool shape_lies_on_its_side(int width, int height, const struct refocus_image *photo)
 {
     return shape_is_another(width, height, photo) && !shape_is_another(height, width, photo);
+}
+
+bool shape_is_of_half(int width, int height, const struct refocus_image *photo)
+{
+    const int64_t twice = (int64_t)2 * width * photo->height;
+    const int64_t high = (int64_t)height * photo->width;
+
+    return shape_is_another(width, height, photo) && 20 * llabs(twice - high) <= high;
 }
 
 int shape_check(const char *file, int width, int height, const struct refocus_image *photo,

@@ -14,6 +14,10 @@ bool shape_is_another(int width, int height, const struct refocus_image *photo);
 /* Whether a picture has another shape as it lies, and the photo's once it is turned. */
 bool shape_lies_on_its_side(int width, int height, const struct refocus_image *photo);
 
+/* Whether a picture has the shape of one of two that lie side by side in the photo, and not the
+ * photo's. */
+bool shape_is_of_half(int width, int height, const struct refocus_image *photo);
+
 /* An exit code, and prints why it is not EXIT_DONE: the shape is another. A shape that is off by
  * more than an eighth is told of. `what` names what has it. */
 int shape_check(const char *file, int width, int height, const struct refocus_image *photo,
