@@ -1,9 +1,14 @@
 /* lens.c: blur and depth of field of a thin lens, see refocus/lens.h. It uses only + - * / in
  * doubles, which give the same bits everywhere. */
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <refocus/lens.h>
+
+/* The whole core is compiled alike. 16 is that of processors with arithmetic on halves. */
+_Static_assert(FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 16,
+               "floats and doubles are rounded to their own width: see same_bits in meson.build");
 
 static bool is_positive(double value)
 {
