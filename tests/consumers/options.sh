@@ -1,12 +1,27 @@
 #!/bin/sh
 # usage: options.sh SOURCE WORK_FOLDER
-# Options of meson that cannot go together are refused in words.
+# What is asked of meson is built or refused in words; and parts can be left out one by one.
 set -eu
 source=$1 work=$2
 rm -rf "$work"
-if meson setup "$work" "$source" -Dauto_features=disabled -Dexamples=false -Dtools=enabled \
-        -Dweb=enabled >"$work.log" 2>&1; then
-    echo 'a page without JPEG is built, which shows nothing'
+mkdir -p "$work"
+
+# refused WORDS OPTION...: a build of these parts alone is refused with these words.
+refused() {
+    words=$1
+    shift
+    if meson setup "$work/refused" "$source" -Dauto_features=disabled -Dexamples=false "$@" \
+            >"$work/log" 2>&1; then
+        echo "not refused: $*"
+        exit 1
+    fi
+    grep "$words" "$work/log"
+    rm -rf "$work/refused"
+}
+refused 'pictures go to the page as JPEG' -Dtools=enabled -Dweb=enabled
+
+# Without the command there are its tests neither.
+if ! meson setup "$work/no-command" "$source" -Dtools=disabled >"$work/log" 2>&1; then
+    tail "$work/log"
     exit 1
 fi
-grep 'pictures go to the page as JPEG' "$work.log"
