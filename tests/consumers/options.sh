@@ -19,9 +19,14 @@ refused() {
     rm -rf "$work/refused"
 }
 refused 'pictures go to the page as JPEG' -Dtools=enabled -Dweb=enabled
+refused 'the page is served by the command' -Djpeg=enabled -Dweb=enabled
+refused 'text is drawn in the window' -Dsdl2_ttf=enabled
+refused 'by the library of option opencv' -Dximgproc=enabled
 
-# Without the command there are its tests neither.
+# Without the command there are its tests neither, and no window of it.
 if ! meson setup "$work/no-command" "$source" -Dtools=disabled >"$work/log" 2>&1; then
     tail "$work/log"
     exit 1
 fi
+grep 'refocus view *: NO' "$work/log"
+! grep -q refocus-view.so "$work/no-command/build.ninja"
