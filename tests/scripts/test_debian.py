@@ -28,14 +28,25 @@ class Debian(unittest.TestCase):
         self.assertGreater(len(needed), 20)
         self.assertEqual(needed - field('librefocus', 'Build-Depends'), {'libcmocka-dev'})
 
+    def are_with_the_libraries(self, package, names):
+        """Modules are in that package, and not in the command's."""
+        lines = (DEBIAN / f'librefocus-{package}.install').read_text().split()
+        self.assertEqual(set(lines), {f'usr/lib/*/refocus/refocus-{name}.so' for name in names})
+        rules = (DEBIAN / 'rules').read_text()
+        listed = re.search(f'^{package.upper()} = (.*)', rules, re.M).group(1)
+        self.assertEqual(set(listed.split()), names)
+        self.assertIn(f'$({package.upper()}:%=-Xrefocus-%.so)', rules)
+        self.assertIn(f'librefocus-{package}', field('librefocus0', 'Recommends'))
+
     def test_formats_are_with_the_libraries(self):
-        folders = {path.parent.name for path in (ROOT / 'platform').glob('*/meson.build')
-                   if 'codecs +=' in path.read_text()}
-        lines = (DEBIAN / 'librefocus-formats.install').read_text().split()
-        self.assertEqual(set(lines), {f'usr/lib/*/refocus/refocus-{name}.so' for name in folders})
-        rules = re.search('^FORMATS = (.*)', (DEBIAN / 'rules').read_text(), re.M).group(1)
-        self.assertEqual(set(rules.split()), folders)
-        self.assertIn('librefocus-formats', field('librefocus0', 'Recommends'))
+        self.are_with_the_libraries('formats', {
+            path.parent.name for path in (ROOT / 'platform').glob('*/meson.build')
+            if 'codecs +=' in path.read_text()})
+
+    def test_cameras_are_with_the_libraries(self):
+        loaded = re.findall(r'"refocus/refocus-(\w+)"',
+                            (ROOT / 'platform/capture/modules.c').read_text())
+        self.are_with_the_libraries('cameras', set(loaded))
 
     def test_development_files_depend_on_what_they_name(self):
         named = set()
