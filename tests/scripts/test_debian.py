@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """usage: test_debian.py [BUILD]  -- Debian's packages are built with all that README.md installs, hold
-each module, and development files depend on what their pkg-config files name."""
+each module, and development files depend on what their pkg-config files name; Buildroot's recipe."""
 import pathlib
 import re
 import sys
@@ -56,6 +56,13 @@ class Debian(unittest.TestCase):
         for name in sorted(named):
             if not name.startswith('refocus'):
                 self.assertIn(PACKAGES[name], field('librefocus-dev', 'Depends'))
+
+    def test_buildroot_can_give_what_the_recipe_takes(self):
+        """The JPEG library is a choice of Buildroot's user: selecting a member does nothing."""
+        recipe = (ROOT / 'platform/packages/buildroot/Config.in').read_text()
+        self.assertNotIn('select BR2_PACKAGE_JPEG_TURBO', recipe)
+        self.assertIn('depends on BR2_PACKAGE_JPEG_TURBO', recipe)
+        self.assertIn('depends on !BR2_STATIC_LIBS', recipe)
 
 
 if __name__ == '__main__':
