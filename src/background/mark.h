@@ -21,6 +21,7 @@
 #include "image/planes.h"
 #include "image/viewport.h"
 #include "support/executor.h"
+#include "tiles/bins.h"
 
 /* Signed blur, as it is stored, + 2^15, dilated from above and from below: 0 is below all blurs.
  * Padded; columns -1 and `width` are written. */
@@ -34,6 +35,7 @@ struct rf_mark {
     int reach;                   /* steps along a row that the cone is followed for: spread_row */
     struct rf_blur_q8 blur;      /* read */
     struct rf_light_q12 smooth;  /* read */
+    const struct rf_bins *bins;  /* read: extremes of the blur of tiles */
     struct rf_dilated_blur cone; /* written by rf_background_dilate(), then read; its rows may lie
                                     in those of the background's light, which replace them */
     struct rf_background background; /* written: blur is RF_NO_BLUR in the foreground, light a copy
@@ -51,6 +53,24 @@ void rf_background_dilate(const struct rf_executor *exec, const struct rf_viewpo
 /* Dilates rows y0 to y1 - 1 along themselves and marks them. */
 void rf_background_mark_rows(const struct rf_executor *exec, const struct rf_viewport *view,
                              const struct rf_mark *mark, int y0, int y1, int worker);
+
+/*
+ * Marks mixtures in a row of tiles, once its rows are marked. Beside a silhouette the photo mixes
+ * both surfaces in a pixel. Where the map calls it background it would be the nearest source of all
+ * that is inpainted behind the edge: a bright wall behind a dark thing would be grey there.
+ *
+ * A pixel p beside a surface that has more than 4 pixels of blur less, and is farther out of focus,
+ * is a mixture if along most ways to that surface, which is more than a pixel wide,
+ *
+ *     background b, background a, p, surface f
+ *
+ * p is no texture of the background, |p - a| > 4 |a - b|, but lies between it and the surface,
+ * |p - a| + |p - f| <= 9/8 |a - f|; distances are sums over channels. With a and b of light 2000
+ * and 2010 and f of 400, p of 1200 is one; with b of 1700 it is not. a and b are not in front of p,
+ * and b has no such surface beside it: not all of the farthest pixels are marked.
+ */
+void rf_background_leave_mixed(const struct rf_viewport *view, const struct rf_mark *mark,
+                               int band);
 
 /* Tells which pixels of a photo are no foreground, where no plane of all of it is stored: bit x % 8
  * of byte x / 8 of a row. */

@@ -50,6 +50,7 @@ static void mark_band(void *context, int band, int worker)
 
     rf_background_mark_rows(&r->exec, &r->view, &mark->pass, rf_band_start(band),
                             rf_band_end(&r->view, band), worker);
+    rf_background_leave_mixed(&r->view, &mark->pass, band);
     if (mark->thin)
         rf_thin_hide(mark->thin, r->background.blur, band);
     if (mark->behind)
@@ -90,6 +91,7 @@ void rf_pass_mark_background(struct rf_frame *f, int levels)
                                  .reach = rf_mark_reach(f->plan.plain, r->view.pad, f->focus.unit),
                                  .blur = r->blur,
                                  .smooth = r->smooth,
+                                 .bins = r->bins,
                                  .cone = r->cone,
                                  .background = r->background},
                         .levels = levels};

@@ -65,6 +65,39 @@ static void stays_dark(void **state)
     free(rgb);
 }
 
+/* A dark bar far before a bright wall in focus has a row of half-covered pixels on either side that
+ * the map gives to the wall: but for them the wall that shows through the blurred bar is as bright
+ * as if there were none. */
+static void leaves_mixtures(void **state)
+{
+    uint8_t *rgb[2] = {malloc(3 * WIDTH * HEIGHT), malloc(3 * WIDTH * HEIGHT)};
+
+    (void)state;
+    assert_true(rgb[0] && rgb[1]);
+    for (int mixed = 0; mixed < 2; mixed++) {
+        struct picture p = picture_flat(WIDTH, HEIGHT, (const uint8_t[]){220, 210, 200}, 0);
+        struct refocus_renderer *renderer;
+
+        for (int i = 0; i < WIDTH * HEIGHT; i++) {
+            const int from_bar = abs(i / WIDTH - HEIGHT / 2) - TILE;
+
+            if (from_bar < 0)
+                p.disparity[i] = 65535;
+            if (from_bar < mixed)
+                memset(p.rgb + 3 * i, from_bar < 0 ? 20 : 130, 3);
+        }
+        renderer = prepare(&p, 20);
+        render(renderer, 0, 20, 64, rgb[mixed]);
+        refocus_renderer_destroy(&renderer);
+        picture_free(&p);
+    }
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        if (abs(i / (3 * WIDTH) - HEIGHT / 2) != TILE && abs(rgb[0][i] - rgb[1][i]) > 1)
+            fail_msg("row %d: %d, %d without mixtures", i / (3 * WIDTH), rgb[1][i], rgb[0][i]);
+    free(rgb[0]);
+    free(rgb[1]);
+}
+
 /* The largest step between columns `at` - 1 and `at` + 16 k behind the bar, beyond what the slopes
  * on both sides make of it; in half codes. */
 static int largest_step(const uint8_t *rgb, int at)
@@ -140,8 +173,9 @@ static void noise_lets_nothing_through(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(stays_dark), cmocka_unit_test(has_no_seams),
-                                       cmocka_unit_test(noise_lets_nothing_through)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(stays_dark), cmocka_unit_test(leaves_mixtures),
+        cmocka_unit_test(has_no_seams), cmocka_unit_test(noise_lets_nothing_through)};
 
     return cmocka_run_group_tests_name("hidden", tests, NULL, NULL);
 }

@@ -45,6 +45,79 @@ static void mark(struct twin *t)
     free(up);
 }
 
+struct place {
+    int x, y;
+};
+
+/* The pixel some steps away; beyond the picture, the nearest one of it. */
+static int pixel(const struct twin *t, struct place p, struct place step, int steps)
+{
+    const int x = p.x + steps * step.x, y = p.y + steps * step.y;
+
+    return (y < 0           ? 0
+            : y < t->height ? y
+                            : t->height - 1) *
+               t->width +
+           (x < 0          ? 0
+            : x < t->width ? x
+                           : t->width - 1);
+}
+
+/* Whether pixel b is far before blur `a`, and farther out of focus. */
+static bool hides(const struct twin *t, double a, int b)
+{
+    return a - t->blur[b] > 4 && a + t->blur[b] < 0;
+}
+
+static double distance(const struct twin *t, int a, int b)
+{
+    double sum = 0;
+
+    for (int c = 0; c < 3; c++)
+        sum += fabs(t->smooth[c][a] - t->smooth[c][b]);
+    return sum;
+}
+
+/* Counts the pixels around that hide blur s. */
+static int sides(const struct twin *t, struct place p, double s)
+{
+    int count = 0;
+
+    for (int i = 0; i < 9; i++)
+        count += hides(t, s, pixel(t, p, (struct place){i % 3 - 1, i / 3 - 1}, 1));
+    return count;
+}
+
+/* Whether p is mixed with the surface that lies a step from it. */
+static bool is_mixed(const struct twin *t, struct place at, struct place step)
+{
+    const int p = pixel(t, at, step, 0), f = pixel(t, at, step, 1);
+    const int a = pixel(t, at, step, -1), b = pixel(t, at, step, -2);
+    const struct place out = {at.x - 2 * step.x, at.y - 2 * step.y};
+    const double s = t->blur[p];
+
+    if (out.x < 0 || out.x >= t->width || out.y < 0 || out.y >= t->height || !hides(t, s, f) ||
+        !hides(t, s, pixel(t, at, step, 2)) || t->blur[a] < s || t->blur[a] > s + 4 ||
+        t->blur[b] < s || t->blur[b] > s + 4 || sides(t, out, s))
+        return false;
+    return distance(t, p, a) > 4 * distance(t, a, b) &&
+           distance(t, p, a) + distance(t, p, f) <= 1.125 * distance(t, a, f);
+}
+
+/* Mixtures of the background and a surface before it are unknown, too. */
+static void mark_mixed(struct twin *t)
+{
+    for (int p = 0; p < t->width * t->height; p++) {
+        const struct place at = {p % t->width, p / t->width};
+        int mixed = 0;
+
+        for (int i = 0; i < 9; i++)
+            mixed += is_mixed(t, at, (struct place){i % 3 - 1, i / 3 - 1});
+        if (mixed && 2 * mixed >= sides(t, at, t->blur[p]))
+            t->background_blur[p] = NAN;
+    }
+}
+
 /* A level of the pyramid: planes of light, and blur in the fourth. */
 struct level {
     int width, height;
@@ -163,6 +236,7 @@ void twin_background(struct twin *t)
     int levels = 1;
 
     mark(t);
+    mark_mixed(t);
     while (level[levels - 1].width > 1 || level[levels - 1].height > 1) {
         level[levels] = coarser(&level[levels - 1]);
         push(&level[levels - 1], &level[levels], t->K / 4);
