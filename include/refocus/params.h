@@ -125,9 +125,9 @@ struct refocus_look_params {
     float grain;          /**< any method; 0 to 4: how much of the noise that a blur averages away
                                is put back, as luma noise of its strength, by brightness, and of
                                its size. It is measured in the smoothest parts of the photo; what
-                               is below one code, or differs between brightnesses or blocks as
-                               texture does, is no noise, and nothing changes. 0 = none, the
-                               default; 1 = as much as there was */
+                               is below one code, or differs between brightnesses or blocks, or
+                               over distance, as texture does, is no noise, and nothing changes.
+                               0 = none, the default; 1 = as much as there was */
     uint32_t grain_seed;  /**< seed of the grain; any number; default 0 */
     int32_t star_spikes;  /**< scatter, sweep: of a star filter, 0 = none, the default, else 2 to
                                16; sweep gives them to small clipped highlights. Other methods

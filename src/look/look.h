@@ -45,9 +45,10 @@ struct rf_stars {
 
 /* Grain of the photo, measured where it is smooth. */
 struct rf_grain {
-    /* number of blocks by luma and by variance between every other pixel, in 64 bins an octave; and
-     * the sum of their variances between neighbours, 1/16 code^2 */
+    /* number of blocks by luma and by variance between every other pixel, in 64 bins an octave; the
+     * sum of their variances between neighbours, 1/16 code^2; and how much they are texture, Q8 */
     uint32_t blocks[RF_NOISE_LEVELS][RF_NOISE_BINS], near[RF_NOISE_LEVELS][RF_NOISE_BINS];
+    uint32_t rough[RF_NOISE_LEVELS][RF_NOISE_BINS];
     bool any;                        /* there is some */
     uint16_t sigma[RF_NOISE_LEVELS]; /* standard deviation of luma, 1/256 code */
     int side;                        /* weight of neighbours in smoothed noise, Q7 */

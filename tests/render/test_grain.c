@@ -2,7 +2,7 @@
 #include "pictures.h"
 #include "things.h"
 
-enum { W = 144, H = 112 };
+enum { W = 144, H = 112, TALL = 4 * H };
 
 static uint8_t out[3 * W * H];
 static const struct refocus_image image = {.struct_size = sizeof(struct refocus_image),
@@ -43,15 +43,15 @@ static double noise_of(int x0, int x1)
 /* A photo of this noise at 120, smoothed by (a, 1, a) each way, the nearer half of it in focus. */
 static void draw_noise(struct picture *p, double sigma, double a)
 {
-    static double white[(H + 2) * (W + 2)];
+    static double white[(TALL + 2) * (W + 2)];
     uint32_t seed = 5;
 
-    for (int i = 0; i < (H + 2) * (W + 2); i++) {
+    for (int i = 0; i < (p->height + 2) * (W + 2); i++) {
         white[i] = 0;
         for (int k = 0; k < 12; k++)
             white[i] += ((int)(noise(&seed) % 1001) - 500) / 1000.0; /* 12 of variance 1/12 */
     }
-    for (int i = 0; i < W * H; i++) {
+    for (int i = 0; i < W * p->height; i++) {
         const double *at = white + (i / W + 1) * (W + 2) + i % W + 1;
         double v = 0;
 
@@ -212,6 +212,106 @@ static void uneven_texture_is_no_grain(void **state)
     }
 }
 
+/* Light and shade, in codes, of random values a grid apart and linear in between. */
+static double shade_at(int x, int y, int grid)
+{
+    double v[4];
+
+    for (int i = 0; i < 4; i++) {
+        uint32_t seed = (uint32_t)((x / grid + i % 2) * 7919 + (y / grid + i / 2) * 104729 + grid);
+
+        noise(&seed);
+        v[i] = (int)(noise(&seed) >> 8) % 1001 / 500.0 - 1;
+    }
+    for (int i = 0; i < 2; i++)
+        v[i] += (v[i + 2] - v[i]) * (y % grid) / grid;
+    return v[0] + (v[1] - v[0]) * (x % grid) / grid;
+}
+
+/* Clouds of all sizes, strongest where they are large, and part / 128 noise of 8 codes in between.
+ */
+static void draw_clouds(struct picture *p, int part)
+{
+    draw_noise(p, 8, 0);
+    for (int i = 0; i < W * p->height; i++) {
+        double v = 120.5;
+
+        for (int grid = 2; grid <= 16; grid *= 2)
+            v += shade_at(i % W, i / W, grid) * 4 * grid;
+        v = (fmin(fmax(v, 0), 255) * (128 - part) + p->rgb[3 * i] * part) / 128;
+        memset(p->rgb + 3 * i, (int)floor(v), 3);
+    }
+}
+
+/* The standard deviation of what grain changes, half of the photo being in focus. */
+static double grain_of(const struct picture *p)
+{
+    static uint8_t with[3 * W * TALL], without[sizeof with];
+    const struct refocus_image picture =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, with, p->width, p->height, 3 * p->width);
+    struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 20);
+    struct refocus_renderer *renderer = prepared(p, 20, 2);
+    double squares = 0;
+
+    assert_int_equal(refocus_render_settings(renderer, &params, &picture), REFOCUS_OK);
+    memcpy(without, with, sizeof with);
+    params.look.grain = 1;
+    assert_int_equal(refocus_render_settings(renderer, &params, &picture), REFOCUS_OK);
+    for (int i = 1; i < 3 * W * p->height; i += 3)
+        squares += i / 3 % W < W / 2 + 20 ? 0 : pow(with[i] - without[i], 2);
+    refocus_renderer_destroy(&renderer);
+    return sqrt(squares / (p->height * (W / 2 - 20)));
+}
+
+/* Texture that is alike in all places of all brightnesses is told by its size, and a pattern by
+ * being too much alike. */
+static void even_texture_is_no_grain(void **state)
+{
+    struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
+
+    (void)state;
+    draw_clouds(&p, 0);
+    assert_true(grain_of(&p) == 0);
+    for (int i = 0; i < W * H; i++) /* stripes, six pixels wide */
+        memset(p.rgb + 3 * i, (int)floor(120.5 + 8 * cos((i % W + i / W) * 3.14159265 / 3)), 3);
+    assert_true(grain_of(&p) == 0);
+    picture_free(&p);
+}
+
+/* A sky without noise does not make noise of the texture beside it. */
+static void smooth_parts_tell_nothing(void **state)
+{
+    struct picture p = picture_flat(W, TALL, (uint8_t[3]){120, 120, 120}, 60000);
+    struct picture sky = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
+
+    (void)state;
+    draw_clouds(&p, 28);
+    draw_noise(&sky, 0.5, 0);
+    for (int i = 0; i < 3 * W * H; i++)
+        p.rgb[i] = p.rgb[3 * W * H + i] = (uint8_t)(sky.rgb[i] - 100);
+    assert_true(grain_of(&p) == 0);
+    picture_free(&p);
+    picture_free(&sky);
+}
+
+/* From texture to noise grain grows by steps smaller than it is, 5 codes where noise is half. */
+static void grain_grows_with_noise(void **state)
+{
+    double is = 0;
+
+    (void)state;
+    for (int part = 0; part <= 128; part += part < 64 ? 1 : 8) {
+        struct picture p = picture_flat(W, TALL, (uint8_t[3]){120, 120, 120}, 60000);
+        const double last = is;
+
+        draw_clouds(&p, part);
+        is = grain_of(&p);
+        assert_true(fabs(is - last) < 2.5);
+        picture_free(&p);
+    }
+    about("noise alone", is, 8, 0.12);
+}
+
 /* A number that hangs on every code of the picture. */
 static uint64_t weigh_codes(void)
 {
@@ -281,10 +381,14 @@ static void grain(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(grain), cmocka_unit_test(grain_size),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(grain),
+                                       cmocka_unit_test(grain_size),
                                        cmocka_unit_test(noise_follows_brightness),
                                        cmocka_unit_test(texture_is_no_grain),
-                                       cmocka_unit_test(uneven_texture_is_no_grain)};
+                                       cmocka_unit_test(uneven_texture_is_no_grain),
+                                       cmocka_unit_test(even_texture_is_no_grain),
+                                       cmocka_unit_test(smooth_parts_tell_nothing),
+                                       cmocka_unit_test(grain_grows_with_noise)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
