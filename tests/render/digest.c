@@ -28,7 +28,7 @@ uint64_t hash(const uint8_t *bytes, size_t n)
     return h;
 }
 
-/* That of 16-bit values, low byte first on every processor. */
+/* Hashes 16-bit values, low byte first on every processor. */
 static uint64_t hash_words(const uint16_t *words, size_t n)
 {
     uint64_t h = hash_begin;
