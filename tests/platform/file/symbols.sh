@@ -16,7 +16,7 @@ complain() {
 globals() { nm -g --defined-only "$1" | awk 'NF == 3 {print $3}' | sort -u; }
 
 names=$(globals "$1")
-exports=$(nm -D --defined-only "$2" | awk 'NF == 3 {print $3}' | sort -u)
+exports=$(nm -D --defined-only "$2" | awk '$2 != "A" && NF == 3 {print $3}' | sort -u)
 [ -n "$names" ] && [ -n "$exports" ] || { echo 'nm found nothing'; exit 1; }
 complain 'global names that are neither refocus_ nor rf_' \
     "$(echo "$names" | grep -v -E '^(refocus|rf)_')"

@@ -1,0 +1,25 @@
+#!/bin/sh
+# usage: exports.sh LIBRARY_OR_MODULE...
+# Shared libraries of the platform export refocus_ names alone, as of the release that they came
+# with, and none of C++.
+set -u
+failed=0
+
+# complain WHAT NAMES
+complain() {
+    [ -z "$2" ] && return
+    printf '%s:\n%s\n' "$1" "$2"
+    failed=1
+}
+
+for file; do
+    name=$(basename "$file")
+    exports=$(nm -D --defined-only "$file" | awk '$2 != "A" {print $NF}')
+    [ -n "$exports" ] || complain 'nm found nothing' "$name"
+    case $name in lib*)
+        complain "$name exports more than refocus_ names of a release" \
+            "$(echo "$exports" | grep -v -E '^refocus_[a-z0-9_]+@@REFOCUS_[0-9.]+$')"
+        ;;
+    esac
+done
+exit $failed
