@@ -50,6 +50,20 @@ archive=$(find "$work/dest" -name librefocus.a)
 LD_LIBRARY_PATH='' ./static
 echo 'ok readme, static'
 
+# The one library in C++, from C.
+archive=$(find "$work/dest" -name librefocus-opencv.a)
+if [ -n "$archive" ]; then
+    cat >src/network.c <<'END'
+#include <refocus/platform/opencv.h>
+int main(void) { return !refocus_cv_network_name(0); }
+END
+    # shellcheck disable=SC2046
+    "$@" -std=c11 -o network src/network.c $(pkg-config --cflags refocus-opencv) "$archive" \
+        $(pkg-config --static --libs-only-l refocus-opencv | sed 's/-lrefocus-opencv//') -lm -pthread
+    ./network
+    echo 'ok opencv, static'
+fi
+
 # By CMake, in C and C++.
 if command -v cmake >/dev/null && command -v c++ >/dev/null; then
     flags=
