@@ -1,6 +1,5 @@
 /* layout.c: how frames lie in memory, by their format. */
-#include <string.h>
-#include <strings.h>
+#include "../file/letters.h"
 #include "layout.h"
 
 static const struct {
@@ -25,7 +24,7 @@ const char *refocus_frame_format_name(uint32_t format)
 uint32_t rf_format_by_name(const char *name)
 {
     for (uint32_t i = 1; i < REFOCUS_FRAME_FORMAT_COUNT; i++)
-        if (strcasecmp(formats[i].name, name) == 0)
+        if (rf_same_word(formats[i].name, name))
             return i;
     return REFOCUS_FRAME_ANY;
 }

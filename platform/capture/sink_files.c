@@ -9,10 +9,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
+#include "file/letters.h"
 #include "pattern.h"
 #include "rgb_to_yuv.h"
 #include "samples.h"
@@ -89,7 +89,7 @@ static int parse_raw(struct stream *stream, struct refocus_reason *reason)
     stream->layout = REFOCUS_FRAME_RGB24;
     if (!comma || strpbrk(comma, "./"))
         return REFOCUS_OK;
-    stream->own = strcasecmp(comma + 1, "own") == 0;
+    stream->own = rf_same_word(comma + 1, "own");
     if (!stream->own)
         stream->layout = rf_format_by_name(comma + 1);
     if (!stream->own && !rf_can_encode(stream->layout))

@@ -4,16 +4,16 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <strings.h>
 
+#include "letters.h"
 #include "reason.h"
 
 /* Metres in a unit of distance; 0: none that is known. */
 static double metres_in(const char *units)
 {
-    if (units && (strcasecmp(units, "m") == 0 || strcasecmp(units, "meters") == 0))
+    if (units && (rf_same_word(units, "m") || rf_same_word(units, "meters")))
         return 1.0;
-    return units && strcasecmp(units, "mm") == 0 ? 0.001 : 0.0;
+    return units && rf_same_word(units, "mm") ? 0.001 : 0.0;
 }
 
 static void note_range(const struct rf_read *read, const char *name, const char *units,
@@ -67,7 +67,7 @@ static int read_range(const struct rf_read *read, const struct rf_xmp *xmp,
         rf_note(read->info, "%s: no Near and Far: distances are unknown", name);
         return REFOCUS_OK;
     }
-    if (units && strcasecmp(units, "diopters") == 0 && take_dioptres(read, name, range))
+    if (units && rf_same_word(units, "diopters") && take_dioptres(read, name, range))
         return REFOCUS_OK;
     if (range->near < 0.0 || range->far <= range->near) {
         return rf_fail(read->reason, REFOCUS_ERR_FORMAT,
@@ -155,10 +155,10 @@ int rf_set_range(struct rf_read *read, const struct rf_xmp *xmp, const struct rf
         format = keys->default_format;
         rf_note(read->info, "%s: no Format: read as %s", keys->name, format);
     }
-    if (format && strcasecmp(format, "RangeInverse") == 0)
+    if (format && rf_same_word(format, "RangeInverse"))
         return set_inverse(read, keys->name, "RangeInverse: linear in 1/z");
-    if (format && strcasecmp(format, "RangeLinear") == 0) {
-        return units && strcasecmp(units, "diopters") == 0 && range->metres > 0.0
+    if (format && rf_same_word(format, "RangeLinear")) {
+        return units && rf_same_word(units, "diopters") && range->metres > 0.0
                    ? set_inverse(read, keys->name, "RangeLinear: linear in dioptres")
                    : set_linear(read, keys, range);
     }

@@ -4,12 +4,12 @@
 #include "dynamic.h"
 
 #include <string.h>
-#include <strings.h>
 
 #include "depth_part.h"
 #include "depth_range.h"
 #include "jpeg_walk.h"
 #include "png_format.h"
+#include "letters.h"
 #include "reason.h"
 
 enum { NONE = -1 };
@@ -86,7 +86,7 @@ static struct found find_items(const struct rf_read *read, const struct rf_xmp *
 {
     const char *const uri = xmp->value[RF_XMP_MAP_URI];
     const char *const image = xmp->value[RF_XMP_CAMERA_IMAGE_SEMANTIC];
-    const bool is_original = image && strcasecmp(image, "Original") == 0;
+    const bool is_original = image && rf_same_word(image, "Original");
     struct found found;
 
     found.depth = find_item(xmp, uri, "Depth");
@@ -108,7 +108,7 @@ static int set_meaning(struct rf_read *read, const struct rf_xmp *xmp)
     const char *const semantic = xmp->value[RF_XMP_MAP_SEMANTIC];
     struct rf_depth_range range = {0.0, 0.0, 0.0};
 
-    if (semantic && strcasecmp(semantic, "Segmentation") == 0) {
+    if (semantic && rf_same_word(semantic, "Segmentation")) {
         read->depth.meaning = REFOCUS_DEPTH_DISPARITY;
         read->depth.value_near = 0.0;
         read->depth.value_far = read->samples.max_value;

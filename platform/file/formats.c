@@ -3,9 +3,9 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 #include <refocus/platform/file.h>
+#include "letters.h"
 
 #define RF_FORMAT_POINTER(name) &rf_format_##name,
 static const struct rf_format *const formats[] = {RF_FORMAT_LIST(RF_FORMAT_POINTER)};
@@ -30,7 +30,7 @@ const struct rf_format *rf_format_of_name(const char *path)
 
     for (int i = 0; dot && i < FORMATS; i++) {
         for (const char *const *ending = formats[i]->endings; *ending; ending++)
-            if (strcasecmp(dot, *ending) == 0)
+            if (rf_same_word(dot, *ending))
                 return formats[i];
     }
     return NULL;

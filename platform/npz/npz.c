@@ -2,10 +2,10 @@
  * the first whose name begins with "depth" or "disp", else the first. */
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <zip.h>
 
 #include "codec.h"
+#include "letters.h"
 #include "npy.h"
 #include "reason.h"
 
@@ -18,7 +18,7 @@ static bool is_array(const char *name)
 
 static bool is_depth(const char *name)
 {
-    return strncasecmp(name, "depth", 5) == 0 || strncasecmp(name, "disp", 4) == 0;
+    return rf_begins_with(name, "depth") || rf_begins_with(name, "disp");
 }
 
 /* The number of the array in the archive; -1: there is none. *others: how many more there are, if

@@ -1,6 +1,5 @@
 /* capture.c: the source `v4l2:` takes frames from cameras by raw ioctls, in mapped or exported
  * buffers, and never makes a blocking call. */
-#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <poll.h>
@@ -8,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include "file/letters.h"
 #include "v4l2.h"
 
 enum { MOST_NODES = 64 };
@@ -265,14 +265,16 @@ static void plain_name(char *plain, size_t size, const char *name)
     bool gap = false;
 
     for (; *name && n + 2 < size; name++) {
-        if (!isalnum((unsigned char)*name)) {
+        const char letter = rf_lower(*name);
+
+        if (!(letter >= 'a' && letter <= 'z') && !(letter >= '0' && letter <= '9')) {
             gap = n > 0;
             continue;
         }
         if (gap)
             plain[n++] = '_';
         gap = false;
-        plain[n++] = (char)tolower((unsigned char)*name);
+        plain[n++] = letter;
     }
     plain[n] = '\0';
 }

@@ -7,6 +7,7 @@
 #include "formats.h"
 #include "heif_boxes.h"
 #include "heif_turn.h"
+#include "letters.h"
 #include "md5.h"
 #include "mpf.h"
 #include "number.h"
@@ -44,6 +45,23 @@ static void numbers(void **state)
     }
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         assert_false(rf_parse_number(bad[i], &value));
+}
+
+/* Letters in either case are the same, signs that are as far apart as they are not. */
+static void words(void **state)
+{
+    (void)state;
+    assert_true(rf_same_word("", ""));
+    assert_true(rf_same_word(".TIF", ".tif"));
+    assert_true(rf_same_word("AZaz09", "azAZ09"));
+    assert_false(rf_same_word(".tif", ".tiff"));
+    assert_false(rf_same_word(".tiff", ".tif"));
+    assert_false(rf_same_word("@[", "`{"));
+    assert_false(rf_same_word("\xc9", "\xe9"));
+    assert_true(rf_begins_with("DISParity", "disp"));
+    assert_true(rf_begins_with("disp", "disp"));
+    assert_false(rf_begins_with("dis", "disp"));
+    assert_false(rf_begins_with("my_disp", "disp"));
 }
 
 static void base64_text(void **state)
@@ -347,13 +365,21 @@ static void png_signature(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers),           cmocka_unit_test(base64_text),
-        cmocka_unit_test(exif_offsets),      cmocka_unit_test(exif_texts_are_clean),
-        cmocka_unit_test(heif_sequences),    cmocka_unit_test(heif_stereo),
-        cmocka_unit_test(heif_orientations), cmocka_unit_test(heif_short_primary),
-        cmocka_unit_test(md5_of_the_rfc),    cmocka_unit_test(png_signature),
-        cmocka_unit_test(reasons_end),       cmocka_unit_test(heif_brands),
-        cmocka_unit_test(mpf_bounds),        cmocka_unit_test(disparity_ranges),
+        cmocka_unit_test(numbers),
+        cmocka_unit_test(words),
+        cmocka_unit_test(base64_text),
+        cmocka_unit_test(exif_offsets),
+        cmocka_unit_test(exif_texts_are_clean),
+        cmocka_unit_test(heif_sequences),
+        cmocka_unit_test(heif_stereo),
+        cmocka_unit_test(heif_orientations),
+        cmocka_unit_test(heif_short_primary),
+        cmocka_unit_test(md5_of_the_rfc),
+        cmocka_unit_test(png_signature),
+        cmocka_unit_test(reasons_end),
+        cmocka_unit_test(heif_brands),
+        cmocka_unit_test(mpf_bounds),
+        cmocka_unit_test(disparity_ranges),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
