@@ -22,6 +22,7 @@ refused 'pictures go to the page as JPEG' -Dtools=enabled -Dweb=enabled
 refused 'the page is served by the command' -Djpeg=enabled -Dweb=enabled
 refused 'text is drawn in the window' -Dsdl2_ttf=enabled
 refused 'by the library of option opencv' -Dximgproc=enabled
+refused 'static ones are built beside' -Ddefault_library=static
 
 # Without the command there are its tests neither, and no window of it.
 if ! meson setup "$work/no-command" "$source" -Dtools=disabled >"$work/log" 2>&1; then

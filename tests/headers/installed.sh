@@ -75,4 +75,9 @@ if command -v cmake >/dev/null && command -v c++ >/dev/null; then
     ./cmake/consumer
     ./cmake/consumer_cpp
     echo 'ok find_package(refocus)'
+    # Where libraries are static the core is found alone, and the error says what is there.
+    find "$work/dest" -name '*.so*' -delete
+    cmake -S "$source/tests/consumers/project" -B cmake-static -DCMAKE_PREFIX_PATH="${config%/lib*/cmake/*}" \
+        >cmake.log 2>&1 && exit 1
+    tr -s ' \n' ' ' <cmake.log | grep -o 'is there as a static library'
 fi
