@@ -18,6 +18,11 @@ extern "C" {
 /** Methods that a renderer can take on. Opaque. */
 struct refocus_papers;
 
+/* The struct and the function have one name, which -Wshadow of g++ takes for a mistake. */
+#if defined(__cplusplus) && defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wshadow"
+#endif
 /**
  * The methods of this library. It must be of the same build as the core that renders with it:
  * refocus_renderer_create() refuses another one.
@@ -25,6 +30,9 @@ struct refocus_papers;
  * @return constant, never NULL; nothing is to be freed. Thread-safe.
  */
 REFOCUS_API const struct refocus_papers *refocus_papers(void);
+#if defined(__cplusplus) && defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
 
 #ifdef __cplusplus
 }

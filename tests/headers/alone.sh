@@ -18,7 +18,7 @@ for header in $(cd "$include" && find refocus -name "$names" ! -name opencv.hpp 
     # struct refocus_settings is the program's own.
     case $header in */settings.h | */refocus.h*) padding= ;; *) padding=$padded ;; esac
     if printf '#include <%s>\n#include <%s>\n' "$header" "$header" |
-        "$@" -x $language -std="$std" -pedantic -Wall -Wextra -Werror $padding -I"$include" \
+        "$@" -x $language -std="$std" -pedantic -Wall -Wextra -Wshadow -Wconversion -Werror $padding -I"$include" \
             -fsyntax-only -; then
         echo "ok $std $header"
     else
