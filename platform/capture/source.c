@@ -56,13 +56,22 @@ static const struct rf_source_ops *find(const char *name, const char **rest)
     return *rest ? rf_pipewire_source() : NULL;
 }
 
+/* A kind that the build has is not there when its module is not installed. */
+static int missing(const char *kind, struct refocus_reason *reason)
+{
+    if (strstr(refocus_source_backends(), kind))
+        return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
+                               "%s: its module refocus-%s is not installed beside the library",
+                               kind, kind);
+    return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED, "this build has no %s; there are %s",
+                           kind, refocus_source_backends());
+}
+
 static int unknown(const char *name, struct refocus_reason *reason)
 {
     for (int i = 0; i < OPTIONAL; i++)
         if (behind(name, optional[i]))
-            return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,
-                                   "this build has no %s, or its module is gone; there are %s",
-                                   optional[i], refocus_source_backends());
+            return missing(optional[i], reason);
     return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
                            "no such kind of source; give KIND:NAME with one of %s",
                            refocus_source_backends());

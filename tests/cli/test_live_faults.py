@@ -2,6 +2,7 @@
 """usage: test_live_faults.py REFOCUS  -- refocus live when cameras, depth or readers fail, and its commands."""
 import json
 import os
+import shutil
 import signal
 import socket
 import stat
@@ -415,6 +416,17 @@ class Faults(Live):
                            DEPTH)
             else:
                 self.fails(1, 'refocus: %s:99' % kind, '--camera', kind + ':99', '--depth', DEPTH)
+
+    @unittest.skipIf('REFOCUS_SLOW' in os.environ, 'sanitizers come before what is preloaded')
+    def test_modules_that_are_not_installed(self):
+        library = os.path.join(os.path.dirname(REFOCUS), '../capture/librefocus-capture.so.0')
+        version = subprocess.run([REFOCUS, '--version'], capture_output=True, check=True).stdout
+        # It looks for modules beside itself.
+        env = {**os.environ, 'LD_PRELOAD': shutil.copy(library, self.folder.name)}
+        for kind in ('libcamera', 'pipewire'):
+            if kind.encode() in version:
+                self.fails(1, f'its module refocus-{kind} is not installed', '--camera',
+                           kind + ':0', '--depth', DEPTH, env=env)
 
     def test_memory_is_constant(self):
         sizes = []
