@@ -1,6 +1,7 @@
 /* stereo.cpp: depth is computed from two pictures by OpenCV's semi-global matching, both ways. */
 #include "guard.hpp"
 #include "module.hpp"
+#include "stereo_chance.hpp"
 #include "stereo_exposure.hpp"
 #include "stereo_order.hpp"
 #include "stereo_rectify.hpp"
@@ -63,31 +64,6 @@ float remove_specks(cv::Mat &disparity)
                 left++;
         }
     return (float)left / (float)disparity.total();
-}
-
-/* Takes out what lies far behind all else: chance matches that filling, which takes the farther
- * side, would spread over all that could not be matched. They are fewer than 1 of 500 matches, in
- * patches too large for specks, and beyond a gap of 1/16 of the range that is left. */
-void remove_far_chance(cv::Mat &disparity)
-{
-    enum { SHARE = 500, GAP = 16 };
-    std::vector<float> values;
-    float greatest;
-    size_t most, far = 0;
-
-    for (int y = 0; y < disparity.rows; y++)
-        for (int x = 0; x < disparity.cols; x++)
-            if (!std::isnan(disparity.at<float>(y, x)))
-                values.push_back(disparity.at<float>(y, x));
-    most = values.size() / SHARE;
-    if (most == 0)
-        return;
-    greatest = *std::max_element(values.begin(), values.end());
-    std::partial_sort(values.begin(), values.begin() + (long)most + 1, values.end());
-    for (size_t i = 1; i <= most; i++)
-        if ((values[i] - values[i - 1]) * GAP > greatest - values[i])
-            far = i;
-    disparity.setTo(none, disparity < values[far]);
 }
 
 /* Disparities of left from left to right and from right to left, each at its own pixels. */
@@ -275,7 +251,7 @@ matches match_in_order(const pair &p, const refocus_stereo_params *params,
     raw = m.disparity.clone();
     m.matched = check(m.disparity, back);
     m.order = find_order(p, m, back, raw);
-    remove_far_chance(m.disparity);
+    refocus_cv::remove_chance(m.disparity);
     m.status = m.matched < params->least_match ? (int)REFOCUS_ERR_NO_DEPTH : (int)REFOCUS_OK;
     if (m.status != REFOCUS_OK)
         m.why = unlike("too few pixels of the two pictures match", s);

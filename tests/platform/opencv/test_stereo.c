@@ -117,25 +117,28 @@ static void stereo_spans(void **state)
     square = NEAR;
 }
 
-/* Copies a patch of the left picture to where it has disparity -10: beyond the wall. Returns how
- * many of its samples have about that, and the least one of all. */
-static int beyond_the_wall(int width, int height, float *least)
+/* Copies a patch of the left picture, at (x, 20), to where it has another disparity. Returns how
+ * many samples have about that, and the report of all. */
+static int patched(int x, int width, int height, int disparity,
+                   struct refocus_stereo_report *report)
 {
     static uint8_t left[3 * W * H], right[3 * W * H];
     static float d[W * H];
     const struct refocus_image a = picture(left), b = picture(right);
     const struct refocus_stereo_params params = refocus_stereo_params_default();
-    struct refocus_stereo_report report = refocus_stereo_report_default();
     struct refocus_cv_reason reason;
     int count = 0;
 
+    *report = refocus_stereo_report_default();
     make_pair(left, right, 0);
+    for (int y = 20; y < 20 + height && disparity > NEAR; y++)
+        for (int i = 0; i < 3 * width; i++)
+            right[3 * (y * W + x - FAR) + i] = noise(); /* it is at one place alone */
     for (int y = 20; y < 20 + height; y++)
-        memcpy(right + 3 * (y * W + 50), left + 3 * (y * W + 40), 3 * (size_t)width);
-    assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &report, &reason), REFOCUS_OK);
+        memcpy(right + 3 * (y * W + x - disparity), left + 3 * (y * W + x), 3 * (size_t)width);
+    assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, report, &reason), REFOCUS_OK);
     for (int i = 0; i < W * H; i++)
-        count += d[i] < -5;
-    *least = report.least;
+        count += fabsf(d[i] - (float)disparity) < 5;
     return count;
 }
 
@@ -143,13 +146,28 @@ static int beyond_the_wall(int width, int height, float *least)
  * all matches. */
 static void stereo_far_chance(void **state)
 {
-    float least;
+    struct refocus_stereo_report report;
 
     (void)state;
-    assert_int_equal(beyond_the_wall(24, 12, &least), 0);
-    assert_true(least > -1); /* the noise at the right border is the same in both */
-    assert_in_range(beyond_the_wall(26, 20, &least), 130, 260);
-    assert_true(least < -9);
+    assert_int_equal(patched(40, 24, 12, -10, &report), 0);
+    assert_true(report.least > -1); /* the noise at the right border is the same in both */
+    assert_in_range(patched(40, 26, 20, -10, &report), 130, 260);
+    assert_true(report.least < -9);
+}
+
+/* So is one before all else which takes half of the range; a post is longer. */
+static void stereo_near_chance(void **state)
+{
+    struct refocus_stereo_report report;
+
+    (void)state;
+    assert_int_equal(patched(240, 17, 8, 56, &report), 0);
+    assert_true(report.greatest < NEAR + 1);
+    assert_int_equal(patched(240, 8, 14, 56, &report), 0);
+    assert_in_range(patched(240, 11, 14, 56, &report), 111, 154); /* 1 of 500 */
+    assert_in_range(patched(240, 5, 32, 56, &report), 80, 160);
+    assert_true(report.greatest > 55);
+    assert_in_range(patched(240, 17, 8, 42, &report), 80, 136); /* it takes less than a half */
 }
 
 /* The disparity of the square in the first picture, nearly all of which has it, and of the wall. */
@@ -385,6 +403,7 @@ int main(void)
         cmocka_unit_test(stereo_exposures),
         cmocka_unit_test(stereo_spans),
         cmocka_unit_test(stereo_far_chance),
+        cmocka_unit_test(stereo_near_chance),
         cmocka_unit_test(stereo_order),
         cmocka_unit_test(stereo_unrectified),
         cmocka_unit_test(stereo_tall),
