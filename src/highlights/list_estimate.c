@@ -64,10 +64,11 @@ static float gain_at(const struct row *row, const int colour[3], int x)
 /* Adds the light that a pixel has lost, Q12. The lens has spread the highlight's own light around
  * it, so the whole light has the hue of what is around the clipped pixels, as far as that is its
  * own, and what of that the pixel does not show is lost: of a warm lamp that is clipped to white,
- * which holds too much blue, hardly any blue. A channel far below white has lost none, whatever a
- * fixed gain adds to it. */
+ * which holds too much blue, hardly any blue. A channel far below white has lost none. The light
+ * that a fixed gain adds has half that hue, and half that of the pixel. */
 static void add_light(struct row *row, const int colour[3], float gain, int cell)
 {
+    const bool fixed = !(row->listing->estimate->scale > 0);
     const float luminance =
         (218 * (float)colour[0] + 732 * (float)colour[1] + 74 * (float)colour[2]) * (1 / 1024.0f);
 
@@ -76,11 +77,13 @@ static void add_light(struct row *row, const int colour[3], float gain, int cell
     row->hue_of = cell;
     for (int c = 0; c < 3; c++) {
         const float own = (float)colour[c];
-        const float whole = (1 + gain) * (own + row->known * (luminance * row->hue[c] - own));
-        const float lost = whole > own ? whole - own : 0;
+        const float toward = row->known * (luminance * row->hue[c] - own);
+        const float whole = (1 + gain) * (own + toward);
 
-        row->light[c] +=
-            row->listing->estimate->scale > 0 ? lost * nearness_to_white(colour[c]) : lost;
+        if (fixed)
+            row->light[c] += gain * (own + 0.5f * toward);
+        else if (whole > own)
+            row->light[c] += (whole - own) * nearness_to_white(colour[c]);
     }
 }
 
