@@ -259,10 +259,11 @@ static struct rf_slab closing_slab(const struct rf_tile_plan *plan, int k, int n
     };
 }
 
-/* Closes the cracks between slabs near the focus. Where the blurs of a pixel and of its neighbour
- * are in two slabs, a ray that looks for each in the place of the other passes the surface, and one
- * bright pixel of the background shows in a subject in focus. Such a ray looks once more, in the
- * middle between both, for the blurs of either. Farther out of focus such dots do not show. */
+/* Closes the cracks between slabs of noise near the focus. Where the blurs of a pixel and of its
+ * neighbour are in two slabs, a ray that looks for each in the place of the other passes the
+ * surface, and one bright pixel of the background shows in a subject in focus. Such a ray looks
+ * once more, in the middle between both, for the blurs of either. Farther out of focus such dots do
+ * not show. */
 static void close_cracks(struct rf_tile_plan *plan, int unit)
 {
     const int slabs = plan->slabs, noise = plan->noise >> unit;
@@ -288,7 +289,7 @@ void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,
     const struct rf_bins_in_reach in_reach = rf_collect(view, bins, reach, tx, ty);
 
     cover_bounded(&in_reach, reach, plan);
-    if (in_reach.all.most - in_reach.all.least < MOST_SPREAD)
+    if (plan->noise > 0 && in_reach.all.most - in_reach.all.least < MOST_SPREAD)
         close_cracks(plan, reach->scale.unit);
     plan->highlight = rf_in_pixels(in_reach.all.highlight, reach->scale.unit);
     plan->undersampled = in_reach.all.undersampled > 0;

@@ -393,7 +393,9 @@ static struct twin_plan bounded_plan(const struct bins *bins, double width, doub
         merging.ratio *= 2;
         plan = cover(bins, width, &merging, &noisy);
     }
-    return bins->most - bins->least < 236 * unit ? with_closed_cracks(&plan, noise, unit) : plan;
+    return noise > 0 && bins->most - bins->least < 236 * unit
+               ? with_closed_cracks(&plan, noise, unit)
+               : plan;
 }
 
 struct twin_plan *twin_plans(const struct twin *t, int across, int down)
