@@ -539,47 +539,6 @@ static void test_fill_takes_the_farther_side(void **state)
     assert_memory_equal(out, again, sizeof out);
 }
 
-/* A tilted, noisy floor with a round hole: inpainted near its plane, and rows inside do not
- * differ from those above and below more than the surface itself does. */
-static void test_fill_leaves_no_streaks(void **state)
-{
-    (void)state;
-    enum { W = 160, H = 120, R = 24 };
-    static uint16_t v[H][W], out[H][W];
-    uint32_t seed = 1;
-    double across = 0, along = 0;
-    int worst = 0, n = 0;
-
-    for (int y = 0; y < H; y++)
-        for (int x = 0; x < W; x++) {
-            const int dx = x - W / 2, dy = y - H / 2;
-            seed = seed * 1664525 + 1013904223;
-            v[y][x] = (uint16_t)(20000 + 100 * y + 40 * x + (int)(seed >> 22) - 512);
-            if (dx * dx + dy * dy < R * R)
-                v[y][x] = 0;
-        }
-    struct refocus_depth_map map = map_of(REFOCUS_SAMPLE_U16, v, W, H);
-    map.flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN;
-    map.value_near = 65535;
-    assert_int_equal(refocus_depth_to_disparity(&map, out[0], sizeof *out, NULL), REFOCUS_OK);
-    for (int y = 1; y < H; y++)
-        for (int x = 1; x < W; x++) {
-            if (v[y][x] != 0) {
-                assert_int_equal(out[y][x], v[y][x]);
-                continue;
-            }
-            const int error = abs(out[y][x] - (20000 + 100 * y + 40 * x));
-            worst = error > worst ? error : worst;
-            across += abs(out[y][x] - out[y - 1][x]);
-            along += abs(out[y][x] - out[y][x - 1]);
-            n++;
-        }
-    assert_true(n > 1700);
-    assert_true(worst < 100 * R + 512); /* no farther off than its nearest edge and noise */
-    assert_true(across / n < 200);      /* streaks: a mean step of some 340, the noise's */
-    assert_true(along / n < 200);
-}
-
 /* Maps and reports of an older and a newer program. */
 static void other_sizes(void **state)
 {
@@ -630,7 +589,6 @@ int main(void)
         cmocka_unit_test(holes_in_slopes),
         cmocka_unit_test(test_large_maps),
         cmocka_unit_test(test_fill_takes_the_farther_side),
-        cmocka_unit_test(test_fill_leaves_no_streaks),
     };
     return cmocka_run_group_tests_name("depth", tests, NULL, NULL);
 }

@@ -148,63 +148,6 @@ static void waits_for_more_looks(void **state)
     refocus_temporal_destroy(&filter);
 }
 
-/* Looks with weights vote against a surface at 1000. */
-static void majorities(void **state)
-{
-    static const struct {
-        struct rf_looks looks;
-        int voters, mean; /* 0: the surface stays */
-    } cases[] = {
-        {{7, {1000, 1000, 9000, 9000, 9000, 9000, 9000}, {12, 12, 12, 12, 12, 12, 12}}, 0, 0},
-        {{7, {1000, 9000, 9000, 9004, 9000, 9000, 9000}, {12, 12, 12, 12, 12, 12, 12}}, 6, 9001},
-        {{7, {1000, 1000, 9000, 9000, 9000, 9000, 9000}, {4, 4, 12, 12, 12, 12, 12}}, 5, 9000},
-        {{7, {9000, 5000, 3000, 9040, 7000, 4000, 6000}, {12, 12, 12, 12, 12, 12, 12}}, 2, 9020},
-        {{6, {9000, 5000, 3000, 9040, 7000, 4000, 0}, {12, 12, 12, 12, 12, 12, 0}}, 0, 0},
-        {{3, {9000, 9000, 1000, 0, 0, 0, 0}, {12, 12, 12, 0, 0, 0, 0}}, 0, 0},
-        {{4, {9000, 9000, 9000, 1000, 0, 0, 0}, {12, 12, 12, 12, 0, 0, 0}}, 3, 9000},
-        {{2, {9000, 9000, 0, 0, 0, 0, 0}, {1, 1, 0, 0, 0, 0, 0}}, 2, 9000},
-        {{1, {9000, 0, 0, 0, 0, 0, 0}, {12, 0, 0, 0, 0, 0, 0}}, 1, 9000},
-    };
-
-    (void)state;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        uint16_t mean = 0;
-
-        assert_int_equal(rf_vote_of_looks(&cases[i].looks, 1000, 100, &mean), cases[i].voters);
-        assert_int_equal(mean, cases[i].mean);
-    }
-}
-
-/* Looks follow a sample back until it was nowhere; what shows other things has no vote. */
-static void looks_go_back(void **state)
-{
-    uint16_t disparity[4][9];
-    uint8_t guide[4][9];
-    struct rf_motion from[4][9];
-    struct rf_frame frame[4];
-    struct rf_looks looks;
-
-    (void)state;
-    for (int k = 0; k < 4; k++) {
-        frame[k] = (struct rf_frame){disparity[k], guide[k], from[k]};
-        for (int i = 0; i < 9; i++) {
-            disparity[k][i] = (uint16_t)(100 * k + i);
-            guide[k][i] = (uint8_t)(k == 1 ? 80 : 60 + i);
-            from[k][i] = (struct rf_motion){(int8_t)(k % 2 ? 0 : 1), (int8_t)(k % 2 ? -1 : 0)};
-        }
-    }
-    rf_look_back(&looks, frame, 4, 3, 4); /* by 5 and 2 to 3 */
-    assert_int_equal(looks.count, 3);
-    assert_true(looks.disparity[0] == 4 && looks.disparity[1] == 202 && looks.disparity[2] == 303);
-    assert_true(looks.weight[0] == RF_ALIKE && looks.weight[1] == RF_ALIKE - 2 &&
-                looks.weight[2] == RF_ALIKE - 1);
-    from[1][5].x = RF_NOWHERE;
-    rf_look_back(&looks, frame, 4, 3, 4);
-    assert_int_equal(looks.count, 1);
-    rf_look_back(&looks, frame, 1, 3, 4);
-    assert_int_equal(looks.count, 1);
-}
-
 /* Strength 0 changes nothing; neither does a reset filter in its first frame. */
 static void can_be_off(void **state)
 {
@@ -613,7 +556,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(calms),          cmocka_unit_test(leaves_no_ghosts),
         cmocka_unit_test(can_be_off),     cmocka_unit_test(waits_for_more_looks),
-        cmocka_unit_test(majorities),     cmocka_unit_test(looks_go_back),
         cmocka_unit_test(equation),       cmocka_unit_test(any_layout),
         cmocka_unit_test(any_photo),      cmocka_unit_test(follows_the_range),
         cmocka_unit_test(guides_itself),  cmocka_unit_test(bad_arguments),

@@ -79,9 +79,16 @@ static bool is_least_apart(const struct ends *ends, bool floats)
            ends->low * (DISTINCT - 1) >= SPACINGS * (ends->low_next - ends->low);
 }
 
-static bool is_greatest_apart(const struct ends *ends)
+/* Whether the greatest stands for no value. Of whole numbers it is the last one or, where OpenCV's
+ * negative one was wrapped, hardly before it: what lies elsewhere is a near surface. */
+static bool is_greatest_apart(const struct ends *ends, uint32_t sample)
 {
-    return OF_SAMPLES * ends->at_greatest >= ends->known && LAST - ends->high > ends->high;
+    const double last = sample == REFOCUS_SAMPLE_U8    ? UINT8_MAX
+                        : sample == REFOCUS_SAMPLE_U16 ? UINT16_MAX
+                                                       : ends->greatest;
+
+    return ends->greatest >= last * 1023 / 1024 && OF_SAMPLES * ends->at_greatest >= ends->known &&
+           LAST - ends->high > ends->high;
 }
 
 static void tell_code(const struct ends *ends, const struct refocus_depth_map *map, bool least,
@@ -125,7 +132,7 @@ bool ends_are_doubtful(const struct refocus_depth_map *map, bool codes_given, ch
     least = is_least_apart(&ends, map->sample == REFOCUS_SAMPLE_F32);
     if (ends.used < DISTINCT)
         return false;
-    if (!codes_given && (least || is_greatest_apart(&ends))) {
+    if (!codes_given && (least || is_greatest_apart(&ends, map->sample))) {
         tell_code(&ends, map, least, line);
         return true;
     }
