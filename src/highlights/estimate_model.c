@@ -127,7 +127,7 @@ static void read_means(const struct rf_light_grid *grid, const struct rf_grid_ro
             if (k >= 5)
                 means->log[i] += 0.5f * rf_grid_at(grid, RF_GRID_LOG, &place);
         }
-        means->unclipped[0][i] = means->unclipped[1][i]; /* it is not measured at scale 0 */
+        means->unclipped[0][i] = means->unclipped[1][i]; /* Scale 0 has no such mean. */
     }
 }
 
@@ -203,7 +203,7 @@ static double lost_of(const struct means *means, int i, float z, bool fixed)
     const double large = smoothstep(means->clipped[3][i], 0.6, (double)ALL_LARGE);
     const double dark = within((0.30 - (double)means->unclipped[4][i]) / 0.24, 0, 1);
     const double night = dark * dark;
-    /* how far what is clipped is a speck on something bright: 0 to 1 */
+    /* This is 1 where what is clipped is a speck on something bright. */
     const double speck = smoothstep(means->unclipped[2][i], 0.2, 0.45) *
                          (1 - smoothstep(means->clipped[2][i], 0.1, 0.4));
     double stops = softplus(4 * (double)z) / 4, part;

@@ -21,7 +21,7 @@ struct row {
     struct rf_estimate_row estimate;
     int y, cell; /* the row of cells that it lies in */
     int hue_of;  /* the cell that the hue is of */
-    float known; /* how far the hue is known, 0 to 1 */
+    float known; /* The hue counts by this share, 0 to 1. */
     float hue[3];
     struct rf_highlight run;
     float light[3]; /* Q12, of all its pixels */

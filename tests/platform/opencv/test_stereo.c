@@ -133,7 +133,7 @@ static int patched(int x, int width, int height, int disparity,
     make_pair(left, right, 0);
     for (int y = 20; y < 20 + height && disparity > NEAR; y++)
         for (int i = 0; i < 3 * width; i++)
-            right[3 * (y * W + x - FAR) + i] = noise(); /* it is at one place alone */
+            right[3 * (y * W + x - FAR) + i] = noise(); /* The left picture lacks this noise. */
     for (int y = 20; y < 20 + height; y++)
         memcpy(right + 3 * (y * W + x - disparity), left + 3 * (y * W + x), 3 * (size_t)width);
     assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, report, &reason), REFOCUS_OK);
@@ -167,7 +167,8 @@ static void stereo_near_chance(void **state)
     assert_in_range(patched(240, 11, 14, 56, &report), 111, 154); /* 1 of 500 */
     assert_in_range(patched(240, 5, 32, 56, &report), 80, 160);
     assert_true(report.greatest > 55);
-    assert_in_range(patched(240, 17, 8, 42, &report), 80, 136); /* it takes less than a half */
+    /* This patch would take less than half of the range. */
+    assert_in_range(patched(240, 17, 8, 42, &report), 80, 136);
 }
 
 /* The disparity of the square in the first picture, nearly all of which has it, and of the wall. */
