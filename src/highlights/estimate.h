@@ -36,7 +36,7 @@ void rf_estimate_cells(const struct rf_light_grid *grid, int y, bool fixed, floa
 struct rf_estimate_row {
     const struct rf_light_grid *grid;
     const float *lost[2]; /* the rows of cells above and below the middle of the pixels */
-    float low;            /* Their middle lies so far down between these, 0 to 1. */
+    float low;            /* place of the middle between these, 0 above to 1 below */
 };
 struct rf_estimate_row rf_estimate_row(const struct rf_estimate *estimate, int y);
 
