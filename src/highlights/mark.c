@@ -8,6 +8,7 @@
 
 #include "highlights/in_window.h"
 #include "support/compare.h"
+#include "support/places.h"
 
 enum {
     DISC_EDGE = 256,  /* Q7.8: what a disc goes beyond the blur of a highlight's pixel, half a pixel
@@ -37,18 +38,19 @@ static void note_reach(const struct rf_highlight_window *w, int x, int y, int re
  * RF_NO_BLUR. */
 static int blur_of_most(const struct rf_highlight_window *w, const struct rf_highlight *run)
 {
-    int x, y, middle, sum = 0, count = 0, reach;
+    int x, y, middle, within, sum = 0, count = 0, reach;
 
     if (!rf_place_in(w->view, run, run->count / 2, &x, &y))
         return RF_NO_BLUR;
     middle = rf_window_blur(w, x, y);
+    within = rf_alike_within(w, x, y, middle);
     for (int i = 0; i < run->count; i++) {
         int blur;
 
         if (!rf_place_in(w->view, run, i, &x, &y))
             continue;
         blur = rf_window_blur(w, x, y);
-        if (2 * abs(blur - middle) <= rf_alike_within(middle)) {
+        if (2 * abs(blur - middle) <= within) {
             sum += blur;
             count++;
         }
@@ -64,7 +66,7 @@ static int blur_of_most(const struct rf_highlight_window *w, const struct rf_hig
 
 static void mark(const struct rf_highlight_window *w, struct rf_highlight *run, bool splat)
 {
-    int sum = 0, least = INT_MAX, most = INT_MIN;
+    int sum = 0, least = INT_MAX, most = INT_MIN, within = 0;
 
     run->pixels = 0;
     for (int i = 0, x, y; i < run->count; i++) {
@@ -76,10 +78,11 @@ static void mark(const struct rf_highlight_window *w, struct rf_highlight *run, 
         note_reach(w, x, y, splat ? disc_reach(abs(blur)) : abs(blur));
         least = rf_smaller(least, blur);
         most = rf_larger(most, blur);
+        if (!run->pixels++)
+            within = rf_alike_within(w, x, y, blur);
         sum += blur;
-        run->pixels++;
     }
-    if (run->pixels && most - least > rf_alike_within(least))
+    if (run->pixels && most - least > within)
         run->blur = (int16_t)(splat ? blur_of_most(w, run) : RF_NO_BLUR);
     else
         run->blur = (int16_t)((run->pixels ? sum / run->pixels : 0) / (1 << w->blur.unit));
@@ -94,11 +97,13 @@ static bool is_even(const struct rf_highlight *run)
 }
 
 /* The run of the same highlight in the next row; NULL: none there is as wide and as blurred. */
-static struct rf_highlight *find_below(struct rf_highlight *run, const struct rf_highlight *end,
-                                       int unit)
+static struct rf_highlight *find_below(const struct rf_highlight_window *w,
+                                       struct rf_highlight *run, const struct rf_highlight *end)
 {
-    const int last = run->x + run->count;
-    const int within = rf_alike_within(rf_in_pixels(run->blur, unit)) / 2;
+    const int last = run->x + run->count, unit = w->blur.unit;
+    const int middle = rf_within(run->x + run->count / 2 - w->view->x0, w->view->width - 1);
+    const int within =
+        rf_alike_within(w, middle, run->y - w->view->y0, rf_in_pixels(run->blur, unit)) / 2;
     struct rf_highlight *under = rf_first_run(run + 1, end, run->x - END_STEP, run->y + 1);
 
     for (; under < end && under->y == run->y + 1 && under->x <= run->x + END_STEP; under++)
@@ -110,18 +115,18 @@ static struct rf_highlight *find_below(struct rf_highlight *run, const struct rf
 
 /* The larger a disc, the less it shows that rows beside each other are splatted as one: which rows
  * these are depends on where they are in the photo, not in the window. */
-static void stack(const struct rf_highlight_list *list, int unit)
+static void stack(const struct rf_highlight_window *w, const struct rf_highlight_list *list)
 {
     const struct rf_highlight *const end = list->run + list->count;
 
     for (struct rf_highlight *top = list->run; top < end; top++) {
-        const int size = rf_in_pixels(abs(top->blur), unit);
+        const int size = rf_in_pixels(abs(top->blur), w->blur.unit);
         const int most = size < STACKED ? 1 : size < 2 * STACKED ? 2 : RF_HIGHLIGHT_STACK;
         struct rf_highlight *lowest = top, *under;
 
         if (!is_even(top))
             continue;
-        while ((lowest->y & (most - 1)) != most - 1 && (under = find_below(lowest, end, unit))) {
+        while ((lowest->y & (most - 1)) != most - 1 && (under = find_below(w, lowest, end))) {
             lowest->below = (uint16_t)(under - lowest);
             under->rows = 0;
             top->rows++;
@@ -150,7 +155,7 @@ static void mark_part(void *context, int item, int worker)
         mark(marks->window, &list->run[i], marks->splat);
     }
     if (marks->splat)
-        stack(list, marks->window->blur.unit);
+        stack(marks->window, list);
 }
 
 void rf_mark_highlights(const struct rf_executor *exec, const struct rf_highlight_window *window,

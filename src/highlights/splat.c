@@ -188,11 +188,12 @@ static int part_of(struct rf_splat_run *part, const struct rf_visibility *tile,
     const int unit = w->blur.unit;
     int least = rf_in_pixels(blur[i], unit), most = least, sum = 0;
     const int longest = longest_part(tile->splat, least);
+    const int within = rf_alike_within(w, x + i, y, least);
 
     for (; i < end && i - first < longest; i++) {
         least = rf_smaller(least, rf_in_pixels(blur[i], unit));
         most = rf_larger(most, rf_in_pixels(blur[i], unit));
-        if (most - least > rf_alike_within(least))
+        if (most - least > within)
             break;
         sum += rf_in_pixels(blur[i], unit);
     }
