@@ -1,15 +1,13 @@
-/* silhouette.c: gives pixels at the silhouette of something bright the depth that they belong to.
- */
+/* silhouette.c: finds pixels at the silhouette of something bright, and the depth that they belong
+ * to. */
 #include "highlights/highlights.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "focus/focus.h"
 #include "kernels/kernels.h"
 #include "support/places.h"
-#include "tiles/ranges.h"
-#include "tiles/tiles.h"
 
 enum {
     JUMP = 65535 / 32,             /* disparities this far apart are two surfaces */
@@ -18,6 +16,9 @@ enum {
     DARK = RF_LIGHT_MAX / 2,
     AROUND = 6, /* pixels on each side that tell whose light it is */
     FAR = 3,
+    OFF_LINE = 262, /* 0.4 %: noise lies farther off the lines through its neighbours */
+    NOISY = 90,     /* so many of 11 x 11 pixels: the map is noise */
+    MOST_OFF = 4095,
 };
 
 enum {
@@ -33,12 +34,24 @@ struct run {
     int x0;
     int16_t light[SIDE][COLUMNS];
     int16_t disparity[SIDE][COLUMNS];
+    int16_t noisy[COLUMNS]; /* pixels of a column that lie off the lines through their neighbours */
+    uint16_t off[COLUMNS];  /* how far those of a column do, a quarter, in sum */
 };
 
 /* Disparity as a signed number: baseline x86 has no unsigned extremes of 16 bits. */
 static inline int16_t signed16(int disparity)
 {
     return (int16_t)(disparity - 32768);
+}
+
+static inline int16_t min16(int16_t a, int16_t b)
+{
+    return a < b ? a : b;
+}
+
+static inline int16_t max16(int16_t a, int16_t b)
+{
+    return a > b ? a : b;
 }
 
 static bool is_bright(const struct rf_silhouette_window *w, ptrdiff_t at)
@@ -192,6 +205,26 @@ static bool has_other(const struct rf_silhouette_window *w, int x, int y, ptrdif
     return false;
 }
 
+/* Whether what is much farther beside a pixel of the run is noise of the map, which is all around:
+ * that is off the lines through its neighbours by 1.3 standard deviations in the mean, and the
+ * least of nine pixels is hardly ever four times as far below one of them. */
+static bool is_noise(const struct run *run, int at)
+{
+    enum { INNER = SIDE - 2 };
+    const int16_t own = run->disparity[AROUND][at + AROUND];
+    int16_t least = own;
+    int noisy = 0, off = 0;
+
+    for (int i = 1; i <= INNER; i++) {
+        noisy += run->noisy[at + i];
+        off += run->off[at + i];
+    }
+    for (int j = AROUND - 1; j <= AROUND + 1; j++)
+        for (int i = AROUND - 1; i <= AROUND + 1; i++)
+            least = min16(least, run->disparity[j][at + i]);
+    return noisy >= NOISY && own - least <= 4 * 4 * off / (INNER * INNER);
+}
+
 /* Adds the silhouette around a bright pixel beside something much farther: the pixels of which no
  * other bright pixel comes first. */
 static void find_around(const struct rf_silhouette_window *w, const struct run *run, int x, int y,
@@ -201,6 +234,8 @@ static void find_around(const struct rf_silhouette_window *w, const struct run *
     const struct rf_rect in = rf_around(w->view, x, y, 1);
     uint16_t background;
 
+    if (is_noise(run, x - run->x0))
+        return;
     if (belongs_to_background(w, run, x, y, &background)) {
         if (!has_other(w, x, y, n)) /* else it is a silhouette itself */
             add(w, list, x, y, background);
@@ -223,11 +258,6 @@ static void copy_row(const struct rf_silhouette_window *w, int x0, int y, int16_
     else
         for (int i = 0; i < RUN + 2; i++)
             row[i] = signed16(d[rf_within(x0 - 1 + i, w->view->width - 1)]);
-}
-
-static inline int16_t min16(int16_t a, int16_t b)
-{
-    return a < b ? a : b;
 }
 
 /* Pixels of a run that have something much farther beside them, a bit each. */
@@ -254,9 +284,51 @@ static uint32_t find_jumps(const struct rf_silhouette_window *w, int x0, int y)
     return bits;
 }
 
-static int16_t max16(int16_t a, int16_t b)
+/* The pixels from `at` on that are bright, of those given, a bit each. */
+static uint32_t bright_of(const struct rf_silhouette_window *w, ptrdiff_t at, uint32_t pixels)
 {
-    return a > b ? a : b;
+    uint32_t bright = 0;
+
+    for (; pixels; pixels &= pixels - 1)
+        if (is_bright(w, at + __builtin_ctz(pixels)))
+            bright |= pixels & -pixels;
+    return bright;
+}
+
+/* How far a value is from the middle of two others, twice. */
+static inline int16_t off_middle(int16_t value, int16_t before, int16_t after)
+{
+    const int16_t off = (int16_t)(2 * value - before - after);
+
+    return max16(off, (int16_t)-off);
+}
+
+/* Adds a row to the columns: the pixels that lie off both lines, across and down, and how far. */
+static void add_noise(struct run *run, const int16_t above[COLUMNS], const int16_t row[COLUMNS],
+                      const int16_t below[COLUMNS])
+{
+    for (int i = 1; i < COLUMNS - 1; i++) {
+        const int16_t off = min16(off_middle(row[i], row[i - 1], row[i + 1]),
+                                  off_middle(row[i], above[i], below[i]));
+
+        run->noisy[i] = (int16_t)(run->noisy[i] + (off > OFF_LINE / 4));
+        run->off[i] = (uint16_t)(run->off[i] + min16(off, MOST_OFF));
+    }
+}
+
+/* Counts the pixels of each column that lie off both lines through their neighbours, across and
+ * down: in noise nearly all do, at silhouettes and wires few. */
+static void count_noise(struct run *run)
+{
+    int16_t quarter[SIDE][COLUMNS]; /* disparities by 4, whose differences fit */
+
+    for (int j = 0; j < SIDE; j++)
+        for (int i = 0; i < COLUMNS; i++)
+            quarter[j][i] = (int16_t)(run->disparity[j][i] >> 2);
+    memset(run->noisy, 0, sizeof run->noisy);
+    memset(run->off, 0, sizeof run->off);
+    for (int j = 1; j < SIDE - 1; j++)
+        add_noise(run, quarter[j - 1], quarter[j], quarter[j + 1]);
 }
 
 /* Copies a run and what is around it. */
@@ -304,54 +376,15 @@ void rf_find_silhouettes(const struct rf_executor *exec, const struct rf_silhoue
 
             if (exec->kernels->brightest(light[0] + at, light[1] + at, light[2] + at, n) < LEVEL)
                 continue;
-            bits = find_jumps(w, x0, y) & (UINT32_MAX >> (RUN - n));
+            bits = bright_of(w, at, find_jumps(w, x0, y) & (UINT32_MAX >> (RUN - n)));
             if (!bits)
                 continue;
             if (rf_cancelled(exec))
                 return;
             copy_run(w, x0, y, &run);
-            for (; bits; bits &= bits - 1) {
-                const int x = x0 + __builtin_ctz(bits);
-
-                if (is_bright(w, row + x))
-                    find_around(w, &run, x, y, silhouettes);
-            }
+            count_noise(&run);
+            for (; bits; bits &= bits - 1)
+                find_around(w, &run, x0 + __builtin_ctz(bits), y, silhouettes);
         }
     }
-}
-
-/* Sets a pixel's blur, in its plane and in the bins and the cell that it is in. */
-static void set_blur(const struct rf_blur_patch *patch, int x, int y, int16_t blur)
-{
-    patch->blur.at[y * patch->blur.stride + x] = blur;
-    rf_add_bin(patch->view, patch->bins, patch->scale, x, y, blur);
-    rf_add_to_cell(patch->cells, x, y, blur);
-}
-
-void rf_patch_silhouettes(const struct rf_executor *exec, const struct rf_silhouettes *silhouettes,
-                          const struct rf_focus_plan *plan, const struct rf_blur_patch *patch)
-{
-    const struct rf_viewport *view = patch->view;
-
-    for (uint32_t i = 0; i < silhouettes->count; i++) {
-        const struct rf_silhouette *pixel = &silhouettes->pixel[i];
-        const int x = pixel->x - view->x0, y = pixel->y - view->y0;
-        int16_t blur;
-
-        if (i % 1024 == 0 && rf_cancelled(exec))
-            return;
-        if (x < 0 || y < 0 || x >= view->width || y >= view->height)
-            continue;
-        rf_focus_row(plan, &blur, &pixel->disparity, pixel->x, pixel->y, 1);
-        set_blur(patch, x, y, blur);
-    }
-}
-
-void rf_lay_out_silhouettes(struct rf_silhouettes *silhouettes, struct rf_arena *arena,
-                            int max_width, int max_height)
-{
-    const uint64_t pixels = (uint64_t)max_width * (uint64_t)max_height;
-
-    silhouettes->capacity = (uint32_t)(pixels / 64 + 64);
-    silhouettes->pixel = rf_arena_take(arena, silhouettes->capacity, sizeof *silhouettes->pixel);
 }

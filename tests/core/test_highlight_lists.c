@@ -1,5 +1,6 @@
 /* test_highlight_lists.c: runs of highlights are found in their list, and rows of one highlight are
- * splatted as one, however many runs lie between them. */
+ * splatted as one, however many runs lie between them; noise of the map parts no runs and makes no
+ * silhouettes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,6 +12,7 @@
 #include "highlights/estimate.h"
 #include "highlights/highlights.h"
 #include "highlights/in_window.h"
+#include "kernels/kernels.h"
 #include "support/places.h"
 
 static uint32_t noise(uint32_t *seed)
@@ -94,6 +96,87 @@ static void rows_of_wide_photos_are_stacked(void **state)
     free(bins);
 }
 
+/* A run whose blurs differ by noise alone has one blur, their mean. */
+static void noise_parts_no_runs(void **state)
+{
+    enum { COUNT = 16, BLUR = 10 * 256, NOISE = 300 };
+    int16_t blur[RF_TILE * RF_TILE];
+    struct rf_highlight run = {.y = 3, .count = COUNT};
+    struct rf_highlight_list part = {&run, 1, 1};
+    struct rf_highlights highlights = {&part, NULL, NULL};
+    struct rf_bins bins = {.noise = NOISE};
+    const struct rf_viewport view = {.photo_width = RF_TILE,
+                                     .photo_height = RF_TILE,
+                                     .width = RF_TILE,
+                                     .height = RF_TILE,
+                                     .tiles_x = 1,
+                                     .tiles_y = 1};
+    const struct rf_highlight_window window = {
+        .view = &view, .blur = {blur, RF_TILE, 0}, .highlights = &highlights, .bins = &bins};
+    struct rf_pool pool;
+    const struct rf_executor exec = {.pool = &pool};
+
+    (void)state;
+    assert_int_equal(rf_pool_start(&pool, 1, NULL, NULL), REFOCUS_OK);
+    for (int i = 0; i < RF_TILE * RF_TILE; i++)
+        blur[i] = (int16_t)(BLUR + (i % 2 ? NOISE : -NOISE));
+    rf_mark_highlights(&exec, &window, true);
+    assert_int_equal(run.blur, BLUR);
+    bins.noise = 0;
+    rf_mark_highlights(&exec, &window, true);
+    assert_int_equal(run.blur, RF_NO_BLUR);
+    rf_pool_end(&pool);
+}
+
+enum { SQUARE = 64, SIDE_OF_IT = 24, NEAR = 52000, FAR = 26000 };
+
+/* The silhouettes of a bright square before something dark; of a map with noise of so many codes,
+ * uniform, and a photo in which every other pixel of both is as bright. */
+static uint32_t silhouettes_of(int codes, bool mottled)
+{
+    static uint16_t light[SQUARE * SQUARE], disparity[SQUARE * SQUARE];
+    const struct rf_viewport view = {.photo_width = SQUARE,
+                                     .photo_height = SQUARE,
+                                     .width = SQUARE,
+                                     .height = SQUARE,
+                                     .tiles_x = SQUARE / RF_TILE,
+                                     .tiles_y = SQUARE / RF_TILE};
+    const struct rf_silhouette_window window = {
+        &view, {{light, light, light}, SQUARE}, {disparity, SQUARE}};
+    static struct rf_silhouette pixel[SQUARE * SQUARE];
+    struct rf_silhouettes list = {.pixel = pixel, .capacity = SQUARE * SQUARE};
+    struct rf_kernels kernels;
+    const struct rf_executor exec = {.kernels = &kernels};
+    uint32_t seed = 3, cpu = REFOCUS_CPU_AUTO;
+
+    assert_true(rf_kernels_select(&kernels, &cpu));
+    for (int i = 0; i < SQUARE * SQUARE; i++) {
+        const int x = abs(i % SQUARE - SQUARE / 2), y = abs(i / SQUARE - SQUARE / 2);
+        const bool near = x < SIDE_OF_IT / 2 && y < SIDE_OF_IT / 2;
+        const bool beside = x <= SIDE_OF_IT / 2 && y <= SIDE_OF_IT / 2;
+
+        light[i] = near ? RF_LIGHT_MAX : beside ? RF_LIGHT_MAX / 3 : RF_LIGHT_MAX / 50;
+        if (mottled)
+            light[i] = noise(&seed) % 2 ? RF_LIGHT_MAX : RF_LIGHT_MAX / 50;
+        disparity[i] = (uint16_t)((near ? NEAR : FAR) - codes +
+                                  (codes ? (int)(noise(&seed) % (2u * (uint32_t)codes)) : 0));
+    }
+    rf_find_silhouettes(&exec, &window, (struct rf_rect){0, 0, SQUARE, SQUARE}, &list);
+    return list.count;
+}
+
+/* Noise of the map makes none, and takes none away where a jump is more than noise. */
+static void noise_makes_no_silhouettes(void **state)
+{
+    enum { NOISE = 2300 }; /* a standard deviation of 2 % */
+    const uint32_t clean = silhouettes_of(0, false);
+
+    (void)state;
+    assert_int_equal(clean, 4 * SIDE_OF_IT);
+    assert_in_range(silhouettes_of(NOISE, false), clean, clean * 5 / 4);
+    assert_true(silhouettes_of(NOISE, true) < 3 * silhouettes_of(0, true));
+}
+
 /* Where a photo is looked at: no pixel that has lost as much lies elsewhere, however many pixels
  * its cells are wide. */
 static void lost_light_is_found(void **state)
@@ -131,8 +214,8 @@ static void lost_light_is_found(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_first_run_is_found),
-        cmocka_unit_test(rows_of_wide_photos_are_stacked),
+        cmocka_unit_test(the_first_run_is_found), cmocka_unit_test(rows_of_wide_photos_are_stacked),
+        cmocka_unit_test(noise_parts_no_runs),    cmocka_unit_test(noise_makes_no_silhouettes),
         cmocka_unit_test(lost_light_is_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
