@@ -21,7 +21,7 @@ enum {
  * them before it is widened by an eighth on each side. */
 enum { LARGEST = RF_PLAIN_RADIUS * 256, WIDEST = (2 * (LARGEST + HALF) - WIDE) / WIDE };
 static_assert(WIDEST * 256 * 5 / 4 <= 20 * 256, "no slab is wider than 20 pixels");
-static_assert(2 * (256 + 2 * OVERLAP) + 2 * MOST_NOISY <= 20 * 256, "nor is one of two of a pixel");
+static_assert(2 * (256 + 2 * OVERLAP) + MOST_NOISY <= 20 * 256, "nor is one of two of a pixel");
 static_assert(MOST_SPREAD + 20 * 256 <= UINT16_MAX + 1, "told apart modulo 2^16");
 
 static_assert(2 * RF_UNIT_RADIUS * 256 <= MOST_SPREAD && RF_UNIT_RADIUS << RF_MAX_UNIT < 1024 &&
@@ -246,7 +246,8 @@ static bool has_crack(const struct rf_tile_plan *plan, int k, int unit)
 }
 
 /* The blurs of slab k and of the one before it, seen in the middle between them. Noise takes a
- * pixel farther than that. */
+ * pixel nearer than that. What is deeper is left to the slab after it: it would be seen with half
+ * of its blur. */
 static struct rf_slab closing_slab(const struct rf_tile_plan *plan, int k, int noise)
 {
     const struct rf_slab *const slab = &plan->slab[k], *const before = slab - 1;
@@ -254,7 +255,7 @@ static struct rf_slab closing_slab(const struct rf_tile_plan *plan, int k, int n
 
     return (struct rf_slab){
         (int16_t)(before->low - more),
-        (uint16_t)(slab->low + slab->width - before->low + 2 * more),
+        (uint16_t)(slab->low + slab->width - before->low + more),
         (int16_t)((before->low + before->width + slab->low) >> 1),
     };
 }

@@ -374,7 +374,6 @@ static struct twin_plan with_closed_cracks(const struct twin_plan *open, double 
         both.centre = ceil(256 / unit * slab[-1].high) - 1 + 256 / unit * slab->low;
         both.centre = floor(both.centre / 2) * unit / 256;
         both.low = slab[-1].low - more;
-        both.high += more;
         plan.slab[plan.slabs++] = both;
     }
     return plan;
