@@ -4,14 +4,7 @@
 # with, and none of C++. They and modules of formats read no words or numbers by the locale of the
 # program that they are in.
 set -u
-failed=0
-
-# complain WHAT NAMES
-complain() {
-    [ -z "$2" ] && return
-    printf '%s:\n%s\n' "$1" "$2"
-    failed=1
-}
+. "$(dirname "$0")/complain.sh"
 
 for file; do
     name=$(basename "$file")
