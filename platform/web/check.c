@@ -3,7 +3,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
+#include "../file/letters.h"
 #include "check.h"
 #include "web.h"
 
@@ -43,7 +43,7 @@ static bool is_machine(const char *name)
         inner[length - 2] = '\0';
         return inet_pton(AF_INET6, inner, address) == 1;
     }
-    return strcasecmp(name, "localhost") == 0 || inet_pton(AF_INET, name, address) == 1;
+    return rf_same_word(name, "localhost") || inet_pton(AF_INET, name, address) == 1;
 }
 
 /* The part of an origin behind its scheme, or NULL. */
@@ -73,7 +73,7 @@ bool rf_check_host(const char *host, int port, const char *public)
     char name[64];
     long given;
 
-    if (host && other && strcasecmp(host, other) == 0)
+    if (host && other && rf_same_word(host, other))
         return true;
     if (!host || strlen(host) >= sizeof name)
         return false;
@@ -89,10 +89,10 @@ bool rf_check_origin(const char *origin, const char *host, const char *public)
 {
     static const char scheme[] = "http://";
 
-    if (origin && public && strcasecmp(origin, public) == 0)
+    if (origin && public && rf_same_word(origin, public))
         return true;
     return !origin || (strncmp(origin, scheme, sizeof scheme - 1) == 0 &&
-                       strcasecmp(origin + sizeof scheme - 1, host) == 0);
+                       rf_same_word(origin + sizeof scheme - 1, host));
 }
 
 /* Bytes of the character of UTF-8 that begins there, 1 to 4; 0: it is none. */
@@ -146,7 +146,7 @@ bool rf_check_photo_ending(const char *name)
     const char *const dot = strrchr(name, '.');
 
     for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; i++)
-        if (strcasecmp(dot + 1, endings[i]) == 0)
+        if (rf_same_word(dot + 1, endings[i]))
             return true;
     return false;
 }

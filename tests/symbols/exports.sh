@@ -1,8 +1,8 @@
 #!/bin/sh
 # usage: exports.sh LIBRARY_OR_MODULE...
 # Shared libraries of the platform export refocus_ names alone, as of the release that they came
-# with, and none of C++. They and modules of formats read no words or numbers by the locale of the
-# program that they are in.
+# with, and none of C++. They and modules read no words or numbers by the locale of the program that
+# they are in.
 set -u
 . "$(dirname "$0")/complain.sh"
 

@@ -9,9 +9,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "outputs/outputs.h"
 
 extern char **environ;
 
@@ -79,8 +80,7 @@ int encoder_open(struct encoder **encoder, const char *path, int width, int heig
         "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p,"
         "setparams=color_primaries=bt709:color_trc=iec61966-2-1:colorspace=bt709:range=tv";
     static char palette[] = "split[a][b];[a]palettegen[p];[b][p]paletteuse";
-    const size_t length = strlen(path);
-    const bool gif = length > 4 && strcasecmp(path + length - 4, ".gif") == 0;
+    const bool gif = output_ends_in(path, ".gif");
     char size[32], rate[32], file[PATH_MAX + 8];
     char *const arguments[] = {"ffmpeg",
                                "-nostdin",
