@@ -46,86 +46,20 @@ struct row {
     size_t to;
 };
 
-#define AT(group, field) offsetof(struct refocus_settings, group.field)
-#define RENDER(type, field, least, most)                                                           \
-    {                                                                                              \
-        RF_RULE(#field, AT(render, field), type, least, most), offsetof(struct rf_settings, field) \
-    }
-#define ROW(type, group, field, member, least, most)                                               \
-    {                                                                                              \
-        RF_RULE(#group "->" #field, AT(group, field), type, least, most),                          \
-            offsetof(struct rf_settings, member)                                                   \
-    }
-#define OR(type, group, field, member, above, least, most, other)                                  \
-    {                                                                                              \
-        {#group "->" #field, AT(group, field), type, above, true, least, most, other},             \
-            offsetof(struct rf_settings, member)                                                   \
-    }
-
 static const struct row rows[] = {
-    RENDER(RF_UNSIGNED, method, 0, REFOCUS_METHOD_COUNT - 1),
-    RENDER(RF_REAL, focus_disparity, 0, 1),
-    RENDER(RF_REAL, max_blur_radius, 0, REFOCUS_MAX_BLUR_RADIUS),
-    {{"rays", AT(render, rays), RF_SIGNED, false, true, 1, REFOCUS_MAX_RAYS, REFOCUS_RAYS_FULL},
-     offsetof(struct rf_settings, rays)},
-    RENDER(RF_UNSIGNED, blend, 0, REFOCUS_BLEND_GAMMA),
-    RENDER(RF_REAL, sigma, 1, INFINITY),
-    RENDER(RF_UNSIGNED, prefilter, 0, 1),
-    RENDER(RF_UNSIGNED, inpaint, 0, REFOCUS_INPAINT_COUNT - 1),
-    RENDER(RF_UNSIGNED, dither, 0, REFOCUS_DITHER_OFF),
-    RENDER(RF_SIGNED, region_x, INT32_MIN, INT32_MAX),
-    RENDER(RF_SIGNED, region_y, INT32_MIN, INT32_MAX),
-    RENDER(RF_SIGNED, region_width, INT32_MIN, INT32_MAX),
-    RENDER(RF_SIGNED, region_height, INT32_MIN, INT32_MAX),
-    ROW(RF_REAL, highlights, gain, highlight_gain, 1, RF_MOST_GAIN),
-    ROW(RF_REAL, highlights, estimate, highlight_estimate, 0, 4),
-    ROW(RF_REAL, highlights, steady, highlight_steady, 0, 0.95),
-    ROW(RF_UNSIGNED, thin, enabled, thin, 0, 1),
-    ROW(RF_REAL, look, cat_eye, cat_eye, 0, 0.9),
-    ROW(RF_REAL, look, fringe, fringe, -0.5, 0.5),
-    ROW(RF_REAL, look, grain, grain, 0, 4),
-    ROW(RF_UNSIGNED, look, grain_seed, grain_seed, 0, UINT32_MAX),
-    OR(RF_SIGNED, look, star_spikes, star_spikes, false, 2, 16, 0),
-    ROW(RF_REAL, look, star_length, star_length, 0, REFOCUS_PLAIN_BLUR_RADIUS),
-    ROW(RF_REAL, look, star_angle, star_angle, -3600, 3600),
-    ROW(RF_REAL, look, star_strength, star_strength, 0, 1),
-    ROW(RF_REAL, focus, tilt_x, tilt_x, 0, 1),
-    ROW(RF_REAL, focus, tilt_y, tilt_y, 0, 1),
-    ROW(RF_REAL, focus, tilt_across, tilt_across, -REFOCUS_MAX_TILT, REFOCUS_MAX_TILT),
-    ROW(RF_REAL, focus, tilt_down, tilt_down, -REFOCUS_MAX_TILT, REFOCUS_MAX_TILT),
-    ROW(RF_REAL, focus, depth_share, depth_share, 0, 1),
-    ROW(RF_REAL, focus, half_width, focus_half_width, 0, 1),
-    ROW(RF_REAL, focus, transition, focus_transition, 0, 1),
-    ROW(RF_REAL, focus, least_disparity, least_disparity, 0, 1),
-    ROW(RF_REAL, focus, most_disparity, most_disparity, 0, 1),
-    ROW(RF_REAL, focus, blur_limit, blur_limit, 0, REFOCUS_MAX_BLUR_RADIUS),
-    ROW(RF_SIGNED, focus, bands, bands, 0, REFOCUS_MAX_BANDS - 1),
-    ROW(RF_UNSIGNED, field, shape, field, 0, REFOCUS_FIELD_PICTURE),
-    ROW(RF_REAL, field, x, field_x, 0, 1),
-    ROW(RF_REAL, field, y, field_y, 0, 1),
-    ROW(RF_REAL, field, disparity, field_disparity, 0, 1),
-    ROW(RF_REAL, field, radius, field_radius, 0, 4),
-    ROW(RF_REAL, field, falloff, field_falloff, 0.001, 4),
-    ROW(RF_REAL, field, angle, field_angle, -3600, 3600),
-    ROW(RF_SIGNED, search, iterations, iterations, 1, 64),
-    ROW(RF_UNSIGNED, search, mirror, mirror, 0, 1),
-    ROW(RF_UNSIGNED, search, background, background, 0, 1),
-    ROW(RF_SIGNED, jittered, cell, cell, 1, 16),
-    ROW(RF_UNSIGNED, jittered, seed, seed, 0, UINT32_MAX),
-    ROW(RF_UNSIGNED, scatter, spread, spread, 0, REFOCUS_SPREAD_LOMMEL),
-    ROW(RF_REAL, scatter, airy_radius, airy_radius, 0.25, 16),
-    ROW(RF_REAL, scatter, depth_ratio, depth_ratio, 1, 1000),
-    ROW(RF_REAL, interpolated, sharp_radius, sharp_radius, 0.5, 16),
-    OR(RF_REAL, interpolated, middle_ratio, middle_ratio, true, 1, 1000, 0),
-    OR(RF_REAL, interpolated, last_ratio, last_ratio, true, 1, 1000, 0),
-    ROW(RF_REAL, foveated, x, attention_x, 0, 1),
-    ROW(RF_REAL, foveated, y, attention_y, 0, 1),
-    ROW(RF_REAL, foveated, angle, attention_angle, 0, 170),
-    ROW(RF_REAL, foveated, picture_angle, picture_angle, 1, 170),
-    ROW(RF_REAL, foveated, depth, attention_depth, 0, 1),
-    ROW(RF_SIGNED, diffusion, layers, layers, 1, 8),
-    ROW(RF_UNSIGNED, diffusion, solver, solver, 0, REFOCUS_SOLVER_ITERATED),
-    ROW(RF_REAL, diffusion, conductivity, conductivity, 0.01, 1),
+#define FROM(least_, most_)  .least = (least_), .most = (most_)
+#define ABOVE(least_, most_) .above = true, FROM(least_, most_)
+#define OR(value)            .has_other = true, .other = (value)
+#define ROW(type_, group, field, name_, shown, ...)                                                \
+    {{.name = (shown),                                                                             \
+      .offset = offsetof(struct refocus_settings, group.field),                                    \
+      .type = RF_##type_,                                                                          \
+      __VA_ARGS__},                                                                                \
+     offsetof(struct rf_settings, name_)},
+#define RENDER(type, field, ...) ROW(type, render, field, field, #field, __VA_ARGS__)
+#define SETTING(type, feature, field, name, ...)                                                   \
+    ROW(type, feature, field, name, #feature "->" #field, __VA_ARGS__)
+#include "support/settings.def"
 };
 
 /* All features, with their defaults where the caller has none. */
