@@ -54,76 +54,109 @@ static json_t *error_json(const struct live *live)
     return report_text_json(text);
 }
 
+/* The frames of a whole run. */
+struct totals {
+    uint64_t out, dropped, dropped_rendered;
+    double fps;
+    struct refocus_source_counters camera;
+};
+
+static struct totals totals_of(struct live *live)
+{
+    const double seconds = (double)(live->last_out_ns - live->first_out_ns) / 1e9;
+    struct totals totals = {.out = atomic_load(&live->frames_out),
+                            .dropped_rendered = live_queue_dropped(&live->rendered),
+                            .camera = refocus_source_counters_default()};
+
+    totals.fps = seconds > 0 ? (double)(totals.out - 1) / seconds : 0;
+    totals.dropped =
+        live->capture.skipped + live_queue_dropped(&live->captured) + totals.dropped_rendered;
+    refocus_source_get_counters(live->camera, &totals.camera);
+    return totals;
+}
+
+static json_t *frames_json(const struct live *live, const struct totals *totals)
+{
+    return json_pack(
+        "{s:o, s:s?, s:i, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:o, s:f, s:f}",
+        "camera", report_text_json(live->settings->camera), "format",
+        refocus_frame_format_name(live->mode.format), "width", (int)live->mode.width, "height",
+        (int)live->mode.height, "frames_in", (json_int_t)live->capture.frames, "frames_out",
+        (json_int_t)totals->out, "dropped", (json_int_t)totals->dropped, "camera_dropped",
+        (json_int_t)totals->camera.dropped, "sink_dropped", (json_int_t)live->sink_dropped,
+        "paired", (json_int_t)live->paired, "unpaired", (json_int_t)live->unpaired, "without_depth",
+        (json_int_t)live->without_depth, "commands", (json_int_t)live->commands, "fps", totals->fps,
+        "latency_ms", live_times_json(&live->latency), "outside_rendering", outside_rendering(live),
+        "create_ms", live->create_ms);
+}
+
+/* Where the subject is, and how often it was not found. */
+static json_t *tracked_json(const struct live_tracker *tracker)
+{
+    return json_pack("{s:[f, f, f, f], s:f, s:I}", "rectangle", tracker->box[0], tracker->box[1],
+                     tracker->box[2], tracker->box[3], "likeness", tracker->likeness, "lost",
+                     (json_int_t)tracker->lost);
+}
+
+static json_t *stages_json(const struct live *live)
+{
+    return json_pack(
+        "{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "convert", live_times_json(&live->capture.times),
+        "depth", live_times_json(&live->depth.times), "pair", live_times_json(&live->pair.times),
+        "steady", live_times_json(&live->steady.times), "prepare",
+        live_times_json(&live->prepare.times), "render", live_times_json(&live->render.times),
+        "output", live_times_json(&live->output.times));
+}
+
+/* Adds the last frame, in the words of render. */
+static void add_last_frame(json_t *json, const struct live *live)
+{
+    json_object_set_new(json, "focus", report_number_json(live->focus_disparity));
+    json_object_set_new(json, "blur", report_number_json(live->blur));
+    json_object_set_new(json, "near_m", report_metres_json(metres(&live->range, true)));
+    json_object_set_new(json, "far_m", report_metres_json(metres(&live->range, false)));
+}
+
+/* Adds what cameras, lens and sink did. */
+static void add_devices(json_t *json, const struct live *live, const struct totals *totals)
+{
+    json_object_set_new(json, "rendered_in", json_string(rendered_in(live->rendered_format)));
+    json_object_set_new(json, "colour", stage_json(&live->capture));
+    if (live->depth_camera || live->estimator || live->stack)
+        json_object_set_new(json, "depth", stage_json(&live->depth));
+    if (live->stack)
+        json_object_set_new(json, "stacks", json_integer((json_int_t)live->stacks));
+    json_object_set_new(json, "dropped_rendered", /* part of "dropped" */
+                        json_integer((json_int_t)totals->dropped_rendered));
+    json_object_set_new(json, "buffers_lost", json_integer((json_int_t)totals->camera.lost));
+    json_object_set_new(json, "sink_recoveries", json_integer((json_int_t)live->output.recoveries));
+    json_object_set_new(json, "lens_dioptres", report_number_json(live->lens_dioptres));
+    json_object_set_new(json, "lens", live_lens_json(live->camera, &live->settings->autofocus));
+    if (live->tracked)
+        json_object_set_new(json, "tracked", tracked_json(&live->tracker));
+}
+
 int live_report(struct live *live)
 {
-    const struct live_settings *settings = live->settings;
-    const uint64_t out = atomic_load(&live->frames_out);
-    const double seconds = (double)(live->last_out_ns - live->first_out_ns) / 1e9;
-    const double fps = seconds > 0 ? (double)(out - 1) / seconds : 0;
-    const uint64_t dropped_rendered = live_queue_dropped(&live->rendered);
-    const uint64_t dropped =
-        live->capture.skipped + live_queue_dropped(&live->captured) + dropped_rendered;
-    struct refocus_source_counters counters = refocus_source_counters_default();
+    const struct totals totals = totals_of(live);
     json_t *json;
 
-    refocus_source_get_counters(live->camera, &counters);
-    if (!settings->engine.json) {
+    if (!live->settings->engine.json) {
         fprintf(
             stderr,
             "%llu frames in, %llu out, %llu dropped; %.1f a second, %.1f ms from camera to sink\n",
-            (unsigned long long)live->capture.frames, (unsigned long long)out,
-            (unsigned long long)dropped + counters.dropped, fps,
+            (unsigned long long)live->capture.frames, (unsigned long long)totals.out,
+            (unsigned long long)totals.dropped + totals.camera.dropped, totals.fps,
             live_times_quantile(&live->latency, 0.5));
         return EXIT_DONE;
     }
-    json = json_pack(
-        "{s:o, s:s?, s:i, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:o, s:f, s:f}",
-        "camera", report_text_json(settings->camera), "format",
-        refocus_frame_format_name(live->mode.format), "width", (int)live->mode.width, "height",
-        (int)live->mode.height, "frames_in", (json_int_t)live->capture.frames, "frames_out",
-        (json_int_t)out, "dropped", (json_int_t)dropped, "camera_dropped",
-        (json_int_t)counters.dropped, "sink_dropped", (json_int_t)live->sink_dropped, "paired",
-        (json_int_t)live->paired, "unpaired", (json_int_t)live->unpaired, "without_depth",
-        (json_int_t)live->without_depth, "commands", (json_int_t)live->commands, "fps", fps,
-        "latency_ms", live_times_json(&live->latency), "outside_rendering", outside_rendering(live),
-        "create_ms", live->create_ms);
+    json = frames_json(live, &totals);
     if (json && live->exit_code != EXIT_DONE)
         json_object_set_new(json, "error", error_json(live));
     if (json) {
-        json_object_set_new(json, "rendered_in", json_string(rendered_in(live->rendered_format)));
-        json_object_set_new(json, "colour", stage_json(&live->capture));
-        if (live->depth_camera || live->estimator || live->stack)
-            json_object_set_new(json, "depth", stage_json(&live->depth));
-        if (live->stack)
-            json_object_set_new(json, "stacks", json_integer((json_int_t)live->stacks));
-        json_object_set_new(json, "dropped_rendered", /* part of "dropped" */
-                            json_integer((json_int_t)dropped_rendered));
-        json_object_set_new(json, "buffers_lost", json_integer((json_int_t)counters.lost));
-        json_object_set_new(json, "sink_recoveries",
-                            json_integer((json_int_t)live->output.recoveries));
-        json_object_set_new(json, "lens_dioptres", report_number_json(live->lens_dioptres));
-        json_object_set_new(json, "lens", live_lens_json(live->camera, &settings->autofocus));
-        if (live->tracked) /* where the subject is, and how often it was not found */
-            json_object_set_new(json, "tracked",
-                                json_pack("{s:[f, f, f, f], s:f, s:I}", "rectangle",
-                                          live->tracker.box[0], live->tracker.box[1],
-                                          live->tracker.box[2], live->tracker.box[3], "likeness",
-                                          live->tracker.likeness, "lost",
-                                          (json_int_t)live->tracker.lost));
-        /* These are for the last frame, in the words of render. */
-        json_object_set_new(json, "focus", report_number_json(live->focus_disparity));
-        json_object_set_new(json, "blur", report_number_json(live->blur));
-        json_object_set_new(json, "near_m", report_metres_json(metres(&live->range, true)));
-        json_object_set_new(json, "far_m", report_metres_json(metres(&live->range, false)));
-        json_object_set_new(json, "stages_ms",
-                            json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "convert",
-                                      live_times_json(&live->capture.times), "depth",
-                                      live_times_json(&live->depth.times), "pair",
-                                      live_times_json(&live->pair.times), "steady",
-                                      live_times_json(&live->steady.times), "prepare",
-                                      live_times_json(&live->prepare.times), "render",
-                                      live_times_json(&live->render.times), "output",
-                                      live_times_json(&live->output.times)));
+        add_devices(json, live, &totals);
+        add_last_frame(json, live);
+        json_object_set_new(json, "stages_ms", stages_json(live));
         json_object_set_new(json, "peak_rss_kib", json_integer(report_peak_rss_kib()));
     }
     return report_print_json(json);
