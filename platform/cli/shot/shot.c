@@ -96,13 +96,72 @@ int shot_inputs(const struct shot_settings *settings, const char *photo,
     return count;
 }
 
+/* Reads the photo, its depth and what is behind it, as far as the method can use them. */
+static int read_files(struct shot *shot, const char *photo, const struct shot_settings *settings)
+{
+    const bool in_strips = settings->engine.in_strips;
+    struct depth_settings depth = settings->depth;
+    int status;
+
+    report_progress("reading", 0);
+    if (!engine_takes_deep(&shot->engine.params) || in_strips)
+        depth.deep = DEEP_NONE;
+    depth.light &= engine_draws_light(&shot->engine.params) && !in_strips;
+    status = input_read(&shot->input, photo, &depth);
+    shot->input.most_blur = engine_most_blur(&settings->engine);
+    return status == EXIT_DONE
+               ? behind_read(&shot->behind, &settings->behind, &settings->depth, &shot->input)
+               : status;
+}
+
+/* The scene; `map` is its depth, of the photo's size where that was made already. */
+static struct refocus_scene scene_of(const struct shot *shot, struct refocus_disparity *map)
+{
+    const struct input *input = &shot->input;
+    const struct refocus_image *image = input->photo->image;
+    struct refocus_scene scene;
+
+    *map = refocus_disparity16(input->disparity, input->width, input->height,
+                               (ptrdiff_t)input->width * 2);
+    scene = input_scene(input, map);
+    scene.depth_edges = shot->engine.places_edges;
+    if (shot->full) {
+        *map = refocus_disparity16(shot->full, image->width, image->height,
+                                   2 * (ptrdiff_t)image->width);
+        scene.depth_edges = REFOCUS_DEPTH_EDGES_AS_GIVEN;
+        scene.confidence = NULL;
+    }
+    behind_add(&shot->behind, &scene);
+    return scene;
+}
+
+/* Makes the renderer for what was read, and prepares it. */
+static int prepare(struct shot *shot, const struct shot_settings *settings, double blur,
+                   double most_blur)
+{
+    struct engine *engine = &shot->engine;
+    const struct refocus_image *image = shot->input.photo->image;
+    struct refocus_disparity map;
+    const struct refocus_scene scene = scene_of(shot, &map);
+    int status;
+
+    engine->has_matte = shot->input.matte.samples != NULL;
+    engine->behind = settings->behind.image != NULL;
+    engine->deep = shot->input.deep.plane[0] != NULL;
+    engine_add_grain(engine, &settings->engine);
+    engine->light = shot->input.light;
+    engine->params.render.dither =
+        settings->depth.no_dither ? REFOCUS_DITHER_OFF : REFOCUS_DITHER_ORDERED;
+    status = engine_create(engine, &settings->engine, image->width, image->height,
+                           fmax(blur, most_blur));
+    engine->params.render.max_blur_radius = (float)blur;
+    shot_suit_papers(&shot->input, &settings->lens, &settings->engine.papers, &engine->params);
+    return status == EXIT_DONE ? engine_prepare(engine, &scene) : status;
+}
+
 int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings,
               double most_blur)
 {
-    struct refocus_disparity disparity;
-    struct refocus_scene scene;
-    const struct refocus_image *image;
-    struct depth_settings depth = settings->depth;
     double blur = 0;
     int status;
 
@@ -111,54 +170,19 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     shot->full = NULL;
     status = engine_begin(&shot->engine, &settings->engine);
     shot->engine.name = photo;
-    if (status == EXIT_DONE) {
-        report_progress("reading", 0);
-        if (!engine_takes_deep(&shot->engine.params) || settings->engine.in_strips) {
-            depth.deep = DEEP_NONE;
-        }
-        depth.light &= engine_draws_light(&shot->engine.params) && !settings->engine.in_strips;
-        status = input_read(&shot->input, photo, &depth);
-    }
-    shot->input.most_blur = engine_most_blur(&settings->engine);
     if (status == EXIT_DONE)
-        status = behind_read(&shot->behind, &settings->behind, &settings->depth, &shot->input);
+        status = read_files(shot, photo, settings);
     if (status == EXIT_DONE)
         status = input_blur(&shot->input, &settings->lens, &blur);
     if (status != EXIT_DONE)
         return status;
-    image = shot->input.photo->image;
     report_progress("preparing", 0.15);
     shot->engine.places_edges = input_has_edges_placed(&shot->input, &settings->depth);
-    if (settings->engine.in_strips) {
+    if (settings->engine.in_strips)
         status = strips_disparity(&shot->input, shot->engine.places_edges, &settings->engine,
                                   &shot->full, &shot->engine.edges);
-        if (status != EXIT_DONE)
-            return status;
-    }
-    disparity = refocus_disparity16(shot->input.disparity, shot->input.width, shot->input.height,
-                                    (ptrdiff_t)shot->input.width * 2);
-    scene = input_scene(&shot->input, &disparity);
-    scene.depth_edges = shot->engine.places_edges;
-    if (shot->full) {
-        disparity = refocus_disparity16(shot->full, image->width, image->height,
-                                        2 * (ptrdiff_t)image->width);
-        scene.depth_edges = REFOCUS_DEPTH_EDGES_AS_GIVEN;
-        scene.confidence = NULL;
-    }
-    behind_add(&shot->behind, &scene);
-    shot->engine.has_matte = shot->input.matte.samples != NULL;
-    shot->engine.behind = settings->behind.image != NULL;
-    shot->engine.deep = shot->input.deep.plane[0] != NULL;
-    engine_add_grain(&shot->engine, &settings->engine);
-    shot->engine.light = shot->input.light;
-    shot->engine.params.render.dither =
-        depth.no_dither ? REFOCUS_DITHER_OFF : REFOCUS_DITHER_ORDERED;
-    status = engine_create(&shot->engine, &settings->engine, image->width, image->height,
-                           fmax(blur, most_blur));
-    shot->engine.params.render.max_blur_radius = (float)blur;
-    shot_suit_papers(&shot->input, &settings->lens, &settings->engine.papers, &shot->engine.params);
     if (status == EXIT_DONE)
-        status = engine_prepare(&shot->engine, &scene);
+        status = prepare(shot, settings, blur, most_blur);
     return status == EXIT_DONE ? choose_focus(shot, &settings->lens) : status;
 }
 
