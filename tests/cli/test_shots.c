@@ -12,7 +12,7 @@
 #include <refocus/platform/convert.h>
 #include <refocus/refocus.h>
 #include "commands/stack_shots.h"
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "line/interrupt.h"
 #include "line/report.h"
 #include "outputs/outputs.h"

@@ -9,7 +9,7 @@
 #include "bench/bench_rays.h"
 #include "commands/commands.h"
 #include "shot/engine.h"
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "inputs/lens.h"
 
 struct settings {

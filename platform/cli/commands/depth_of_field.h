@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <jansson.h>
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "inputs/lens.h"
 
 /* The depth of field of a photo as it would be rendered. Metres are NAN where its depth has none,

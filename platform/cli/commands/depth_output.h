@@ -4,7 +4,7 @@
 #define RF_CLI_DEPTH_OUTPUT_H
 
 #include "commands/depth_stack.h"
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "inputs/made.h"
 
 enum depth_view { VIEW_NONE, VIEW_DISPARITY, VIEW_CONFIDENCE };

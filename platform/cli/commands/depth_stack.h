@@ -4,7 +4,7 @@
 
 #include <refocus/stack.h>
 #include "commands/stack_frames.h"
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "outputs/outputs.h"
 
 /* How --focal-stack is read. */

@@ -5,10 +5,10 @@
 #include "commands/commands.h"
 #include "commands/info_text.h"
 #include "inputs/disparities.h"
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "inputs/lens.h"
 #include "inputs/limits.h"
-#include "inputs/standard.h"
+#include "inputs/standard_input.h"
 #include "inputs/unit.h"
 #include "line/report.h"
 

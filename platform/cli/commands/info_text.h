@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 #include "commands/depth_of_field.h"
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "inputs/unit.h"
 
 /* Findings from the pictures of a file, beside those that the input has. */

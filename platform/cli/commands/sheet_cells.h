@@ -4,7 +4,7 @@
 
 #include <refocus/refocus.h>
 #include "shot/engine.h"
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "inputs/lens.h"
 
 enum sheet_kind { SHEET_FOCUS, SHEET_APERTURE, SHEET_SIGMA, SHEET_BEFORE_AFTER, SHEET_BOKEH };

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <jansson.h>
-#include "inputs/inputs.h"
-#include "inputs/standard.h"
+#include "inputs/read_input.h"
+#include "inputs/standard_input.h"
 #include "line/options.h"
 #include "line/report.h"
 

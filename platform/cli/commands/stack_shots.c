@@ -14,7 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 #include <refocus/platform/convert.h>
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "line/interrupt.h"
 #include "line/report.h"
 #include "outputs/outputs.h"

@@ -2,7 +2,7 @@
 #ifndef RF_CLI_VIEW_SAVE_H
 #define RF_CLI_VIEW_SAVE_H
 
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "view/session.h"
 
 struct view_names {

@@ -8,7 +8,7 @@
 #include "compare/compare_list.h"
 #include "shot/engine.h"
 #include "shot/shot.h"
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "inputs/matte.h"
 #include "inputs/lens.h"
 #include "outputs/outputs.h"

@@ -2,7 +2,7 @@
 #ifndef RF_CLI_BEHIND_H
 #define RF_CLI_BEHIND_H
 
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 
 struct behind_settings {
     const char *image, *depth; /* files, or NULL */

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <jansson.h>
 #include <refocus/refocus.h>
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "line/option.h"
 
 struct lens_settings {

@@ -2,7 +2,7 @@
 #ifndef RF_CLI_MADE_H
 #define RF_CLI_MADE_H
 
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 
 /* Read a photo and make its depth: from it and the right one of a stereo pair, which is NULL when
  * they lie side by side in one picture, or within the file as two pictures; or by a network. These

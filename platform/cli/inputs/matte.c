@@ -4,7 +4,7 @@
 #include <refocus/platform/file.h>
 #include "inputs/limits.h"
 #include "inputs/matte.h"
-#include "inputs/shape.h"
+#include "inputs/map_shape.h"
 #include "line/report.h"
 
 bool matte_is_none(const char *matte)

@@ -2,7 +2,7 @@
 #ifndef RF_CLI_PAINTED_H
 #define RF_CLI_PAINTED_H
 
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 
 /* Read a photo without any depth, for strokes to be painted over; or go on with one
  * that was read. */

@@ -5,7 +5,7 @@
 
 #include <math.h>
 #include <stdio.h>
-#include "inputs/ends.h"
+#include "inputs/no_value.h"
 #include "inputs/samples.h"
 
 /* Rooms and streets in millimetres, and in fifths of them, lie within these, and have a nearest and

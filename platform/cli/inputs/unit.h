@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 #include <refocus/platform/file.h>
-#include "inputs/ends.h"
+#include "inputs/no_value.h"
 #include "inputs/input.h"
 
 enum { UNIT_LINE = ENDS_LINE };

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "line/report.h"
 #include "live/live_lens.h"
 

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 #include "commands/stack_shots.h"
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "inputs/lens.h"
 #include "live/live_lens.h"
 #include "shot/engine.h"

@@ -3,7 +3,7 @@
 #define RF_CLI_EDITABLE_H
 
 #include <stdbool.h>
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "line/option.h"
 
 struct keep_settings {

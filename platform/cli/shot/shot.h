@@ -3,7 +3,7 @@
 #define RF_CLI_SHOT_H
 
 #include "inputs/behind.h"
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "inputs/lens.h"
 #include "settings/config.h"
 #include "settings/settings.h"

@@ -2,7 +2,7 @@
 #ifndef RF_CLI_STRIPS_H
 #define RF_CLI_STRIPS_H
 
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "shot/engine.h"
 
 /* Rows for tables of options, for settings with members of engine_settings. */

@@ -1,6 +1,6 @@
-/* inputs.h: reads a photo and its disparities as the options ask for them. */
-#ifndef RF_CLI_INPUTS_H
-#define RF_CLI_INPUTS_H
+/* read_input.h: reads a photo and its disparities as the options ask for them. */
+#ifndef RF_CLI_READ_INPUT_H
+#define RF_CLI_READ_INPUT_H
 
 #include "inputs/disparities.h"
 #include "inputs/input.h"

@@ -1,7 +1,7 @@
-/* ends.c: matchers of stereo pairs write a number where they found nothing, -1, -16 or 0, which
+/* no_value.c: matchers of stereo pairs write a number where they found nothing, -1, -16 or 0, which
  * then is an end of the map's range; and they write whole numbers of parts of a pixel, which are
  * few of what their type has. Both leave little blur to the rest. */
-#include "inputs/ends.h"
+#include "inputs/no_value.h"
 
 #include <math.h>
 #include <stdio.h>

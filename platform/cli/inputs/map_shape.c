@@ -1,6 +1,5 @@
-/* shape.c: a depth map has to have the shape of its photo, and is turned where it lies on its side.
- */
-#include "inputs/shape.h"
+/* map_shape.c: a depth map has its photo's shape, or lies on its side and is turned. */
+#include "inputs/map_shape.h"
 #include <stdlib.h>
 #include "line/report.h"
 

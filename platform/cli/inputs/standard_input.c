@@ -1,5 +1,5 @@
-/* standard.c: a photo is read from standard input. */
-#include "inputs/standard.h"
+/* standard_input.c: a photo is read from standard input. */
+#include "inputs/standard_input.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,7 +1,6 @@
-/* shape.h: a depth map has to have the shape of its photo, and is turned where it lies on its side.
- */
-#ifndef RF_CLI_SHAPE_H
-#define RF_CLI_SHAPE_H
+/* map_shape.h: a depth map has its photo's shape, or lies on its side and is turned. */
+#ifndef RF_CLI_MAP_SHAPE_H
+#define RF_CLI_MAP_SHAPE_H
 
 #include <stdbool.h>
 #include <refocus/refocus.h>

@@ -1,12 +1,12 @@
-/* inputs.c: reads a photo, its depth and its matte, which disparities.c then makes ready for
+/* read_input.c: reads a photo, its depth and its matte, which disparities.c then makes ready for
  * rendering. */
 #include <stdlib.h>
 #include <string.h>
 #include "inputs/disparities.h"
-#include "inputs/inputs.h"
+#include "inputs/read_input.h"
 #include "inputs/matte.h"
-#include "inputs/shape.h"
-#include "inputs/standard.h"
+#include "inputs/map_shape.h"
+#include "inputs/standard_input.h"
 #include "inputs/unit.h"
 #include "line/report.h"
 

@@ -1,6 +1,6 @@
-/* standard.h: a photo from standard input, which files named "-" stand for. */
-#ifndef RF_CLI_STANDARD_H
-#define RF_CLI_STANDARD_H
+/* standard_input.h: a photo from standard input, which files named "-" stand for. */
+#ifndef RF_CLI_STANDARD_INPUT_H
+#define RF_CLI_STANDARD_INPUT_H
 
 #include <stdbool.h>
 #include <refocus/platform/file.h>

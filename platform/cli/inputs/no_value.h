@@ -1,6 +1,6 @@
-/* ends.h: what the least and the greatest sample of a map of disparities may stand for. */
-#ifndef RF_CLI_ENDS_H
-#define RF_CLI_ENDS_H
+/* no_value.h: what the least and the greatest sample of a map of disparities may stand for. */
+#ifndef RF_CLI_NO_VALUE_H
+#define RF_CLI_NO_VALUE_H
 
 #include <stdbool.h>
 #include <refocus/refocus.h>
