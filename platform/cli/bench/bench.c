@@ -11,6 +11,8 @@
 #include "shot/engine.h"
 #include "inputs/read_input.h"
 #include "inputs/lens.h"
+#include "inputs/depth_options.h"
+#include "shot/shot_options.h"
 
 struct settings {
     struct depth_settings depth;
@@ -27,13 +29,15 @@ static const struct option options[] = {
      .greatest = REFOCUS_MAX_SIDE, .count = 2,
      .brief = "of the made-up scene without PHOTO; default 720x540",
      .help = "size of the made-up scene that is taken without PHOTO, default 720x540"},
-    DEPTH_FILE_OPTION(struct settings, depth),
-    DEPTH_UNIT_OPTIONS(struct settings, depth),
-    LIMIT_OPTIONS(struct settings, depth.limits),
-    FOCUS_OPTIONS(struct settings, lens),
+    GROUP(depth_file_options, struct settings, depth),
+    GROUP(depth_unit_options, struct settings, depth),
+    GROUP(limit_options, struct settings, depth.limits),
+    GROUP(focus_options, struct settings, lens),
     {.kind = OPTION_HEADING, .help = "How"},
-    METHOD_OPTION(struct settings, engine),
-    METHOD_OPTIONS(struct settings, engine, "standard"),
+    GROUP(method_options, struct settings, engine),
+    GROUP(ray_options, struct settings, engine),
+    QUALITY_OPTION(struct settings, engine.quality, "standard", NULL),
+    GROUP(rendering_options, struct settings, engine),
     {OPTION(OPTION_FLAG, "--rays", NULL, struct settings, statistics),
      .brief = "what the rays of the mask hit, in place of times",
      .help = "without a number: no times, but what the rays of the mask hit: how many find a true "
@@ -46,9 +50,9 @@ static const struct option options[] = {
      .brief = "the loops that frames are made of",
      .help = "no frames, but the loops that they are made of: nanoseconds for a pixel or a ray "
              "sample, and those of plain C"},
-    RUN_OPTIONS(struct settings, engine),
-    REPEAT_OPTION(struct settings, engine),
-    PAPER_OPTIONS(struct settings, engine.papers, engine.method),
+    GROUP(run_options, struct settings, engine),
+    GROUP(repeat_options, struct settings, engine),
+    GROUP(paper_options, struct settings, engine),
     {.help = NULL},
 };
 
@@ -262,7 +266,7 @@ const struct command bench_command = {
     .summary = "time whole frames",
     .notes = "Without PHOTO a made-up scene is rendered. The times are of preparing "
              "and rendering alone, without files, and of --repeat frames, default 5.",
-    .options = options,
+    .table = options,
     .files_least = 0,
     .files_most = 1,
     .run = run,

@@ -6,6 +6,7 @@
 #include "inputs/painted.h"
 #include "line/report.h"
 #include "outputs/outputs.h"
+#include "inputs/depth_options.h"
 
 static const struct option_word view_words[] = {
     {"none", "the disparities as they are"},
@@ -18,11 +19,11 @@ static const struct option options[] = {
                   "the disparities to write, 1 = nearest: .png, .tif or .pgm of 16 bits "
                   "(65535 = 1) or .pfm of 32-bit floats; or a .jpg: the JPEG photo, "
                   "every byte of it, with the depth inside as GDepth"),
-    DEPTH_FILE_OPTION(struct depth_command_settings, depth),
-    DEPTH_UNIT_OPTIONS(struct depth_command_settings, depth),
-    ORIENT_DEPTH_OPTION(struct depth_command_settings, depth),
-    REPAIR_OPTIONS(struct depth_command_settings, depth),
-    LIMIT_OPTIONS(struct depth_command_settings, depth.limits),
+    GROUP(depth_file_options, struct depth_command_settings, depth),
+    GROUP(depth_unit_options, struct depth_command_settings, depth),
+    GROUP(orient_depth_options, struct depth_command_settings, depth),
+    GROUP(repair_options, struct depth_command_settings, depth),
+    GROUP(limit_options, struct depth_command_settings, depth.limits),
     {OPTION(OPTION_FLAG, "--full", NULL, struct depth_command_settings, depth.full),
      .brief = "bring the depth to the photo's size, edge on edge",
      .help = "bring the depth to the photo's size, its edges on the photo's"},
@@ -39,7 +40,7 @@ static const struct option options[] = {
      .brief = "paint these strokes",
      .help = "paint these strokes: over nothing, or over the depth of --depth, "
              "--estimate or a stereo pair"},
-    STACK_OPTIONS(struct depth_command_settings, stack),
+    GROUP(stack_options, struct depth_command_settings, stack),
     STEREO_FILE_OPTION(struct depth_command_settings, stereo,
                        "FILE holds both pictures of a stereo pair"),
     {MATCH_OPTION(struct depth_command_settings, stereo, "how a stereo pair is matched")},
@@ -246,7 +247,7 @@ const struct command depth_command = {
              "from those around them, from the farther side where two surfaces meet, or from "
              "behind a thin thing at the border, and counted. In --json, 'stack' is what was found "
              "of a focus stack, in the words of struct refocus_stack_result (refocus/stack.h).",
-    .options = options,
+    .table = options,
     .files_least = 1,
     .files_most = REFOCUS_STACK_MOST_FRAMES,
     .too_many = "a focus stack has 32 frames at the most; leave out every other one",

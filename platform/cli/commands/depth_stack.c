@@ -5,6 +5,38 @@
 #include "commands/depth_stack.h"
 #include "line/report.h"
 
+const struct option stack_options[] = {
+    {OPTION(OPTION_FLAG, "--focal-stack", NULL, struct stack_settings, on),
+     .brief = "the FILEs show one view at 2 to 32 focus distances, or apertures",
+     .help = "the FILEs show one view at 2 to 32 focus distances, one after the other, or at "
+             "several apertures: depth, and a photo that is in focus everywhere, are made of them"},
+    {OPTION(OPTION_TEXT, "--positions", "LIST", struct stack_settings, positions),
+     .help = "focus of each frame in dioptres, 1 / metres, with commas, or a .json file with a "
+             "list of them; then any order will do, and depth is in metres; default: the subject "
+             "distances of EXIF, else equally far apart",
+     .needs = "--focal-stack"},
+    {OPTION(OPTION_INTEGER, "--reference", "N", struct stack_settings, reference), .least = 1,
+     .greatest = REFOCUS_STACK_MOST_FRAMES,
+     .help = "the result is seen as in the N-th frame; default: the one in the middle",
+     .needs = "--focal-stack"},
+    {OPTION(OPTION_CHOICE, "--align", "HOW", struct stack_settings, align),
+     .words = stack_align_words, .help = "how frames are laid on each other",
+     .needs = "--focal-stack"},
+    {OPTION(OPTION_CHOICE, "--order", "HOW", struct stack_settings, order),
+     .words = stack_order_words, .help = "order of focus of frames without positions",
+     .needs = "--focal-stack"},
+    {OPTION(OPTION_CHOICE, "--in-focus", "WHICH", struct stack_settings, in_focus),
+     .words = stack_in_focus_words,
+     .help = "what is in focus in frames of one focus and several apertures, whose f-numbers EXIF "
+             "tells; of two without, the sharper one has the smaller aperture, and is the photo",
+     .needs = "--focal-stack"},
+    {OPTION(OPTION_TEXT, "--photo", "FILE", struct stack_settings, photo),
+     .help = "write the photo that is in focus everywhere as well: " OUTPUT_PICTURES
+             "; a .jpg as OUT is that photo with the depth inside",
+     .needs = "--focal-stack"},
+    {.help = NULL},
+};
+
 /* A share of measured pixels below this is no depth. */
 #define LEAST_MEASURED 0.002
 /* Frames that are less alike than this show different places. */

@@ -23,38 +23,8 @@ struct stack_settings {
         false, NULL, NAN, 0, REFOCUS_STACK_ORDER_EITHER, IN_FOCUS_AUTO, NULL, NULL                 \
     }
 
-/* Rows for tables of options. */
-#define STACK_OPTIONS(type, member)                                                                \
-    {OPTION(OPTION_FLAG, "--focal-stack", NULL, type, member.on),                                  \
-     .brief = "the FILEs show one view at 2 to 32 focus distances, or apertures",                  \
-     .help =                                                                                       \
-         "the FILEs show one view at 2 to 32 focus distances, one after the other, or at several " \
-         "apertures: depth, and a photo that is in focus everywhere, are made of them"},           \
-        {OPTION(OPTION_TEXT, "--positions", "LIST", type, member.positions),                       \
-         .help = "focus of each frame in dioptres, 1 / metres, with commas, or a .json file with " \
-                 "a list of them; then any order will do, and depth is in metres; default: the "   \
-                 "subject distances of EXIF, else equally far apart",                              \
-         .needs = "--focal-stack"},                                                                \
-        {OPTION(OPTION_INTEGER, "--reference", "N", type, member.reference), .least = 1,           \
-         .greatest = REFOCUS_STACK_MOST_FRAMES,                                                    \
-         .help = "the result is seen as in the N-th frame; default: the one in the middle",        \
-         .needs = "--focal-stack"},                                                                \
-        {OPTION(OPTION_CHOICE, "--align", "HOW", type, member.align), .words = stack_align_words,  \
-         .help = "how frames are laid on each other", .needs = "--focal-stack"},                   \
-        {OPTION(OPTION_CHOICE, "--order", "HOW", type, member.order), .words = stack_order_words,  \
-         .help = "order of focus of frames without positions", .needs = "--focal-stack"},          \
-        {OPTION(OPTION_CHOICE, "--in-focus", "WHICH", type, member.in_focus),                      \
-         .words = stack_in_focus_words,                                                            \
-         .help = "what is in focus in frames of one focus and several apertures, whose f-numbers " \
-                 "EXIF tells; of two without, the sharper one has the smaller aperture, and is "   \
-                 "the photo",                                                                      \
-         .needs = "--focal-stack"},                                                                \
-    {                                                                                              \
-        OPTION(OPTION_TEXT, "--photo", "FILE", type, member.photo),                                \
-            .help = "write the photo that is in focus everywhere as well: " OUTPUT_PICTURES        \
-                    "; a .jpg as OUT is that photo with the depth inside",                         \
-            .needs = "--focal-stack"                                                               \
-    }
+/* The options of struct stack_settings. */
+extern const struct option stack_options[];
 
 /* Words of --align, --order and --in-focus. */
 extern const struct option_word stack_align_words[], stack_order_words[], stack_in_focus_words[];

@@ -11,6 +11,7 @@
 #include "inputs/standard_input.h"
 #include "inputs/unit.h"
 #include "line/report.h"
+#include "inputs/depth_options.h"
 
 struct settings {
     bool json;
@@ -22,14 +23,14 @@ static const struct option options[] = {
     {OPTION(OPTION_FLAG, "--json", NULL, struct settings, json),
      .brief = "print it as one JSON object",
      .help = "print it as one JSON object; what is not known is null"},
-    DEPTH_FILE_OPTION(struct settings, depth),
-    DEPTH_UNIT_OPTIONS(struct settings, depth),
-    ORIENT_DEPTH_OPTION(struct settings, depth),
-    REPAIR_OPTIONS(struct settings, depth),
-    LIMIT_OPTIONS(struct settings, depth.limits),
+    GROUP(depth_file_options, struct settings, depth),
+    GROUP(depth_unit_options, struct settings, depth),
+    GROUP(orient_depth_options, struct settings, depth),
+    GROUP(repair_options, struct settings, depth),
+    GROUP(limit_options, struct settings, depth.limits),
     {.kind = OPTION_HEADING, .help = "The lens whose depth of field is told"},
-    FOCUS_OPTIONS(struct settings, lens),
-    LENS_OPTIONS(struct settings, lens),
+    GROUP(focus_options, struct settings, lens),
+    GROUP(lens_options, struct settings, lens),
     {.help = NULL},
 };
 
@@ -168,7 +169,7 @@ const struct command info_command = {
     .name = "info",
     .usage = "FILE|- [options]",
     .summary = "what depth, lens and orientation data a file carries, and why it is believed",
-    .options = options,
+    .table = options,
     .files_least = 1,
     .files_most = 1,
     .run = run,

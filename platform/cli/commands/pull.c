@@ -10,6 +10,8 @@
 #include "settings/settings.h"
 #include "shot/shot.h"
 #include "views/stereo_views.h"
+#include "inputs/depth_options.h"
+#include "shot/shot_options.h"
 
 struct settings {
     struct shot_settings shot;
@@ -30,9 +32,9 @@ static const struct option options[] = {
     OUTPUT_OPTION(struct settings, output,
                   "frames-%03d.png (" OUTPUT_PICTURES ") for a picture each; or a name in "
                   ".y4m, .apng, and by the ffmpeg program .mp4, .webm or .gif"),
-    SHOT_DEPTH_OPTIONS(struct settings, shot),
-    BEHIND_OPTIONS(struct settings, shot.behind),
-    LIGHT_OPTIONS(struct settings, shot.depth),
+    GROUP(shot_depth_options, struct settings, shot),
+    GROUP(behind_options, struct settings, shot.behind),
+    GROUP(light_options, struct settings, shot.depth),
     {.kind = OPTION_HEADING, .help = "The pull"},
     NUMBER("--from", "D", from, 0, 1, "disparity in focus at the beginning; default 1",
            "disparity in focus at the beginning; default 1"),
@@ -55,14 +57,14 @@ static const struct option options[] = {
     NUMBER("--wiggle", "PIXELS", wiggle, 0, STEREO_MOST, NULL,
            "in place of a pull: the eye swings sideways, and what is not in focus "
            "moves by so many pixels, at disparity 1 when 0 is in focus"),
-    SHOT_LENS_OPTIONS(struct settings, shot),
-    SHOT_METHOD_OPTIONS(struct settings, shot),
+    GROUP(shot_lens_options, struct settings, shot),
+    GROUP(shot_method_options, struct settings, shot),
     {.kind = OPTION_HEADING, .help = "Running"},
     CONFIG_OPTIONS(struct settings, shot.config, shot.preset, NULL),
     SETTINGS_OPTION(struct settings, shot.load),
     SAVE_SETTINGS_OPTION(struct settings, shot.save),
-    RUN_OPTIONS(struct settings, shot.engine),
-    SHOT_PAPER_OPTIONS(struct settings, shot),
+    GROUP(run_options, struct settings, shot.engine),
+    GROUP(paper_options, struct settings, shot.engine),
     {.help = NULL},
 };
 
@@ -295,7 +297,7 @@ const struct command pull_command = {
              "field-disparity, field-radius, field-falloff and field-angle; \"ease\" is how the "
              "way to a key goes: smooth, linear, in (slowly at first), out (slowly in the end).\n"
              "Ctrl-C ends with status 1 and leaves nothing behind.",
-    .options = options,
+    .table = options,
     .files_least = 1,
     .files_most = 1,
     .run = run,

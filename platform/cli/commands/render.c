@@ -20,6 +20,8 @@
 #include "shot/strips.h"
 #include "views/stereo_views.h"
 #include "views/views.h"
+#include "inputs/depth_options.h"
+#include "shot/shot_options.h"
 
 /* Pictures of fewer rows stay in memory. */
 enum { LEAST_SPOOLED = 1000 };
@@ -50,19 +52,19 @@ static const struct option options[] = {
         "OpenEXR, PPM and PFM keep nothing. A folder, or a name with {name}, {ext}, {n} (number) "
         "or the name of an option such as {f-number}, for several photos; --depth and "
         "--matte take {name}, too. - is standard output"),
-    KEEP_OPTIONS(struct settings, keep),
+    GROUP(keeping_options, struct settings, keep),
     {OPTION(OPTION_INTEGER, "--jobs", "N", struct settings, jobs), .elsewhere = true, .least = 1,
      .greatest = 256, .brief = "photos at a time",
      .help = "photos at a time; default one for each processor, fewer where they would take more "
              "than three quarters of the free memory"},
-    RESULT_OPTIONS(struct settings, result),
-    SHOT_DEPTH_OPTIONS(struct settings, shot),
-    BEHIND_OPTIONS(struct settings, shot.behind),
-    LIGHT_OPTIONS(struct settings, shot.depth),
-    TRANSFER_OPTIONS(struct settings, shot.depth),
-    SHOT_LENS_OPTIONS(struct settings, shot),
-    SHOT_METHOD_OPTIONS(struct settings, shot),
-    STRIPS_OPTION(struct settings, shot.engine),
+    GROUP(result_options, struct settings, result),
+    GROUP(shot_depth_options, struct settings, shot),
+    GROUP(behind_options, struct settings, shot.behind),
+    GROUP(light_options, struct settings, shot.depth),
+    GROUP(transfer_options, struct settings, shot.depth),
+    GROUP(shot_lens_options, struct settings, shot),
+    GROUP(shot_method_options, struct settings, shot),
+    GROUP(strips_options, struct settings, shot.engine),
     {OPTION(OPTION_NUMBERS, "--region", "X,Y,W,H", struct settings, region), .least = 0,
      .greatest = REFOCUS_MAX_SIDE, .count = 4,
      .help = "render only this part of the picture, pixels"},
@@ -76,9 +78,9 @@ static const struct option options[] = {
     CONFIG_OPTIONS(struct settings, shot.config, shot.preset, "a look"),
     SETTINGS_OPTION(struct settings, shot.load),
     SAVE_SETTINGS_OPTION(struct settings, shot.save),
-    RUN_OPTIONS(struct settings, shot.engine),
-    REPEAT_OPTION(struct settings, shot.engine),
-    SHOT_PAPER_OPTIONS(struct settings, shot),
+    GROUP(run_options, struct settings, shot.engine),
+    GROUP(repeat_options, struct settings, shot.engine),
+    GROUP(paper_options, struct settings, shot.engine),
     {.help = NULL},
 };
 
@@ -422,7 +424,7 @@ const struct command render_command = {
              "many were rendered, and the exit status is 1 when one has failed. Two photos never "
              "get one name: that is refused before anything is written.\n"
              "Ctrl-C ends with status 1 and leaves what was at OUT as it was.",
-    .options = options,
+    .table = options,
     .files_least = 1,
     .files_most = INT_MAX,
     .run = run,

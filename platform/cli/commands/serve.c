@@ -8,6 +8,7 @@
 #include "line/report.h"
 #include "serve/browser.h"
 #include "serve/serving.h"
+#include "inputs/depth_options.h"
 
 struct settings {
     struct serve_base base;
@@ -51,11 +52,11 @@ static const struct option options[] = {
      .help = "depth beside it: a source as of refocus live --depth, a depth map, or "
              "estimate:MODEL.onnx. A photo gets its map by refocus depth",
      .elsewhere = true},
-    DEPTH_UNIT_OPTIONS(struct settings, base.live.depth),
+    GROUP(depth_unit_options, struct settings, base.live.depth),
     {.kind = OPTION_HEADING, .help = "Photos"},
-    UPSAMPLE_OPTION(struct settings, base.shot.depth),
-    DEPTH_EDGES_OPTION(struct settings, base.shot.depth),
-    LIMIT_OPTIONS(struct settings, base.shot.depth.limits),
+    GROUP(upsample_options, struct settings, base.shot.depth),
+    GROUP(depth_edges_options, struct settings, base.shot.depth),
+    GROUP(limit_options, struct settings, base.shot.depth.limits),
     {.kind = OPTION_HEADING, .help = "Running"},
     {OPTION(OPTION_INTEGER, "--threads", "N", struct settings, base.shot.engine.threads),
      .elsewhere = true, .greatest = 64,
@@ -172,7 +173,7 @@ const struct command serve_command = {
              "can see the photos of the folder, and send photos of their own; nobody can change "
              "or add a file. Of a photo that is open there is a process; what is saved goes to "
              "the browser.",
-    .options = options,
+    .table = options,
     .files_least = 0,
     .files_most = 1,
     .run = run,

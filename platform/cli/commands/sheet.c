@@ -10,6 +10,8 @@
 #include "commands/sheet_cells.h"
 #include "commands/sheet_picture.h"
 #include "shot/shot.h"
+#include "inputs/depth_options.h"
+#include "shot/shot_options.h"
 
 struct settings {
     struct shot_settings shot;
@@ -27,9 +29,9 @@ struct settings {
 static const struct option options[] = {
     {.kind = OPTION_HEADING, .help = "Files"},
     OUTPUT_OPTION(struct settings, output, "the picture to write: " OUTPUT_PICTURES),
-    SHOT_DEPTH_OPTIONS(struct settings, shot),
-    BEHIND_OPTIONS(struct settings, shot.behind),
-    LIGHT_OPTIONS(struct settings, shot.depth),
+    GROUP(shot_depth_options, struct settings, shot),
+    GROUP(behind_options, struct settings, shot.behind),
+    GROUP(light_options, struct settings, shot.depth),
     {.kind = OPTION_HEADING, .help = "The sheet"},
     {OPTION(OPTION_CHOICE, "--kind", "WHAT", struct settings, sheet.kind),
      .words = sheet_kind_words, .brief = "what differs from cell to cell",
@@ -48,14 +50,14 @@ static const struct option options[] = {
     {OPTION(OPTION_NUMBERS, "--region", "X,Y,W,H", struct settings, region), .least = 0,
      .greatest = REFOCUS_MAX_SIDE, .count = 4,
      .help = "cells show only this part of the picture, pixels"},
-    SHOT_LENS_OPTIONS(struct settings, shot),
-    SHOT_METHOD_OPTIONS(struct settings, shot),
+    GROUP(shot_lens_options, struct settings, shot),
+    GROUP(shot_method_options, struct settings, shot),
     {.kind = OPTION_HEADING, .help = "Running"},
     CONFIG_OPTIONS(struct settings, shot.config, shot.preset, NULL),
     SETTINGS_OPTION(struct settings, shot.load),
     SAVE_SETTINGS_OPTION(struct settings, shot.save),
-    RUN_OPTIONS(struct settings, shot.engine),
-    SHOT_PAPER_OPTIONS(struct settings, shot),
+    GROUP(run_options, struct settings, shot.engine),
+    GROUP(paper_options, struct settings, shot.engine),
     {.help = NULL},
 };
 
@@ -280,7 +282,7 @@ const struct command sheet_command = {
     .notes = "Lists have commas between their values, at most 16 of them. Each cell is rendered at "
              "full size and made smaller then: what it shows is what render makes.\n"
              "Ctrl-C ends with status 1 and leaves what was at OUT as it was.",
-    .options = options,
+    .table = options,
     .files_least = 1,
     .files_most = 1,
     .run = run,

@@ -237,7 +237,7 @@ const struct command stack_command = {
     .notes = "The camera has to be able to move its lens. It keeps still, and so does the scene: "
              "exposure and white balance are locked, the lens goes from far to near, and a frame "
              "is taken when it is where it was sent.",
-    .options = options,
+    .table = options,
     .files_least = 0,
     .files_most = 0,
     .run = run,

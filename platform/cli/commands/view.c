@@ -12,6 +12,7 @@
 #include "outputs/outputs.h"
 #include "shot/shot.h"
 #include "view/view.h"
+#include "shot/shot_options.h"
 
 struct settings {
     struct shot_settings shot;
@@ -30,17 +31,17 @@ static const struct option options[] = {
                   "the picture that 's' saves: " OUTPUT_PICTURES "; settings and depth get "
                   "names of it. Default: the photo's name with -refocused.jpg, here"),
     {.kind = OPTION_HEADING, .help = "Depth"},
-    SHOT_DEPTH_OPTIONS(struct settings, shot),
+    GROUP(shot_depth_options, struct settings, shot),
     {OPTION(OPTION_TEXT, "--strokes", "FILE.json", struct settings, strokes),
      .brief = "depth by strokes over a photo",
      .help = "depth by strokes, over that of the photo or over nothing; the page saves them",
      .elsewhere = true},
-    SHOT_LENS_OPTIONS(struct settings, shot),
-    SHOT_METHOD_OPTIONS(struct settings, shot),
+    GROUP(shot_lens_options, struct settings, shot),
+    GROUP(shot_method_options, struct settings, shot),
     {.kind = OPTION_HEADING, .help = "Running"},
     CONFIG_OPTIONS(struct settings, shot.config, shot.preset, "a look"),
     SETTINGS_OPTION(struct settings, shot.load),
-    RUN_OPTIONS(struct settings, shot.engine),
+    GROUP(run_options, struct settings, shot.engine),
     {.kind = OPTION_HEADING, .help = "Window"},
     {OPTION(OPTION_FLAG, "--page", NULL, struct settings, page),
      .brief = "the page of refocus serve in a browser",
@@ -62,7 +63,7 @@ static const struct option options[] = {
      .elsewhere = true},
     {OPTION(OPTION_NUMBER, "--seconds", "S", struct settings, seconds), .least = 0, .above = true,
      .greatest = 86400, .help = "close it after that time", .elsewhere = true},
-    SHOT_PAPER_OPTIONS(struct settings, shot),
+    GROUP(paper_options, struct settings, shot.engine),
     {.help = NULL},
 };
 
@@ -393,7 +394,7 @@ const struct command view_command = {
              "A tap is a new --focus-at: a plane of --tilt-angle then turns about it, "
              "and one of --focus-plane ends. What 's' saves is what render makes of "
              "the settings that 'j' saves; the window shows --quality auto by 64 rays.",
-    .options = options,
+    .table = options,
     .files_least = 1,
     .files_most = 1,
     .run = run,

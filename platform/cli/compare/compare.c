@@ -12,6 +12,8 @@
 #include "inputs/matte.h"
 #include "inputs/lens.h"
 #include "outputs/outputs.h"
+#include "inputs/depth_options.h"
+#include "shot/shot_options.h"
 
 struct settings {
     struct depth_settings depth;
@@ -28,14 +30,14 @@ static const struct option options[] = {
      .help = "the picture as it should be, of the photo's size"},
     OUTPUT_OPTION(struct settings, output,
                   "a picture of labelled crops where depth jumps: " OUTPUT_PICTURES),
-    DEPTH_FILE_OPTION(struct settings, depth),
-    DEPTH_UNIT_OPTIONS(struct settings, depth),
-    UPSAMPLE_OPTION(struct settings, depth),
-    LIMIT_OPTIONS(struct settings, depth.limits),
-    DEPTH_EDGES_OPTION(struct settings, depth),
-    ORIENT_DEPTH_OPTION(struct settings, depth),
-    MATTE_OPTION(struct settings, depth),
-    LIGHT_OPTIONS(struct settings, depth),
+    GROUP(depth_file_options, struct settings, depth),
+    GROUP(depth_unit_options, struct settings, depth),
+    GROUP(upsample_options, struct settings, depth),
+    GROUP(limit_options, struct settings, depth.limits),
+    GROUP(depth_edges_options, struct settings, depth),
+    GROUP(orient_depth_options, struct settings, depth),
+    GROUP(matte_options, struct settings, depth),
+    GROUP(light_options, struct settings, depth),
     {.kind = OPTION_HEADING, .help = "What is compared"},
     {OPTION(OPTION_TEXT, "--methods", "NAME[:OPTION[=VALUE]...],...", struct settings, methods),
      .brief = "such as sweep,search:rays=full:iterations=1",
@@ -47,14 +49,16 @@ static const struct option options[] = {
      .help = "pixels at each side that do not count, less than half the picture; default the "
              "blur radius"},
     {.kind = OPTION_HEADING, .help = "Focus and blur"},
-    FOCUS_OPTIONS(struct settings, lens),
-    LENS_OPTIONS(struct settings, lens),
+    GROUP(focus_options, struct settings, lens),
+    GROUP(lens_options, struct settings, lens),
     {.kind = OPTION_HEADING, .help = "Rendering"},
-    METHOD_OPTIONS(struct settings, engine, "standard"),
+    GROUP(ray_options, struct settings, engine),
+    QUALITY_OPTION(struct settings, engine.quality, "standard", NULL),
+    GROUP(rendering_options, struct settings, engine),
     {.kind = OPTION_HEADING, .help = "Running"},
-    RUN_OPTIONS(struct settings, engine),
-    REPEAT_OPTION(struct settings, engine),
-    PAPER_OPTIONS(struct settings, engine.papers, engine.method),
+    GROUP(run_options, struct settings, engine),
+    GROUP(repeat_options, struct settings, engine),
+    GROUP(paper_options, struct settings, engine),
     {.help = NULL},
 };
 
@@ -402,7 +406,7 @@ const struct command compare_command = {
              "is of the pixels within reach of a depth edge of two pixels of blur or "
              "more. The row 'photo' is the untouched photo. The times are of rendering "
              "alone; MiB is all that a renderer for the one method takes.",
-    .options = options,
+    .table = options,
     .files_least = 1,
     .files_most = 1,
     .run = run,

@@ -4,17 +4,20 @@
 #include <string.h>
 #include "commands/commands.h"
 #include "compare/compare_list.h"
+#include "shot/shot_options.h"
 
 enum { WORDS_MOST = 32 }; /* options for one method */
 
 static const struct option options[] = {
-    METHOD_OPTIONS(struct variant, settings, "standard"),
-    PAPER_OPTIONS(struct variant, settings.papers, settings.method),
+    GROUP(ray_options, struct variant, settings),
+    QUALITY_OPTION(struct variant, settings.quality, "standard", NULL),
+    GROUP(rendering_options, struct variant, settings),
+    GROUP(paper_options, struct variant, settings),
     {.help = NULL},
 };
 
 /* The command by which an entry's options are parsed. */
-static const struct command entry = {.name = "compare", .usage = "[options]", .options = options};
+static const struct command entry = {.name = "compare", .usage = "[options]", .table = options};
 
 static const char *method_word(const void *list, int i)
 {
@@ -35,20 +38,17 @@ static int find_method(const char *name, int *method)
                           nearest ? nearest : "", nearest ? "'?" : "");
 }
 
-static bool knows(const struct option *known, const char *word)
+static bool knows(const struct command *command, const char *word)
 {
-    const size_t length = strcspn(word, "=");
+    const char *value;
 
-    for (; known->help; known++)
-        if (known->name && strlen(known->name) == length && strncmp(known->name, word, length) == 0)
-            return true;
-    return false;
+    return options_at(command, word, &value) != NULL;
 }
 
 /* An option that all methods share is none of a single one. */
 static int check_own(char *word)
 {
-    if (knows(options, word) || !knows(compare_command.options, word))
+    if (knows(&entry, word) || !knows(&compare_command, word))
         return EXIT_DONE;
     word[strcspn(word, "=")] = '\0';
     return report_failure(EXIT_WRONG, word,

@@ -3,6 +3,18 @@
 #include "inputs/behind.h"
 #include "line/report.h"
 
+const struct option behind_options[] = {
+    {OPTION(OPTION_TEXT, "--behind", "IMAGE", struct behind_settings, image),
+     .needs = "--behind-depth",
+     .help = "what the photo hides, where that is known: a picture of the photo's size, which is "
+             "shown where a blurred foreground uncovers it"},
+    {OPTION(OPTION_TEXT, "--behind-depth", "MAP", struct behind_settings, depth),
+     .needs = "--behind",
+     .help = "depth map of IMAGE, of its size, in the units and between the distances of the "
+             "photo's; counts where it is farther than that"},
+    {.help = NULL},
+};
+
 static int check_size(const char *name, int width, int height, const struct refocus_image *photo)
 {
     if (width == photo->width && height == photo->height)

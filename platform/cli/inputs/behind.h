@@ -8,17 +8,8 @@ struct behind_settings {
     const char *image, *depth; /* files, or NULL */
 };
 
-/* Rows for tables of options, where the settings have a member of the type above. */
-#define BEHIND_OPTIONS(type, member)                                                               \
-    {OPTION(OPTION_TEXT, "--behind", "IMAGE", type, member.image), .needs = "--behind-depth",      \
-     .help = "what the photo hides, where that is known: a picture of the photo's size, which is " \
-             "shown where a blurred foreground uncovers it"},                                      \
-    {                                                                                              \
-        OPTION(OPTION_TEXT, "--behind-depth", "MAP", type, member.depth),                          \
-            .needs = "--behind",                                                                   \
-            .help = "depth map of IMAGE, of its size, in the units and between the distances of "  \
-                    "the photo's; counts where it is farther than that"                            \
-    }
+/* The options of struct behind_settings. */
+extern const struct option behind_options[];
 
 /* The layer; struct_size 0: there is none. */
 struct behind {

@@ -2,6 +2,23 @@
  * hostile. */
 #include "inputs/limits.h"
 
+const struct option limit_options[] = {
+    {OPTION(OPTION_INTEGER, "--max-side", "N", struct limit_settings, side), .elsewhere = true,
+     .least = 1, .greatest = REFOCUS_MAX_SIDE,
+     .help = "refuse picture files with more pixels a side; default 32768"},
+    {OPTION(OPTION_INTEGER, "--max-pixels", "N", struct limit_settings, pixels), .elsewhere = true,
+     .least = 1, .greatest = 4294836225.0, /* REFOCUS_MAX_SIDE squared */
+     .help = "refuse those with more pixels; default 201326592, 16384 x 12288"},
+    {OPTION(OPTION_FLAG, "--raw-preview", NULL, struct limit_settings, raw_preview),
+     .elsewhere = true,
+     .help =
+         "of a camera raw its preview, the JPEG in it, instead of the photo that libraw develops"},
+    {OPTION(OPTION_INTEGER, "--max-memory", "MIB", struct limit_settings, mebibytes),
+     .elsewhere = true, .least = 1, .greatest = 1e9,
+     .help = "refuse those that take more memory to read, in MiB; default half the machine's"},
+    {.help = NULL},
+};
+
 static struct refocus_read_limits taken = {.struct_size = sizeof(struct refocus_read_limits)};
 
 /* NAN is less than nothing here, too. */

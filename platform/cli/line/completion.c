@@ -59,7 +59,7 @@ static void print_subcommands(const struct command *const *commands)
 static void print_bash_command(const struct command *command)
 {
     printf("    '%s '*) options='", command->name);
-    for (const struct option *option = command->options; option->help; option++)
+    for (const struct option *option = options_of(command); option->help; option++)
         if (option->kind != OPTION_HEADING)
             printf("%s ", option->name);
     puts("--help --help-all' ;;");
@@ -67,7 +67,7 @@ static void print_bash_command(const struct command *command)
 
 static void print_bash_words(const struct command *command)
 {
-    for (const struct option *option = command->options; option->help; option++) {
+    for (const struct option *option = options_of(command); option->help; option++) {
         if (option->kind == OPTION_HEADING || !has_words(option))
             continue;
         printf("    '%s %s') words='", command->name, option->name);
@@ -146,7 +146,7 @@ static void print_zsh(const struct command *const *commands, const char *const *
          "        return\n    fi\n    shift words\n    ((CURRENT--))\n    case $words[1] in");
     for (int i = 0; commands[i]; i++) {
         printf("    %s)\n        _arguments \\\n", commands[i]->name);
-        for (const struct option *option = commands[i]->options; option->help; option++)
+        for (const struct option *option = options_of(commands[i]); option->help; option++)
             if (option->kind != OPTION_HEADING)
                 print_zsh_option(option);
         puts("        '(-h --help)'{-h,--help}'[the options that most need]' \\\n"
@@ -196,7 +196,7 @@ static void print_fish(const struct command *const *commands, const char *const 
     puts(
         "'\ncomplete -c refocus -n '__fish_seen_subcommand_from completion' -f -a 'bash zsh fish'");
     for (int i = 0; commands[i]; i++) {
-        for (const struct option *option = commands[i]->options; option->help; option++)
+        for (const struct option *option = options_of(commands[i]); option->help; option++)
             if (option->kind != OPTION_HEADING)
                 print_fish_option(commands[i], option);
         printf("complete -c refocus -n '__fish_seen_subcommand_from %s' -s h -l help -d 'the "

@@ -104,7 +104,7 @@ void options_print_help(const struct command *command)
 {
     print_usage(command);
     putchar('\n');
-    for (const struct option *option = command->options; option->help; option++)
+    for (const struct option *option = options_of(command); option->help; option++)
         if (option->brief)
             print_brief(option);
     printf("All options, with ranges and defaults: refocus %s --help-all\n", command->name);
@@ -113,7 +113,7 @@ void options_print_help(const struct command *command)
 void options_print_all_help(const struct command *command)
 {
     print_usage(command);
-    for (const struct option *option = command->options; option->help; option++)
+    for (const struct option *option = options_of(command); option->help; option++)
         print_option(option);
     printf("  -h, --help%*sthe options that most need\n", HELP_COLUMN - 12, "");
     printf("  --help-all%*sthis text\n", HELP_COLUMN - 12, "");

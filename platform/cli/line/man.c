@@ -146,7 +146,7 @@ void man_print_command(const struct command *command, const struct command *cons
         print_line(command->notes);
     }
     man_print_section("OPTIONS");
-    for (const struct option *option = command->options; option->help; option++)
+    for (const struct option *option = options_of(command); option->help; option++)
         print_option(option);
     man_print_item("--help", "", "the options that most need; also -h");
     man_print_item("--help-all", "", "all of them");

@@ -8,6 +8,55 @@
 
 enum { LONGEST_WORD = 63 };
 
+/* A table with the rows of its groups in their places. */
+struct flat {
+    const struct option *table;
+    struct flat *next;
+    struct option rows[];
+};
+
+/* Copies rows, which lie at `base` in the settings, and those of groups, to `to`; where that is
+ * NULL they are only counted. */
+static size_t copy_rows(struct option *to, const struct option *from, size_t base)
+{
+    size_t count = 0;
+
+    for (; from->help; from++) {
+        if (from->rows) {
+            count += copy_rows(to ? to + count : NULL, from->rows, base + from->offset);
+            continue;
+        }
+        if (to) {
+            to[count] = *from;
+            to[count].offset += base;
+            to[count].of_offset += base;
+        }
+        count++;
+    }
+    return count;
+}
+
+const struct option *options_of(const struct command *command)
+{
+    static struct flat *first;
+    struct flat *flat = first;
+
+    while (flat && flat->table != command->table)
+        flat = flat->next;
+    if (flat)
+        return flat->rows;
+    flat = calloc(1, sizeof *flat + (copy_rows(NULL, command->table, 0) + 1) * sizeof *flat->rows);
+    if (!flat) {
+        report_failure(EXIT_FAILED, command->name, "not enough memory for its options");
+        exit(EXIT_FAILED);
+    }
+    copy_rows(flat->rows, command->table, 0);
+    flat->table = command->table;
+    flat->next = first;
+    first = flat;
+    return flat->rows;
+}
+
 /* Edits (insert, delete, replace, swap neighbours) from one word to another. */
 static int edits(const char *a, const char *b)
 {
@@ -245,7 +294,7 @@ const struct option *options_at(const struct command *command, const char *argum
     const size_t length = strcspn(argument, "=");
 
     *value = NULL;
-    for (const struct option *option = command->options; option->help; option++) {
+    for (const struct option *option = options_of(command); option->help; option++) {
         if (option->kind == OPTION_HEADING)
             continue;
         if (option->letter && argument[0] == '-' && argument[1] == option->letter) {
@@ -262,7 +311,7 @@ const struct option *options_at(const struct command *command, const char *argum
 
 const struct option *options_find(const struct command *command, const char *name)
 {
-    for (const struct option *option = command->options; option->help; option++)
+    for (const struct option *option = options_of(command); option->help; option++)
         if (option->kind != OPTION_HEADING && strcmp(option->name, name) == 0)
             return option;
     return NULL;
@@ -270,5 +319,5 @@ const struct option *options_find(const struct command *command, const char *nam
 
 const char *options_nearest_name(const struct command *command, const char *name)
 {
-    return options_nearest(name, option_name, command->options);
+    return options_nearest(name, option_name, options_of(command));
 }

@@ -24,6 +24,7 @@ enum option_kind {
 };
 
 struct option {
+    const struct option *rows; /* a group of rows, whose settings lie at `offset`; else NULL */
     enum option_kind kind;
     char letter;            /* short form, or 0 */
     const char *name;       /* with its dashes */
@@ -74,16 +75,30 @@ struct option {
 #define OPTION(kind_, name_, argument_, type, field)                                               \
     .kind = kind_, .name = name_, .argument = argument_, .offset = offsetof(type, field)
 
+/* A group: the rows of a struct that is a member of the settings, or of the same settings. */
+#define GROUP(rows_, type, field)                                                                  \
+    {                                                                                              \
+        .rows = rows_, .offset = offsetof(type, field), .help = ""                                 \
+    }
+#define GROUP_HERE(rows_)                                                                          \
+    {                                                                                              \
+        .rows = rows_, .help = ""                                                                  \
+    }
+
 struct command {
     const char *name;
-    const char *usage;            /* words behind the name */
-    const char *summary;          /* one line */
-    const char *notes;            /* paragraphs after the options, or NULL */
-    const struct option *options; /* ended by a row whose help is NULL */
-    int files_least, files_most;  /* number of file names that the command takes */
-    const char *too_many;         /* says what to do about more of them; NULL: give its usage */
+    const char *usage;           /* words behind the name */
+    const char *summary;         /* one line */
+    const char *notes;           /* paragraphs after the options, or NULL */
+    const struct option *table;  /* ended by a row whose help is NULL; read by options_of() */
+    int files_least, files_most; /* number of file names that the command takes */
+    const char *too_many;        /* says what to do about more of them; NULL: give its usage */
     int (*run)(int argc, char **argv);
 };
+
+/* The rows of a command's table, with those of groups in their places, in the settings of the
+ * command; ended by a row whose help is NULL. They live as long as the program. */
+const struct option *options_of(const struct command *command);
 
 /* Parsing returns this beside exit codes: go on. */
 enum { OPTIONS_PARSED = -1 };

@@ -45,7 +45,7 @@ static int load(const struct command *command, const struct option *row, int arg
 void options_clear_rivals(const struct command *command, const struct option *option,
                           void *settings)
 {
-    for (const struct option *rival = command->options; rival->help && option->group; rival++) {
+    for (const struct option *rival = options_of(command); rival->help && option->group; rival++) {
         double *value = (double *)(void *)((char *)settings + rival->offset);
 
         if (rival != option && rival->group && strcmp(rival->group, option->group) == 0)
@@ -59,10 +59,12 @@ static int load_files(const struct command *command, int argc, char **argv, void
 {
     int status = OPTIONS_PARSED;
 
-    for (const struct option *row = command->options; row->help && status == OPTIONS_PARSED; row++)
+    for (const struct option *row = options_of(command); row->help && status == OPTIONS_PARSED;
+         row++)
         if (row->load)
             status = load(command, row, argc, argv, settings);
-    for (const struct option *row = command->options; row->help && status == OPTIONS_PARSED; row++)
+    for (const struct option *row = options_of(command); row->help && status == OPTIONS_PARSED;
+         row++)
         if (row->group && options_given(command, argc, argv, row->name))
             options_clear_rivals(command, row, settings);
     return status;

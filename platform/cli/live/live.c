@@ -253,7 +253,7 @@ const struct command live_command = {
              "within half a frame; without a pair the newest depth serves, or, with "
              "--frames-policy every, the nearest in time. After a fault the camera is opened "
              "again; platform/README.md lists faults and outcomes. Ctrl-C ends it with status 0.",
-    .options = live_options,
+    .table = live_options,
     .files_least = 0,
     .files_most = 0,
     .run = run,

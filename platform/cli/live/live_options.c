@@ -6,6 +6,8 @@
 #include "live/live_look.h"
 #include "live/live_options.h"
 #include "live/live_stack.h"
+#include "inputs/depth_options.h"
+#include "shot/shot_options.h"
 
 static const struct option_word policy_words[] = {
     {"newest", "a new frame replaces one that waits: least delay"},
@@ -40,13 +42,13 @@ const struct option live_options[] = {
              "N-th picture; or stack:[steps=N][,far=P,near=P][,average=N][,settle=MS], for still "
              "scenes: the camera moves its lens, and a focus stack becomes the depth, at the "
              "beginning and at each command 'stack'; the parts are the options of refocus stack"},
-    DEPTH_UNIT_OPTIONS(struct live_settings, depth),
-    INVALID_OPTION(struct live_settings, depth),
+    GROUP(depth_unit_options, struct live_settings, depth),
+    GROUP(invalid_options, struct live_settings, depth),
     {OPTION(OPTION_NUMBER, "--steady", "S", struct live_settings, steady), .least = 0,
      .greatest = 0.95, .brief = "calm the flicker of depth: 0 to 0.95",
      .help = "calm the flicker of depth: share of the past where nothing moves, 0 (default) "
              "to 0.95"},
-    UPSAMPLE_OPTION(struct live_settings, depth),
+    GROUP(upsample_options, struct live_settings, depth),
     {OPTION(OPTION_CHOICE, "--depth-edges", "HOW", struct live_settings, depth.edges),
      .words = edges_words,
      .help = "the edges of the depth, steady from frame to frame; default as-given, which takes no "
@@ -115,12 +117,14 @@ const struct option live_options[] = {
      .least = 0, .above = true, .greatest = 10000,
      .help = "width of the sensor area that the picture shows, with --focal-length; default: "
              "36 mm for the larger side of the picture"},
-    CONTROL_OPTIONS(struct live_settings, engine.controls),
-    BOKEH_OPTIONS(struct live_settings, engine.bokeh, engine.method),
+    GROUP(control_options, struct live_settings, engine),
+    GROUP(bokeh_options, struct live_settings, engine),
     {.kind = OPTION_HEADING, .help = "Rendering"},
-    METHOD_OPTION(struct live_settings, engine),
-    RAY_OPTIONS(struct live_settings, engine, "standard", quality_summary),
-    BLEND_OPTIONS(struct live_settings, engine),
+    GROUP(method_options, struct live_settings, engine),
+    GROUP(ray_options, struct live_settings, engine),
+    QUALITY_OPTION(struct live_settings, engine.quality, "standard", quality_summary),
+    GROUP(search_options, struct live_settings, engine),
+    GROUP(blend_options, struct live_settings, engine),
     {OPTION(OPTION_INTEGER, "--threads", "N", struct live_settings, engine.threads), .greatest = 64,
      .help = "0 = one for each processor, the default; never changes a picture"},
     {OPTION(OPTION_CHOICE, "--cpu", "NAME", struct live_settings, engine.cpu),
@@ -152,7 +156,7 @@ const struct option live_options[] = {
     {OPTION(OPTION_FLAG, "--json", NULL, struct live_settings, engine.json),
      .brief = "print a report as one JSON object",
      .help = "print a report as one JSON object; times in milliseconds"},
-    PAPER_OPTIONS(struct live_settings, engine.papers, engine.method),
+    GROUP(paper_options, struct live_settings, engine),
     {.help = NULL},
 };
 

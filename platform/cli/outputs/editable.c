@@ -5,6 +5,17 @@
 #include "outputs/outputs.h"
 #include "line/report.h"
 
+const struct option keeping_options[] = {
+    {OPTION(OPTION_FLAG, "--editable", NULL, struct keep_settings, editable), .elsewhere = true,
+     .help = "keep the all-in-focus original and its depth in the result, which every command then "
+             "starts from; the default for a JPEG or HEIC made of one of them"},
+    {OPTION(OPTION_FLAG, "--no-editable", NULL, struct keep_settings, no_editable),
+     .elsewhere = true, .help = "keep neither: the file is smaller"},
+    {OPTION(OPTION_FLAG, "--strip", NULL, struct keep_settings, strip), .elsewhere = true,
+     .help = "keep nothing of the photo's file but its colour profile"},
+    {.help = NULL},
+};
+
 /* Whether the format holds original and depth. */
 static bool is_holder(const char *name)
 {

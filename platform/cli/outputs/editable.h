@@ -10,17 +10,8 @@ struct keep_settings {
     bool strip, editable, no_editable;
 };
 
-/* Rows for tables of options, where the settings have a member of the type above. */
-#define KEEP_OPTIONS(type, member)                                                                 \
-    {OPTION(OPTION_FLAG, "--editable", NULL, type, member.editable), .elsewhere = true,            \
-     .help = "keep the all-in-focus original and its depth in the result, which every command "    \
-             "then starts from; the default for a JPEG or HEIC made of one of them"},              \
-        {OPTION(OPTION_FLAG, "--no-editable", NULL, type, member.no_editable), .elsewhere = true,  \
-         .help = "keep neither: the file is smaller"},                                             \
-    {                                                                                              \
-        OPTION(OPTION_FLAG, "--strip", NULL, type, member.strip),                                  \
-            .elsewhere = true, .help = "keep nothing of the photo's file but its colour profile"   \
-    }
+/* The options of struct keep_settings. */
+extern const struct option keeping_options[];
 
 /* Check before the work that they go together with each other, the name of the output, and a
  * picture that is the whole photo, refocused, or is not. */

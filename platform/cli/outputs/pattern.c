@@ -64,7 +64,7 @@ static const char *word_at(const void *list, int i)
 
 static int unknown(const char *where, const char *word, const struct command *command)
 {
-    const char *nearest = options_nearest(word, word_at, command->options);
+    const char *nearest = options_nearest(word, word_at, options_of(command));
 
     if (nearest)
         return report_failure(EXIT_WRONG, where,

@@ -12,6 +12,22 @@
 #include "outputs/resize.h"
 #include "outputs/result.h"
 
+const struct option result_options[] = {
+    {OPTION(OPTION_CHOICE, "--format", "NAME", struct result_settings, format), .elsewhere = true,
+     .choice = result_format,
+     .help = "of standard output (-o -), and {ext} of names; default the photo's own"},
+    {OPTION(OPTION_TEXT, "--resize", "SIZE", struct result_settings, resize), .elsewhere = true,
+     .brief = "size of the picture: W, WxH or N%",
+     .help = "make the picture smaller: W pixels wide, to fit into WxH, or N% of its sides; never "
+             "larger than it is. Everything else is in pixels of the photo; the mean of areas is "
+             "taken in linear light"},
+    {OPTION(OPTION_INTEGER, "--jpeg-quality", "Q", struct result_settings, quality),
+     .elsewhere = true, .least = 1, .greatest = 100,
+     .help = "of JPEG, default 95, or HEIC, default 90. Below 90 the colour of a JPEG is stored at "
+             "half the size"},
+    {.help = NULL},
+};
+
 const char *result_format(uint32_t index)
 {
     const char *ending = index == 0 ? NULL : refocus_file_ending(0, (int)index - 1);

@@ -23,22 +23,8 @@ struct result_settings {
 /* "auto", and the endings of pictures without their dots; NULL behind the last. */
 const char *result_format(uint32_t index);
 
-/* Rows of a table of options. */
-#define RESULT_OPTIONS(type, member)                                                               \
-    {OPTION(OPTION_CHOICE, "--format", "NAME", type, member.format), .elsewhere = true,            \
-     .choice = result_format,                                                                      \
-     .help = "of standard output (-o -), and {ext} of names; default the photo's own"},            \
-        {OPTION(OPTION_TEXT, "--resize", "SIZE", type, member.resize), .elsewhere = true,          \
-         .brief = "size of the picture: W, WxH or N%",                                             \
-         .help = "make the picture smaller: W pixels wide, to fit into WxH, or N% of its sides; "  \
-                 "never larger than it is. Everything else is in pixels of the photo; the mean "   \
-                 "of areas is taken in linear light"},                                             \
-    {                                                                                              \
-        OPTION(OPTION_INTEGER, "--jpeg-quality", "Q", type, member.quality),                       \
-            .elsewhere = true, .least = 1, .greatest = 100,                                        \
-            .help = "of JPEG, default 95, or HEIC, default 90. Below 90 the colour of a JPEG is "  \
-                    "stored at half the size"                                                      \
-    }
+/* The options of struct result_settings. */
+extern const struct option result_options[];
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 

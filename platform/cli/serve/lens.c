@@ -2,18 +2,19 @@
  * name files. */
 #include <string.h>
 #include "serve/serving.h"
+#include "shot/shot_options.h"
 
 struct lens {
     struct shot_settings shot;
 };
 
 static const struct option options[] = {
-    SHOT_LENS_OPTIONS(struct lens, shot),
-    SHOT_METHOD_OPTIONS(struct lens, shot),
+    GROUP(shot_lens_options, struct lens, shot),
+    GROUP(shot_method_options, struct lens, shot),
     {.help = NULL},
 };
 
-const struct command serve_lens = {.name = "settings", .usage = "", .options = options};
+const struct command serve_lens = {.name = "settings", .usage = "", .table = options};
 
 /* Anything else would be taken for the name of a picture. */
 static bool is_shape(const char *shape)

@@ -268,7 +268,7 @@ char *settings_dump(const struct command *command, const void *settings)
     char *text = NULL;
     int digits = 15;
 
-    for (const struct option *option = command->options; option->help && !failed; option++) {
+    for (const struct option *option = options_of(command); option->help && !failed; option++) {
         json_t *json = option->elsewhere ? NULL : member_of(option, settings, &digits, &failed);
 
         if (json && json_object_set_new(root, option->name + 2, json) != 0)

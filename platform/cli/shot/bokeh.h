@@ -28,52 +28,6 @@ const char *bokeh_preset_summary(uint32_t index);
 const char *bokeh_figure_name(uint32_t index);
 const char *bokeh_figure_summary(uint32_t index);
 
-#define BOKEH_NUMBER(type, member, name_, argument_, field_, least_, greatest_, help_)             \
-    {                                                                                              \
-        OPTION(OPTION_NUMBER, name_, argument_, type, member.field_),                              \
-            .least = least_, .greatest = greatest_, .help = help_                                  \
-    }
-
-/* Rows of a table of options; `method` is the member with the method. */
-#define BOKEH_OPTIONS(type, member, method)                                                        \
-    {.kind = OPTION_HEADING, .help = "Bokeh"},                                                     \
-        {OPTION(OPTION_CHOICE, "--bokeh", "NAME", type, member.preset),                            \
-         .choice = bokeh_preset_name, .summary = bokeh_preset_summary,                             \
-         .brief = "the look of a lens", .help = "presets; what else is given overrules them"},     \
-        BOKEH_NUMBER(type, member, "--curvature", "C", curvature, 0, 1,                            \
-                     "of the blades of a polygon: 0 = straight, the default, 1 = arcs of "         \
-                     "the circle"),                                                                \
-        {OPTION(OPTION_NUMBER, "--open-f-number", "N", type, member.open_f_number), .least = 0,    \
-         .above = true, .greatest = 1000,                                                          \
-         .help = "f-number of the lens wide open, where it is round: a polygon shows as "          \
-                 "--f-number closes it"},                                                          \
-        BOKEH_NUMBER(type, member, "--squeeze", "Q", squeeze, 0.5, 2,                              \
-                     "width / height of the discs, below 1 as of an anamorphic lens; default 1"),  \
-        BOKEH_NUMBER(type, member, "--ring", "R", ring, 0, 0.9,                                    \
-                     "radius of a stop in the middle, as of a mirror lens; default 0"),            \
-        BOKEH_NUMBER(type, member, "--edge", "E", edge, -1, 1,                                     \
-                     "behind the focus: 1 = bubbles with bright edges, -1 = discs that fade out; " \
-                     "before it the contrary; default 0"),                                         \
-        BOKEH_NUMBER(type, member, "--edge-before", "E", edge_before, -1, 1,                       \
-                     "the edge before the focus, when it is not the contrary"),                    \
-        BOKEH_NUMBER(type, member, "--cat-eye", "A", cat_eye, 0, 0.9,                              \
-                     "how much narrower discs are in the corners; default 0"),                     \
-        BOKEH_NUMBER(type, member, "--fringe", "A", fringe, -0.5, 0.5,                             \
-                     "edges of colour: green behind the focus and magenta before it, or "          \
-                     "the contrary; default 0"),                                                   \
-        {OPTION(OPTION_NUMBER, "--grain", "G", type, member.grain), .least = 0, .greatest = 4,     \
-         .word = "off",                                                                            \
-         .help = "the photo's noise put back into what is blurred: 1 = as much as was measured, "  \
-                 "off = 0; default 1 for stills of 8 bits, 0 for others and for live; --seed "     \
-                 "chooses it, in live one more for each frame"},                                   \
-    {                                                                                              \
-        OPTION(OPTION_NUMBER, "--highlight-stops", "S", type, member.highlight_stops),             \
-            .least = 0, .greatest = 4,                                                             \
-            .help = "sweep, search: light given back to small clipped highlights, in stops, for "  \
-                    "--highlights 2^S",                                                            \
-            OF_METHODS(type, method, OF_SWEEP | OF_SEARCH)                                         \
-    }
-
 /* These return exit codes and print why it is not EXIT_DONE. */
 
 /* Make the aperture of --aperture and these. */

@@ -1,6 +1,7 @@
 /* shot.c: one photo is read and prepared, with its lens setting in engine.params. */
 #include <stdlib.h>
 #include <string.h>
+#include "inputs/depth_options.h"
 #include "inputs/made.h"
 #include "inputs/matte.h"
 #include "line/interrupt.h"
@@ -8,6 +9,19 @@
 #include "shot/shot.h"
 #include "shot/spool.h"
 #include "shot/strips.h"
+
+const struct option shot_depth_options[] = {
+    GROUP(depth_file_options, struct shot_settings, depth),
+    GROUP(depth_unit_options, struct shot_settings, depth),
+    GROUP(depth_ways_options, struct shot_settings, depth),
+    GROUP(repair_options, struct shot_settings, depth),
+    GROUP(upsample_options, struct shot_settings, depth),
+    GROUP(depth_edges_options, struct shot_settings, depth),
+    GROUP(orient_depth_options, struct shot_settings, depth),
+    GROUP(matte_options, struct shot_settings, depth),
+    GROUP(limit_options, struct shot_settings, depth.limits),
+    {.help = NULL},
+};
 
 int shot_aim(const struct input *input, const struct lens_settings *lens,
              const struct controls *controls, const uint16_t *disparity,

@@ -25,22 +25,8 @@ struct shot_settings {
         .engine = ENGINE_SETTINGS_NONE(QUALITY_AUTO, 1)                                            \
     }
 
-/* Rows of tables of options, for settings with a member of that type. */
-#define SHOT_DEPTH_OPTIONS(type, member)                                                           \
-    DEPTH_FILE_OPTION(type, member.depth), DEPTH_UNIT_OPTIONS(type, member.depth),                 \
-        DEPTH_WAYS_OPTIONS(type, member.depth), REPAIR_OPTIONS(type, member.depth),                \
-        UPSAMPLE_OPTION(type, member.depth), DEPTH_EDGES_OPTION(type, member.depth),               \
-        ORIENT_DEPTH_OPTION(type, member.depth), MATTE_OPTION(type, member.depth),                 \
-        LIMIT_OPTIONS(type, member.depth.limits)
-#define SHOT_LENS_OPTIONS(type, member)                                                            \
-    {.kind = OPTION_HEADING, .help = "Focus and blur"}, FOCUS_OPTIONS(type, member.lens),          \
-        LENS_OPTIONS(type, member.lens), CONTROL_OPTIONS(type, member.engine.controls),            \
-        BOKEH_OPTIONS(type, member.engine.bokeh, member.engine.method)
-#define SHOT_METHOD_OPTIONS(type, member)                                                          \
-    {.kind = OPTION_HEADING, .help = "Rendering"}, METHOD_OPTION(type, member.engine),             \
-        METHOD_OPTIONS(type, member.engine, "auto")
-#define SHOT_PAPER_OPTIONS(type, member)                                                           \
-    PAPER_OPTIONS(type, member.engine.papers, member.engine.method)
+/* The options of its depth are here; those of lens and method stand in shot_options.h. */
+extern const struct option shot_depth_options[];
 
 struct shot {
     struct input input;

@@ -5,17 +5,6 @@
 #include "inputs/read_input.h"
 #include "shot/engine.h"
 
-/* Rows for tables of options, for settings with members of engine_settings. */
-#define STRIPS_OPTION(type, member)                                                                \
-    {                                                                                              \
-        OPTION(OPTION_FLAG, "--low-memory", NULL, type, member.in_strips),                         \
-            .help = "render in strips: a fourth of the memory, and longer. Thin structures are "   \
-                    "gathered by rays, what is hidden is smooth, no matte is used, of a photo 8 "  \
-                    "bits are taken, and in photos of more than 4 megapixels edges of the depth "  \
-                    "map are placed at a smaller size. The picture waits in a temporary file in "  \
-                    "TMPDIR or /var/tmp. Where there is too little memory it is done by itself"    \
-    }
-
 /* Refuse options that cannot be met in strips, and leave out what was not asked for; an exit
  * code, and prints why. */
 int strips_check(const struct engine_settings *engine, struct depth_settings *depth, bool behind);

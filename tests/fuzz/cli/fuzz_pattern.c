@@ -34,7 +34,7 @@ static int count(const char *text, char of)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    const struct command command = {.name = "fuzz", .options = options};
+    const struct command command = {.name = "fuzz", .table = options};
     struct values values = {size % 3 ? 1.5 : (double)NAN, "text"};
     char *text = malloc(size + 1), *pattern, *name = NULL;
     struct pattern_values given = {&command, &values, text, "jpg", (int)(size % 7) + 1, 7};

@@ -28,7 +28,7 @@ static const struct option options[] = {
      .elsewhere = true},
     {.help = NULL},
 };
-const struct command fuzz_command = {.name = "fuzz", .usage = "", .options = options};
+const struct command fuzz_command = {.name = "fuzz", .usage = "", .table = options};
 
 static bool in(double value, double least, double most)
 {
