@@ -1,6 +1,5 @@
 /* lens.c: settings that come from the page: the members of a file of settings, but for those that
  * name files. */
-#include <string.h>
 #include "serve/serving.h"
 #include "shot/shot_options.h"
 
@@ -16,31 +15,13 @@ static const struct option options[] = {
 
 const struct command serve_lens = {.name = "settings", .usage = "", .table = options};
 
-/* Anything else would be taken for the name of a picture. */
-static bool is_shape(const char *shape)
-{
-    static const char polygon[] = "polygon:";
-    const char *name;
-
-    if (!shape || strcmp(shape, "disc") == 0 || strncmp(shape, polygon, sizeof polygon - 1) == 0)
-        return true;
-    for (uint32_t i = 0; (name = bokeh_figure_name(i)) != NULL; i++) {
-        const size_t length = strlen(name);
-
-        if (strncmp(shape, name, length) == 0 &&
-            (shape[length] == '\0' || strcmp(name, "star") == 0))
-            return shape[length] == '\0' || shape[length] == ':';
-    }
-    return false;
-}
-
 static int check(struct shot_settings *settings)
 {
     const struct engine_settings *const engine = &settings->engine;
 
     if (engine->controls.focus_map || engine->controls.sharp_mask)
         return report_failure(EXIT_WRONG, "settings", "one of them names a file; leave it out");
-    if (!is_shape(engine->aperture))
+    if (engine->aperture && !bokeh_is_shape(engine->aperture))
         return report_failure(EXIT_WRONG, "settings: aperture",
                               "give disc, polygon:BLADES, polygon:BLADES:DEGREES, heart or star");
     if (refocus_method_traits((uint32_t)engine->method) & REFOCUS_METHOD_WHOLE_PHOTO)

@@ -75,6 +75,8 @@ static const char *shape_of(const struct bokeh_settings *settings, const char *s
     return shape ? shape : presets[settings->preset].aperture;
 }
 
+#define POLYGON "polygon:"
+
 /* "polygon:6" or "polygon:6:15". */
 static int parse_polygon(const char *shape, struct refocus_aperture_params *params)
 {
@@ -83,8 +85,8 @@ static int parse_polygon(const char *shape, struct refocus_aperture_params *para
     char *end;
 
     errno = 0;
-    blades = strtol(shape + strlen("polygon:"), &end, 10);
-    if (errno == 0 && end != shape + strlen("polygon:") && *end == ':') {
+    blades = strtol(shape + strlen(POLYGON), &end, 10);
+    if (errno == 0 && end != shape + strlen(POLYGON) && *end == ':') {
         const char *number = end + 1;
 
         degrees = number[strspn(number, "+-.0123456789")] == '\0' ? strtod(number, &end) : NAN;
@@ -168,13 +170,19 @@ static int read_mask(const char *file, struct refocus_aperture_params *params)
     return EXIT_DONE;
 }
 
+bool bokeh_is_shape(const char *shape)
+{
+    return strcmp(shape, "disc") == 0 || strncmp(shape, POLYGON, strlen(POLYGON)) == 0 ||
+           find_figure(shape);
+}
+
 static int parse_shape(const char *shape, struct refocus_aperture_params *params)
 {
     const struct figure *figure = find_figure(shape);
 
     if (strcmp(shape, "disc") == 0)
         return EXIT_DONE;
-    if (strncmp(shape, "polygon:", strlen("polygon:")) == 0)
+    if (strncmp(shape, POLYGON, strlen(POLYGON)) == 0)
         return parse_polygon(shape, params);
     return figure ? parse_figure(figure, shape, params) : read_mask(shape, params);
 }

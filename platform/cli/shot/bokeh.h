@@ -28,6 +28,9 @@ const char *bokeh_preset_summary(uint32_t index);
 const char *bokeh_figure_name(uint32_t index);
 const char *bokeh_figure_summary(uint32_t index);
 
+/* Whether --aperture takes it for a shape: anything else names a picture. */
+bool bokeh_is_shape(const char *shape);
+
 /* These return exit codes and print why it is not EXIT_DONE. */
 
 /* Make the aperture of --aperture and these. */
