@@ -1,9 +1,5 @@
 /* stack_shots.c: a camera moves its lens and photographs a focus stack, into a folder or for
  * whoever takes the pictures.
- *
- * Time is that of the frames' own stamps, so a scripted camera takes none. The lens has arrived
- * when the position that it reports is the one asked for, or when it has not changed for a second;
- * a lens that reports nothing has arrived after the time to settle.
  */
 #include "commands/stack_shots.h"
 #include <errno.h>
@@ -14,31 +10,13 @@
 #include <string.h>
 #include <unistd.h>
 #include <refocus/platform/convert.h>
-#include "inputs/read_input.h"
 #include "line/interrupt.h"
 #include "line/report.h"
 #include "outputs/outputs.h"
 
-enum {
-    WAIT_MS = 3000,     /* for a frame */
-    MEASURE_MS = 1000,  /* the camera finds its exposure in that time */
-    RESTING_MS = 1000,  /* a lens that has not moved for so long has stopped */
-    LONGEST_MS = 20000, /* for one position */
-    MOST_BROKEN = 100,  /* frames in a row */
-};
+enum { MEASURE_MS = 1000 }; /* the camera finds its exposure in that time */
 
 /* ----- plan ----- */
-
-static int fail(const struct shots *shots, int status, const struct refocus_reason *reason)
-{
-    if (status == REFOCUS_ERR_CANCELLED && shots->ends_quietly)
-        return EXIT_FAILED;
-    if (status == REFOCUS_ERR_CANCELLED)
-        return report_failure(EXIT_FAILED, shots->settings->camera,
-                              "interrupted; nothing was written");
-    return report_failure(input_exit_code(status), shots->settings->camera, "%s",
-                          reason->text[0] ? reason->text : refocus_strerror(status));
-}
 
 static int plan_range(struct shots *shots)
 {
@@ -81,7 +59,7 @@ int shots_plan(struct shots *shots, const struct shots_settings *settings,
     if (status == REFOCUS_OK)
         status = refocus_source_get_lens(shots->source, &shots->lens, &reason);
     if (status != REFOCUS_OK)
-        return fail(shots, status, &reason);
+        return shots_fail(shots, status, &reason);
     if (!(shots->lens.modes >> REFOCUS_SOURCE_FOCUS_FIXED & 1))
         return report_failure(EXIT_FAILED, settings->camera,
                               "its lens cannot be moved; focus by hand, and give the pictures to "
@@ -92,113 +70,6 @@ int shots_plan(struct shots *shots, const struct shots_settings *settings,
 void shots_end(struct shots *shots)
 {
     refocus_source_close(&shots->source);
-}
-
-/* ----- frames ----- */
-
-/* The next frame that is whole. */
-static int next_frame(struct shots *shots, const struct refocus_frame **frame)
-{
-    struct refocus_reason reason = {""};
-
-    for (int i = 0; i < MOST_BROKEN; i++) {
-        const int status = refocus_source_wait(shots->source, WAIT_MS, frame, &reason);
-
-        if (status != REFOCUS_OK)
-            return fail(shots, status, &reason);
-        if (!((*frame)->flags & REFOCUS_FRAME_CORRUPT))
-            return EXIT_DONE;
-        refocus_source_release(shots->source, *frame);
-    }
-    return report_failure(EXIT_FAILED, shots->settings->camera, "all of its frames are damaged");
-}
-
-/* The time of the next frame in milliseconds; the frame itself is not wanted. */
-static int pass_frame(struct shots *shots, double *ms)
-{
-    const struct refocus_frame *frame;
-    const int status = next_frame(shots, &frame);
-
-    if (status == EXIT_DONE) {
-        *ms = (double)frame->timestamp_ns * 1e-6;
-        refocus_source_release(shots->source, frame);
-    }
-    return status;
-}
-
-static int pass_time(struct shots *shots, double ms)
-{
-    double first, now;
-    int status = pass_frame(shots, &first);
-
-    for (now = first; status == EXIT_DONE && now >= first && now < first + ms;)
-        status = pass_frame(shots, &now);
-    return status;
-}
-
-static int focus(struct shots *shots, double position)
-{
-    struct refocus_reason reason = {""};
-    const int status =
-        refocus_source_set_focus(shots->source, REFOCUS_SOURCE_FOCUS_FIXED, position, &reason);
-
-    return status == REFOCUS_OK ? EXIT_DONE : fail(shots, status, &reason);
-}
-
-/* Frames pass until the lens is there, or stays elsewhere; *position receives what it reports. */
-static int arrive(struct shots *shots, double asked, double near_by, double *position)
-{
-    struct refocus_source_lens lens = refocus_source_lens_default();
-    struct refocus_reason reason = {""};
-    double began, now, mark = NAN, marked;
-    int status = pass_frame(shots, &began);
-
-    for (now = marked = began; status == EXIT_DONE; status = pass_frame(shots, &now)) {
-        const int got = refocus_source_get_lens(shots->source, &lens, &reason);
-
-        if (got != REFOCUS_OK)
-            return fail(shots, got, &reason);
-        *position = lens.position;
-        if (isnan(lens.position) || fabs(lens.position - asked) <= near_by)
-            return EXIT_DONE;
-        if (!(fabs(lens.position - mark) <= 0.2 * near_by)) {
-            mark = lens.position;
-            marked = now;
-        }
-        if (now - marked >= RESTING_MS || now < began)
-            return EXIT_DONE;
-        if (now - began >= LONGEST_MS)
-            return report_failure(EXIT_FAILED, shots->settings->camera,
-                                  "its lens has not come to rest within %d s", LONGEST_MS / 1000);
-    }
-    return status;
-}
-
-static double step_of(const struct shots *shots)
-{
-    return (shots->asked[shots->count - 1] - shots->asked[0]) / (shots->count - 1);
-}
-
-/* Moves the lens to position k. It may be off, but has to be nearer than the one before. */
-static int move_lens(struct shots *shots, int k)
-{
-    const double step = step_of(shots);
-    double position = NAN;
-    int status = focus(shots, shots->asked[k]);
-
-    if (status == EXIT_DONE)
-        status = arrive(shots, shots->asked[k], 0.1 * step, &position);
-    if (status == EXIT_DONE)
-        status = pass_time(shots, shots->settings->settle);
-    if (status != EXIT_DONE)
-        return status;
-    shots->reported[k] = isnan(position) ? shots->asked[k] : position;
-    if (k > 0 && shots->reported[k] < shots->reported[k - 1] + 0.25 * step)
-        return report_failure(EXIT_FAILED, shots->settings->camera,
-                              "its lens stays at %g where %g was asked for; give a --range that it "
-                              "can reach",
-                              shots->reported[k], shots->asked[k]);
-    return EXIT_DONE;
 }
 
 /* ----- pictures ----- */
@@ -234,7 +105,7 @@ static int add_frame(struct shots *shots, struct picture *picture)
 {
     struct refocus_reason reason = {""};
     const struct refocus_frame *frame;
-    int status = next_frame(shots, &frame);
+    int status = shots_next_frame(shots, &frame);
 
     if (status != EXIT_DONE)
         return status;
@@ -244,7 +115,7 @@ static int add_frame(struct shots *shots, struct picture *picture)
             REFOCUS_FORMAT_RGB8, picture->rgb, frame->width, frame->height, 3 * frame->width);
         const int got = refocus_convert_rgb8(picture->converter, frame, &image, &reason);
 
-        status = got == REFOCUS_OK ? EXIT_DONE : fail(shots, got, &reason);
+        status = got == REFOCUS_OK ? EXIT_DONE : shots_fail(shots, got, &reason);
     }
     refocus_source_release(shots->source, frame);
     return status;
@@ -334,31 +205,31 @@ static int start(struct shots *shots)
     if (refocus_source_kind(settings->camera) == REFOCUS_SOURCE_KIND_SCRIPT)
         config.flags = REFOCUS_SOURCE_FAST;
     status = refocus_source_start(shots->source, &config, NULL, &reason);
-    return status == REFOCUS_OK ? EXIT_DONE : fail(shots, status, &reason);
+    return status == REFOCUS_OK ? EXIT_DONE : shots_fail(shots, status, &reason);
 }
 
 /* The exposure is that of the middle of the range. */
 static int lock_exposure(struct shots *shots)
 {
     struct refocus_reason reason = {""};
-    int status = focus(shots, shots->asked[shots->count / 2]);
+    int status = shots_focus(shots, shots->asked[shots->count / 2]);
 
     if (status == EXIT_DONE)
-        status = pass_time(shots, MEASURE_MS);
+        status = shots_pass_time(shots, MEASURE_MS);
     if (status != EXIT_DONE)
         return status;
     status = refocus_source_lock_exposure(shots->source, 1, &reason);
     if (status == REFOCUS_ERR_UNSUPPORTED)
         report_warning(shots->settings->camera, "its exposure cannot be locked; frames may differ");
     else if (status != REFOCUS_OK)
-        return fail(shots, status, &reason);
+        return shots_fail(shots, status, &reason);
     return EXIT_DONE;
 }
 
 static void warn_of_positions(const struct shots *shots)
 {
     for (int k = 0; k < shots->count; k++)
-        if (fabs(shots->reported[k] - shots->asked[k]) > 0.25 * step_of(shots)) {
+        if (fabs(shots->reported[k] - shots->asked[k]) > 0.25 * shots_step(shots)) {
             report_warning(shots->settings->camera,
                            "its lens reports %g where %g was asked for; depth goes by what it "
                            "reports",
@@ -374,7 +245,7 @@ int shots_photograph(struct shots *shots, shots_picture_fn *take, void *user)
 
     for (int k = 0; k < shots->count && status == EXIT_DONE; k++) {
         report_progress("photographing", (double)k / shots->count);
-        status = move_lens(shots, k);
+        status = shots_move_lens(shots, k);
         if (status == EXIT_DONE)
             status = take_picture(shots, &picture);
         if (status == EXIT_DONE) {
@@ -392,16 +263,6 @@ int shots_photograph(struct shots *shots, shots_picture_fn *take, void *user)
     free(picture.rgb);
     free(picture.sum);
     return status;
-}
-
-int shots_rest(struct shots *shots, int k)
-{
-    double position;
-    int status = focus(shots, shots->asked[k]);
-
-    if (status == EXIT_DONE)
-        status = arrive(shots, shots->asked[k], 0.1 * step_of(shots), &position);
-    return status == EXIT_DONE ? pass_time(shots, shots->settings->settle) : status;
 }
 
 struct place {

@@ -5,30 +5,7 @@
 
 #include <stdbool.h>
 #include <refocus/image.h>
-#include <refocus/platform/source.h>
-#include <refocus/stack.h>
-
-/* How a stack is photographed. */
-struct shots_settings {
-    const char *camera;
-    const char *option; /* the option that has steps and range; NULL: --steps and --range */
-    double steps;       /* positions of the lens */
-    double range[2];    /* the farthest and the nearest; NAN: those of the lens */
-    double average;     /* frames at each position */
-    double settle;      /* milliseconds that a lens needs to come to rest */
-    double size[2];     /* width and height, or NAN */
-};
-
-struct shots {
-    const struct shots_settings *settings;
-    struct refocus_source *source;
-    struct refocus_source_lens lens;
-    int count;
-    double asked[REFOCUS_STACK_MOST_FRAMES];    /* positions, the farthest first */
-    double reported[REFOCUS_STACK_MOST_FRAMES]; /* as the lens says; those that were asked for
-                                                   where it says nothing */
-    bool ends_quietly; /* an interrupted wait is EXIT_FAILED without a line */
-};
+#include "commands/stack_lens.h"
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 
@@ -41,8 +18,6 @@ typedef int shots_picture_fn(void *user, const struct shots *shots, int k,
                              const struct refocus_image *image);
 /* Photograph all with a camera that runs; its lens then stays where it is. */
 int shots_photograph(struct shots *shots, shots_picture_fn *take, void *user);
-/* Move the lens to position k, and wait until it is there. */
-int shots_rest(struct shots *shots, int k);
 /* Photograph all into an empty folder, with names from shots_name() and stack.json, which holds the
  * positions. */
 int shots_take(struct shots *shots, const char *folder, const char *ending);
