@@ -168,15 +168,6 @@ static void warm_up(const struct engine *engine)
     refocus_render_settings(engine->renderer, &params, &pixel);
 }
 
-/* The renderer is made for what any of the methods asks for. */
-static void suit_renderer(struct engine *engine, const struct engine *variant)
-{
-    engine->methods |= variant->methods;
-    engine->params.thin.enabled |= variant->params.thin.enabled;
-    if (variant->params.render.inpaint == REFOCUS_INPAINT_TEXTURED)
-        engine->params.render.inpaint = REFOCUS_INPAINT_TEXTURED;
-}
-
 static int render_all(struct engine *engine, struct comparison *c, const struct variants *variants,
                       const struct input *input, const struct settings *settings)
 {
@@ -278,6 +269,16 @@ static int print_report(const struct settings *settings, const struct engine *en
     return report_end_output();
 }
 
+static int write_crops(const struct comparison *c, const uint16_t *disparity, const char *output)
+{
+    struct refocus_image picture = compare_picture(c, disparity);
+    const int status = picture.plane[0] ? output_write_image(output, &picture, NULL)
+                                        : report_failure(EXIT_FAILED, output, "not enough memory");
+
+    free(picture.plane[0]);
+    return status;
+}
+
 static int compare(struct engine *engine, struct input *input, struct comparison *c,
                    const struct settings *settings, const struct variants *variants)
 {
@@ -321,19 +322,37 @@ static int compare(struct engine *engine, struct input *input, struct comparison
     if (status == EXIT_DONE)
         status = score(c, mask, border);
     report_progress_end();
-    if (status == EXIT_DONE && settings->output) {
-        struct refocus_image picture = compare_picture(c, prepared);
-
-        status = picture.plane[0]
-                     ? output_write_image(settings->output, &picture, NULL)
-                     : report_failure(EXIT_FAILED, settings->output, "not enough memory");
-        free(picture.plane[0]);
-    }
+    if (status == EXIT_DONE && settings->output)
+        status = write_crops(c, prepared, settings->output);
     if (status == EXIT_DONE)
         status = print_report(settings, engine, c, input->photo_name, border);
     free(prepared);
     free(mask);
     return status;
+}
+
+/* All methods are compared on the same photo by one renderer, made for what any of them asks for.
+ * Returns the largest blur that all can render. */
+static double settle_methods(struct engine *engine, struct settings *settings,
+                             struct variants *variants)
+{
+    double most_blur = REFOCUS_MAX_BLUR_RADIUS;
+
+    settings->depth.light = true;
+    for (int i = 0; i < variants->count; i++) {
+        struct variant *variant = &variants->variant[i];
+        struct refocus_settings *params = &variant->engine.params;
+
+        engine->methods |= variant->engine.methods;
+        engine->params.thin.enabled |= params->thin.enabled;
+        if (params->render.inpaint == REFOCUS_INPAINT_TEXTURED)
+            engine->params.render.inpaint = REFOCUS_INPAINT_TEXTURED;
+        settings->depth.light &= engine_draws_light(params);
+        params->render.dither =
+            settings->depth.no_dither ? REFOCUS_DITHER_OFF : REFOCUS_DITHER_ORDERED;
+        most_blur = fmin(most_blur, engine_most_blur(&variant->settings));
+    }
+    return most_blur;
 }
 
 static int run(int argc, char **argv)
@@ -348,7 +367,7 @@ static int run(int argc, char **argv)
     struct input input = {0};
     struct variants variants = {0};
     const char *files[2];
-    double most_blur = REFOCUS_MAX_BLUR_RADIUS;
+    double most_blur;
     int status;
 
     settings.engine.method = -1; /* several: options of any may be given */
@@ -363,21 +382,9 @@ static int run(int argc, char **argv)
     engine.name = files[0];
     if (status == EXIT_DONE)
         status = variants_begin(&variants, settings.methods, &settings.engine);
-    for (int i = 0; i < variants.count; i++)
-        suit_renderer(&engine, &variants.variant[i].engine);
-    /* All methods are compared on the same photo. */
-    settings.depth.light = true;
-    for (int i = 0; i < variants.count; i++) {
-        struct refocus_settings *params = &variants.variant[i].engine.params;
-
-        settings.depth.light &= engine_draws_light(params);
-        params->render.dither =
-            settings.depth.no_dither ? REFOCUS_DITHER_OFF : REFOCUS_DITHER_ORDERED;
-    }
+    most_blur = settle_methods(&engine, &settings, &variants);
     if (status == EXIT_DONE)
         status = input_read(&input, files[0], &settings.depth);
-    for (int i = 0; i < variants.count; i++)
-        most_blur = fmin(most_blur, engine_most_blur(&variants.variant[i].settings));
     input.most_blur = most_blur;
     if (status == EXIT_DONE)
         status = read_reference(&reference, settings.reference, input.photo->image);
