@@ -35,7 +35,7 @@ struct stream {
 
 /* A write into a closed pipe raises SIGPIPE, which is the program's business and not
  * ours: it is held back in this thread, and taken away when it was this write that
- * raised it. */
+ * raised it. It may have written a part before the pipe was closed. */
 static ssize_t quiet_write(int fd, const void *bytes, size_t size)
 {
     const struct timespec none = {0, 0};
@@ -49,7 +49,7 @@ static ssize_t quiet_write(int fd, const void *bytes, size_t size)
     pthread_sigmask(SIG_BLOCK, &pipe_set, &before);
     n = write(fd, bytes, size);
     error = errno;
-    if (n < 0 && error == EPIPE && !sigismember(&pending, SIGPIPE))
+    if ((n < 0 ? error == EPIPE : (size_t)n < size) && !sigismember(&pending, SIGPIPE))
         while (sigtimedwait(&pipe_set, NULL, &none) < 0 && errno == EINTR)
             continue;
     pthread_sigmask(SIG_SETMASK, &before, NULL);

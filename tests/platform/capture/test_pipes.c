@@ -5,6 +5,8 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <stdlib.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -32,6 +34,46 @@ static void a_closed_pipe_is_a_status(void **state)
     assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_ERR_GONE);
     assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
     close(ends[1]);
+}
+
+/* Closes the end that is read once something has been written. */
+static void *leave(void *end)
+{
+    const struct timespec pause = {0, 1000000};
+    const int fd = *(const int *)end;
+    int waiting = 0;
+
+    while (ioctl(fd, FIONREAD, &waiting) == 0 && waiting == 0)
+        nanosleep(&pause, NULL);
+    nanosleep(&pause, NULL);
+    close(fd);
+    return NULL;
+}
+
+/* The reader goes while a frame is half written, which is more than a pipe holds. */
+static void a_pipe_closed_within_a_frame_is_a_status(void **state)
+{
+    enum { SIDE = 1024 };
+    uint8_t *const pixels = calloc(SIDE * SIDE, 3);
+    struct refocus_sink *sink = NULL;
+    const struct refocus_image image =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, SIDE, SIDE, SIDE * 3);
+    char name[64];
+    pthread_t thread;
+    int ends[2];
+
+    (void)state;
+    assert_non_null(pixels);
+    assert_int_equal(pipe(ends), 0);
+    snprintf(name, sizeof name, "raw:/proc/self/fd/%d", ends[1]);
+    assert_status(refocus_sink_open(&sink, name, NULL), REFOCUS_OK);
+    assert_status(refocus_sink_start(sink, SIDE, SIDE, 25, NULL), REFOCUS_OK);
+    assert_int_equal(pthread_create(&thread, NULL, leave, &ends[0]), 0);
+    assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_ERR_GONE);
+    pthread_join(thread, NULL);
+    assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
+    close(ends[1]);
+    free(pixels);
 }
 
 static atomic_bool interrupted;
@@ -92,6 +134,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_closed_pipe_is_a_status),
+        cmocka_unit_test(a_pipe_closed_within_a_frame_is_a_status),
         cmocka_unit_test(a_silent_pipe_is_no_hang),
     };
 
