@@ -6,6 +6,7 @@
 enum {
     VARIANCE = 64 << 12, /* in the units of variances below, Q4 and 256 of them */
     SLOPE_ONE = 1 << 10,
+    TOGETHER = 64, /* samples whose pixels are made together: loops of one kind fill vectors */
 };
 
 /* Sums over three rows, weights 1 2 1, with a column more on either side. */
@@ -20,14 +21,17 @@ struct between {
 
 struct chroma {
     int width, height, columns, rows;
+    float error; /* squared, of means in Q8: what is no larger may be quantisation */
     const uint8_t *luma, *in[2];
-    uint16_t *means;   /* luma over 2 x 2 pixels, Q2 */
-    int16_t *slope[2]; /* Q10: below 8, as chroma deviates by 128 and 128 s / (s^2 + 64) is */
+    uint16_t *means;    /* luma over 2 x 2 pixels, Q2 */
+    int16_t *slope[2];  /* Q10: below 8, as chroma deviates by 128 and 128 s / (s^2 + 64) is */
+    int16_t *colour[2]; /* Q4: what is interpolated */
     struct columns column;
     struct between between;
+    int32_t *sum[2], *late[2]; /* Q8, and Q4 of the row before */
 };
 
-enum { PLANES = 3, ROWS = 6 + 5 };
+enum { PLANES = 5, ROWS = 6 + 5 + 4 };
 
 uint64_t rf_jpeg_chroma_bytes(int32_t width, int32_t height)
 {
@@ -40,16 +44,19 @@ static void lay_out(struct chroma *s, void *work)
 {
     const size_t n = (size_t)s->columns + 2, samples = (size_t)s->columns * (size_t)s->rows;
     int32_t *at = work;
-    int32_t **row[ROWS] = {&s->column.y,         &s->column.yy,       &s->column.c[0],
-                           &s->column.c[1],      &s->column.yc[0],    &s->column.yc[1],
-                           &s->between.y,        &s->between.c[0],    &s->between.c[1],
-                           &s->between.slope[0], &s->between.slope[1]};
+    int32_t **row[ROWS] = {&s->column.y,         &s->column.yy,        &s->column.c[0],
+                           &s->column.c[1],      &s->column.yc[0],     &s->column.yc[1],
+                           &s->between.y,        &s->between.c[0],     &s->between.c[1],
+                           &s->between.slope[0], &s->between.slope[1], &s->sum[0],
+                           &s->sum[1],           &s->late[0],          &s->late[1]};
 
     for (int i = 0; i < ROWS; i++, at += n)
         *row[i] = at;
     s->means = (uint16_t *)at;
     s->slope[0] = (int16_t *)(s->means + samples);
     s->slope[1] = s->slope[0] + samples;
+    s->colour[0] = s->slope[1] + samples;
+    s->colour[1] = s->colour[0] + samples;
 }
 
 static size_t row_at(const struct chroma *s, int row)
@@ -138,10 +145,10 @@ static void slopes(const struct chroma *s, int j)
     }
 }
 
-/* Sets what lies between two rows of samples: 3 of the nearer one and 1 of the other. */
-static void blend_rows(const struct chroma *s, int near, int far)
+/* Sets what a row of pixels is of: 3 of the nearer row of samples and 1 of the other. */
+static void blend_rows(const struct chroma *s, int row)
 {
-    const size_t p = row_at(s, near), q = row_at(s, far);
+    const size_t p = row_at(s, row / 2), q = row_at(s, row & 1 ? row / 2 + 1 : row / 2 - 1);
     const int n = s->columns;
     int32_t *restrict y = s->between.y;
 
@@ -149,21 +156,18 @@ static void blend_rows(const struct chroma *s, int near, int far)
         y[i + 1] = 3 * s->means[p + (size_t)i] + s->means[q + (size_t)i];
     pad(y, n);
     for (int k = 0; k < 2; k++) {
-        const uint8_t *restrict in = s->in[k];
+        const int16_t *restrict in = s->colour[k];
         const int16_t *restrict slope = s->slope[k];
         int32_t *restrict c = s->between.c[k], *restrict a = s->between.slope[k];
 
         for (int i = 0; i < n; i++) {
-            c[i + 1] = 3 * (in[p + (size_t)i] - 128) + in[q + (size_t)i] - 128;
+            c[i + 1] = 3 * in[p + (size_t)i] + in[q + (size_t)i];
             a[i + 1] = 3 * slope[p + (size_t)i] + slope[q + (size_t)i];
         }
         pad(c, n);
         pad(a, n);
     }
 }
-
-/* Columns of samples whose pixels are made together: loops of one kind each fill vectors. */
-enum { TOGETHER = 64 };
 
 /* Chroma in Q6 of the pixels of `n` samples from `first` on, where `in` has their luma: 9 3 3 1 of
  * the samples around, and the slope times how far the luma is above the mean that is read alike.
@@ -179,10 +183,68 @@ static void set_chroma(const struct between *b, int k, const uint8_t *restrict i
             const int far = side ? i + 1 : i - 1;
             const int over = 64 * in[2 * i + side] - (3 * y[i] + y[far]);
             const int value = 3 * c[i] + c[far], a = (3 * slope[i] + slope[far]) >> 4;
-            const int q6 = (value * 4096 + a * over + 512) >> 10;
+            const int q6 = (value * 256 + a * over + 512) >> 10;
 
             out[2 * i + side] = (int16_t)(q6 < -8192 ? -8192 : q6 > 8191 ? 8191 : q6);
         }
+}
+
+/* Adds up the chroma of the pixels of a row of samples, Q8 means. */
+static void add_pixels(const struct chroma *s, int j)
+{
+    int16_t chroma[2 * TOGETHER];
+
+    for (int k = 0; k < 2; k++)
+        memset(s->sum[k], 0, (size_t)s->columns * sizeof *s->sum[k]);
+    for (int row = 2 * j; row < 2 * j + 2; row++) {
+        const uint8_t *luma = s->luma + (size_t)row * (size_t)(2 * s->columns);
+
+        blend_rows(s, row);
+        for (int first = 0; first < s->columns; first += TOGETHER) {
+            const int n = s->columns - first < TOGETHER ? s->columns - first : TOGETHER;
+
+            for (int k = 0; k < 2; k++) {
+                int32_t *restrict sum = s->sum[k] + first;
+
+                set_chroma(&s->between, k, luma + 2 * (ptrdiff_t)first, first, n, chroma);
+                for (int i = 0; i < n; i++)
+                    sum[i] += chroma[2 * i] + chroma[2 * i + 1];
+            }
+        }
+    }
+}
+
+/* Gives samples what the pixels between them miss of the means that the file has. A row changes
+ * once the next has been looked at. */
+static void correct(const struct chroma *s)
+{
+    for (int k = 0; k < 2; k++) {
+        const uint8_t *restrict in = s->in[k];
+        int16_t *restrict out = s->colour[k];
+
+        for (size_t i = 0; i < (size_t)s->columns * (size_t)s->rows; i++)
+            out[i] = (int16_t)(16 * (in[i] - 128));
+        memset(s->late[k], 0, (size_t)s->columns * sizeof *s->late[k]);
+    }
+    for (int j = 0; j <= s->rows; j++) {
+        if (j < s->rows)
+            add_pixels(s, j);
+        for (int k = 0; k < 2; k++) {
+            const uint8_t *restrict in = s->in[k] + row_at(s, j);
+            int16_t *restrict before = s->colour[k] + row_at(s, j - 1);
+            const int32_t *restrict sum = s->sum[k];
+            int32_t *restrict late = s->late[k];
+            const float error = s->error;
+
+            for (int i = 0; i < s->columns; i++) {
+                const float missing = (float)(256 * (in[i] - 128) - sum[i]);
+                const float square = missing * missing;
+
+                before[i] = (int16_t)(before[i] + late[i]);
+                late[i] = (int32_t)(missing * square / (square + error) * 0.0625F);
+            }
+        }
+    }
 }
 
 static inline uint32_t code_of(int v)
@@ -231,8 +293,10 @@ static void write_row(const struct chroma *s, const uint8_t *in, uint8_t *out)
 void rf_jpeg_chroma(struct rf_raster *raster, const struct rf_jpeg_planes *planes, void *work)
 {
     const int w = raster->width, h = raster->height;
+    const float error = 2 * 256.0F * (float)planes->step;
     struct chroma s = {.width = w,
                        .height = h,
+                       .error = error * error,
                        .columns = (w + 1) / 2,
                        .rows = (h + 1) / 2,
                        .luma = planes->y,
@@ -242,8 +306,9 @@ void rf_jpeg_chroma(struct rf_raster *raster, const struct rf_jpeg_planes *plane
     reduce(&s);
     for (int j = 0; j < s.rows; j++)
         slopes(&s, j);
+    correct(&s);
     for (int y = 0; y < h; y++) {
-        blend_rows(&s, y / 2, y & 1 ? y / 2 + 1 : y / 2 - 1);
+        blend_rows(&s, y);
         write_row(&s, planes->y + (size_t)y * (size_t)(2 * s.columns),
                   raster->pixels + (size_t)y * rf_raster_stride(raster));
     }

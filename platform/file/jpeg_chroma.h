@@ -12,6 +12,7 @@
  * the last of which is beyond an odd width. */
 struct rf_jpeg_planes {
     const uint8_t *y, *chroma[2];
+    int step; /* by which the lowest frequency of chroma was quantised, 1 at the least */
 };
 
 /* Bytes that rf_jpeg_chroma() works in. */
@@ -29,8 +30,13 @@ uint64_t rf_jpeg_chroma_bytes(int32_t width, int32_t height);
  *     C + a (Y - Y')
  *
  * with C, a and Y' between samples by the weights 9 3 3 1 that decoders interpolate by. So colour
- * changes where luma does, and is interpolated where luma is flat. Each sum is exact; the one
- * division is of single precision.
+ * changes where luma does, and is interpolated where luma is flat. The mean C' of the four pixels
+ * of a sample then misses C by m = C - C', and the pixels are made once more, of samples
+ *
+ *     C + m m^2 / (m^2 + (2 step)^2)
+ *
+ * as what exceeds quantisation is colour that interpolation smoothed away. Each sum is exact; both
+ * divisions are of single precision.
  *
  * `work` is aligned to 8 bytes.
  */

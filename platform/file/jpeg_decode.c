@@ -14,31 +14,55 @@ static int fail_jpeg(const struct rf_read *read, tjhandle jpeg)
     return rf_fail(read->reason, REFOCUS_ERR_FORMAT, "damaged JPEG: %s", tjGetErrorStr2(jpeg));
 }
 
-enum { MARKER_SOS = 0xda, MARKER_APP14 = 0xee };
+enum { MARKER_SOS = 0xda, MARKER_DQT = 0xdb, MARKER_APP14 = 0xee };
 enum { MARKER_SOF0 = 0xc0, MARKER_SOF2 = 0xc2, MARKER_SOF15 = 0xcf };
 enum { MARKER_DHT = 0xc4, MARKER_JPG = 0xc8, MARKER_DAC = 0xcc, MARKER_SOF9 = 0xc9 };
+
+static bool is_frame(int marker)
+{
+    return marker >= MARKER_SOF0 && marker <= MARKER_SOF15 && marker != MARKER_DHT &&
+           marker != MARKER_JPG && marker != MARKER_DAC;
+}
 
 /* ITU-T T.81 has kinds that few programs read: of 12 bits, without loss, of several sizes. */
 static bool is_rare_kind(const struct rf_jpeg_walk *walk)
 {
     const int marker = walk->marker;
-    const bool frame = marker >= MARKER_SOF0 && marker <= MARKER_SOF15 && marker != MARKER_DHT &&
-                       marker != MARKER_JPG && marker != MARKER_DAC;
     const bool known = marker <= MARKER_SOF2 || marker == MARKER_SOF9 || marker == MARKER_SOF9 + 1;
 
-    return frame && (!known || (walk->segment.size > 0 && walk->segment.data[0] == 12));
+    return is_frame(marker) && (!known || (walk->segment.size > 0 && walk->segment.data[0] == 12));
 }
 
-/* Count the scans, and see whether Adobe wrote it. TurboJPEG paints a missing rest grey without an
- * error, so the end of the picture must be there. */
-static int survey(const struct rf_read *read, struct rf_bytes file, uint32_t *scans, bool *adobe)
+struct survey {
+    uint32_t scans;
+    bool adobe;  /* Adobe wrote it. */
+    int step[4]; /* for the lowest frequency, by table */
+    int chroma;  /* the table of the second component */
+};
+
+/* Tables are a byte, precision and number, and 64 values of one byte or two, the mean first. */
+static void survey_tables(struct survey *survey, struct rf_bytes segment)
 {
+    for (size_t at = 0, size; at < segment.size; at += 1 + 64 * size) {
+        const uint8_t *table = segment.data + at + 1;
+
+        size = segment.data[at] >> 4 ? 2 : 1;
+        if (segment.size - at < 1 + 64 * size)
+            return;
+        survey->step[segment.data[at] & 3] = size == 1 ? table[1] : table[2] << 8 | table[3];
+    }
+}
+
+/* Looks at the segments. TurboJPEG paints a missing rest grey without an error, so the end of the
+ * picture must be there. */
+static int survey_file(const struct rf_read *read, struct rf_bytes file, struct survey *survey)
+{
+    enum { CHROMA = 11 }; /* the second of three bytes for each component ends there */
     struct rf_jpeg_walk walk;
     enum rf_jpeg_step step = RF_JPEG_DAMAGED;
     uint32_t segments = 0;
 
-    *scans = 0;
-    *adobe = false;
+    memset(survey, 0, sizeof *survey);
     if (rf_jpeg_walk_begin(&walk, file)) {
         while ((step = rf_jpeg_walk_next(&walk)) == RF_JPEG_SEGMENT) {
             if (is_rare_kind(&walk)) {
@@ -46,15 +70,20 @@ static int survey(const struct rf_read *read, struct rf_bytes file, uint32_t *sc
                                "it is a JPEG of 12 bits or without loss, which is not read; save "
                                "it as PNG or TIFF");
             }
-            *scans += walk.marker == MARKER_SOS;
-            *adobe |= walk.marker == MARKER_APP14 && walk.segment.size >= 5 &&
-                      memcmp(walk.segment.data, "Adobe", 5) == 0;
-            if (++segments > read->limits.max_segments || *scans > read->limits.max_scans) {
+            survey->scans += walk.marker == MARKER_SOS;
+            survey->adobe |= walk.marker == MARKER_APP14 && walk.segment.size >= 5 &&
+                             memcmp(walk.segment.data, "Adobe", 5) == 0;
+            if (walk.marker == MARKER_DQT)
+                survey_tables(survey, walk.segment);
+            if (is_frame(walk.marker) && walk.segment.size > CHROMA)
+                survey->chroma = walk.segment.data[CHROMA] & 3;
+            if (++segments > read->limits.max_segments || survey->scans > read->limits.max_scans) {
+                const bool scans = survey->scans > read->limits.max_scans;
+
                 return rf_fail(
                     read->reason, REFOCUS_ERR_SIZE, "its %s are more than the limit of %u",
-                    *scans > read->limits.max_scans ? "scans" : "segments",
-                    (unsigned)(*scans > read->limits.max_scans ? read->limits.max_scans
-                                                               : read->limits.max_segments));
+                    scans ? "scans" : "segments",
+                    (unsigned)(scans ? read->limits.max_scans : read->limits.max_segments));
             }
         }
     }
@@ -146,7 +175,7 @@ static int read_pixels(const struct rf_read *read, tjhandle jpeg, struct rf_byte
 
 /* Colour of half the size, as cameras and phones store it, follows luma where it is enlarged. */
 static int read_half(const struct rf_read *read, tjhandle jpeg, struct rf_bytes file,
-                     struct rf_raster *raster)
+                     struct rf_raster *raster, int step)
 {
     /* TurboJPEG writes an even number of columns and rows of luma. */
     const uint64_t columns = ((uint64_t)raster->width + 1) / 2;
@@ -166,9 +195,11 @@ static int read_half(const struct rf_read *read, tjhandle jpeg, struct rf_bytes 
     planes.plane[2] = planes.plane[1] + samples;
     status = read_pixels(read, jpeg, file, raster, &planes);
     if (status == REFOCUS_OK) {
-        rf_jpeg_chroma(
-            raster, &(struct rf_jpeg_planes){planes.plane[0], {planes.plane[1], planes.plane[2]}},
-            memory);
+        rf_jpeg_chroma(raster,
+                       &(struct rf_jpeg_planes){planes.plane[0],
+                                                {planes.plane[1], planes.plane[2]},
+                                                step > 0 ? step : 1},
+                       memory);
     }
     free(memory);
     return status;
@@ -194,28 +225,28 @@ static void cmyk_to_rgb(struct rf_raster *raster, bool adobe)
 
 int rf_jpeg_decode(const struct rf_read *read, struct rf_bytes file, struct rf_raster *raster)
 {
+    struct survey survey;
     tjhandle jpeg;
-    uint32_t scans;
-    bool adobe, half = false;
+    bool half = false;
     int status;
 
     memset(raster, 0, sizeof *raster);
-    if ((status = survey(read, file, &scans, &adobe)) != REFOCUS_OK)
+    if ((status = survey_file(read, file, &survey)) != REFOCUS_OK)
         return status;
     jpeg = tjInitDecompress();
     if (!jpeg)
         return rf_fail_memory(read->reason);
     status = read_header(read, jpeg, file, raster, &half);
     if (status == REFOCUS_OK)
-        status = check_work(read, raster, scans);
+        status = check_work(read, raster, survey.scans);
     if (status == REFOCUS_OK)
         status = rf_raster_alloc(read, raster);
     if (status == REFOCUS_OK) {
-        status = half ? read_half(read, jpeg, file, raster)
+        status = half ? read_half(read, jpeg, file, raster, survey.step[survey.chroma])
                       : read_pixels(read, jpeg, file, raster, NULL);
     }
     if (status == REFOCUS_OK && raster->channels == 4)
-        cmyk_to_rgb(raster, adobe);
+        cmyk_to_rgb(raster, survey.adobe);
     if (status != REFOCUS_OK)
         rf_raster_free(raster);
     tjDestroy(jpeg);

@@ -194,8 +194,8 @@ static void original_says_how_it_lies(void **state)
 
 enum { HALF_W = 33, HALF_H = 17 }; /* odd: the last samples of colour are of fewer pixels */
 
-/* Pixels as a JPEG with colour of half the size, at the best quality. */
-static struct bytes with_half_colour(const uint8_t *rgb)
+/* Pixels as a JPEG with colour of half the size. */
+static struct bytes with_half_colour(const uint8_t *rgb, int quality)
 {
     struct bytes jpeg = {NULL, 0};
     unsigned char *data = NULL;
@@ -204,7 +204,7 @@ static struct bytes with_half_colour(const uint8_t *rgb)
 
     assert_non_null(encoder);
     assert_int_equal(tjCompress2(encoder, rgb, HALF_W, 0, HALF_H, TJPF_RGB, &data, &size,
-                                 TJSAMP_420, 100, TJFLAG_ACCURATEDCT),
+                                 TJSAMP_420, quality, TJFLAG_ACCURATEDCT),
                      0);
     tjDestroy(encoder);
     bytes_add(&jpeg, data, size);
@@ -238,9 +238,12 @@ static long difference_of(const uint8_t *a, const uint8_t *b, int *most)
     return sum;
 }
 
+/* Two colours of luma 90. */
+static const uint8_t warm[3] = {150, 73, 27}, cold[3] = {30, 106, 168};
+
 /* An edge between samples of colour is sharp where luma has it, in columns and in rows: less than a
- * quarter of the squared error that interpolation leaves. Where colour alone changes, it is
- * interpolated as TurboJPEG does it, but for rounding. */
+ * quarter of the squared error that interpolation leaves. Where colour alone changes, and less than
+ * was quantised away, it is interpolated as TurboJPEG does it, but for rounding. */
 static void colour_follows_luma(void **state)
 {
     static const uint8_t bright[3] = {210, 90, 60}, dark[3] = {30, 60, 110};
@@ -257,10 +260,9 @@ static void colour_follows_luma(void **state)
 
             memcpy(rgb + 3 * i, here ? bright : dark, 3);
         }
-        for (int i = 0; kind == 2 && i < HALF_W * HALF_H; i++) /* luma of 90 on either side */
-            memcpy(rgb + 3 * i,
-                   i % HALF_W < 15 ? (uint8_t[]){150, 73, 27} : (uint8_t[]){30, 106, 168}, 3);
-        jpeg = with_half_colour(rgb);
+        for (int i = 0; kind == 2 && i < HALF_W * HALF_H; i++)
+            memcpy(rgb + 3 * i, i % HALF_W < 15 ? warm : cold, 3);
+        jpeg = with_half_colour(rgb, kind == 2 ? 25 : 100);
         interpolated(plain, jpeg);
         photo = read_photo(jpeg, REFOCUS_OK);
         assert_int_equal(photo->image->width, HALF_W);
@@ -275,6 +277,28 @@ static void colour_follows_luma(void **state)
             difference_of(photo->image->plane[0], plain, &most);
             assert_in_range(most, 0, 4);
         }
+        refocus_photo_free(&photo);
+    }
+}
+
+/* Stripes of colours that are three pixels wide keep the means that the file has: a
+ * quarter of the squared error that interpolation leaves is gone, and more. */
+static void colour_keeps_its_means(void **state)
+{
+    (void)state;
+    for (int by_rows = 0; by_rows < 2; by_rows++) {
+        uint8_t rgb[3 * HALF_W * HALF_H], plain[sizeof rgb];
+        struct refocus_photo *photo;
+        struct bytes jpeg;
+        int most;
+
+        for (int i = 0; i < HALF_W * HALF_H; i++)
+            memcpy(rgb + 3 * i, (by_rows ? i / HALF_W : i % HALF_W) / 3 % 2 ? warm : cold, 3);
+        jpeg = with_half_colour(rgb, 95);
+        interpolated(plain, jpeg);
+        photo = read_photo(jpeg, REFOCUS_OK);
+        assert_true(4 * difference_of(photo->image->plane[0], rgb, &most) <
+                    3 * difference_of(plain, rgb, &most));
         refocus_photo_free(&photo);
     }
 }
@@ -307,10 +331,15 @@ int main(void)
 #ifdef RF_HAVE_PNG
         cmocka_unit_test(orientation_of_png),
 #endif
-        cmocka_unit_test(icc_in_chunks),       cmocka_unit_test(icc_of_nothing),
-        cmocka_unit_test(exif_facts),          cmocka_unit_test(exif_without_sense),
-        cmocka_unit_test(bytes_too_many),      cmocka_unit_test(grey_jpeg_is_depth),
-        cmocka_unit_test(colour_follows_luma), cmocka_unit_test(original_says_how_it_lies),
+        cmocka_unit_test(icc_in_chunks),
+        cmocka_unit_test(icc_of_nothing),
+        cmocka_unit_test(exif_facts),
+        cmocka_unit_test(exif_without_sense),
+        cmocka_unit_test(bytes_too_many),
+        cmocka_unit_test(grey_jpeg_is_depth),
+        cmocka_unit_test(colour_follows_luma),
+        cmocka_unit_test(original_says_how_it_lies),
+        cmocka_unit_test(colour_keeps_its_means),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
