@@ -78,7 +78,7 @@ struct refocus_stack {
     struct rf_stack_frame frame[REFOCUS_STACK_MOST_FRAMES]; /* in the order of their positions */
 
     /* One block of 3 bytes a pixel: luminance of the frame that is added, as it is and smooth (Q4);
-     * then the photo before the light of blur is taken out. */
+     * then the photo before the light of blur is taken out, and before it is whitened. */
     uint8_t *before, *luma;
     uint16_t *smooth;
     uint16_t *moved;  /* sharpness in the geometry of the reference */
@@ -221,6 +221,8 @@ bool rf_stack_pixel(const struct refocus_stack *stack, int k, int x, int y, uint
 uint16_t rf_stack_disparity(const struct refocus_stack *stack, int depth);
 /* Takes the light of blurred foreground out of the background beside it. */
 void rf_stack_decontaminate(struct refocus_stack *stack, const struct rf_stack_photo *photo);
+/* Makes what is clipped white again. */
+void rf_stack_whiten(struct refocus_stack *stack, const struct rf_stack_photo *photo);
 /* How much is clipped, of RF_STACK_CLIPPED, of the pixels that a tap stands for at each sample, and
  * the largest disparity of these (0: none is). */
 struct rf_stack_clipped {

@@ -285,11 +285,14 @@ static void write_row(void *context, int y, int worker)
 
 static void write_rows(struct refocus_stack *s, struct refocus_stack_result *r)
 {
+    const struct rf_stack_photo photo = {r->photo, r->photo_stride};
     struct rows rows = {.stack = s, .result = r};
 
     rf_pool_run(s->pool, write_row, &rows, s->height);
-    if (r->photo && s->kind == REFOCUS_STACK_FOCUS)
-        rf_stack_decontaminate(s, &(struct rf_stack_photo){r->photo, r->photo_stride});
+    if (r->photo && s->kind == REFOCUS_STACK_FOCUS) {
+        rf_stack_decontaminate(s, &photo);
+        rf_stack_whiten(s, &photo);
+    }
     r->measured = (float)((double)rows.measured / ((double)s->width * s->height));
 }
 
@@ -364,11 +367,9 @@ static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
     own->matched = (uint32_t)s->matched;
     own->exposure = (float)s->exposure;
     own->moved = 0;
-    for (int k = 0; k < s->count; k++) {
-        const double reach = rf_similarity_reach(&s->frame[k].from_reference, s->width, s->height);
-
-        own->moved = reach > own->moved ? (float)reach : own->moved;
-    }
+    for (int k = 0; k < s->count; k++)
+        own->moved = fmaxf(own->moved, (float)rf_similarity_reach(&s->frame[k].from_reference,
+                                                                  s->width, s->height));
 }
 
 int refocus_stack_finish(struct refocus_stack *s, struct refocus_stack_result *result)
