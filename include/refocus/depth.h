@@ -172,7 +172,12 @@ struct refocus_repair_params {
     void *memory;                /**< to work in, aligned for any type, of the caller: then nothing
                                       is allocated, which suits depth frame after frame; NULL =
                                       what is needed is allocated and freed */
-    size_t memory_bytes;         /**< how large that is: refocus_repair_memory() or more */
+    size_t memory_bytes;         /**< how large that is: refocus_repair_memory() or more, and with
+                                      a photo 6 a sample more */
+    const struct refocus_image *photo; /**< the photo of that view, packed, of 8 bits and any size;
+                                            or NULL. A hole where two surfaces meet is filled from
+                                            the one that looks like it; without a photo, or where
+                                            both do, from the farther one */
 };
 
 static inline struct refocus_repair_params refocus_repair_params_default(void)
@@ -192,11 +197,13 @@ static inline struct refocus_repair_params refocus_repair_params_default(void)
 REFOCUS_API uint64_t refocus_repair_memory(int32_t width, int32_t height, int32_t speckle);
 
 /**
- * refocus_depth_to_disparity() that also removes specks and says what was filled. Time
- * and memory are linear in the number of samples: refocus_repair_memory() at most.
+ * refocus_depth_to_disparity() that also removes specks, fills holes by the photo and says what was
+ * filled. Time and memory are linear in the number of samples: refocus_repair_memory() at most, and
+ * with a photo 6 bytes a sample more.
  *
  * @return as refocus_depth_to_disparity(); REFOCUS_ERR_ARGUMENT also when params->memory is less
- *         than refocus_repair_memory() or not aligned. Thread-safe.
+ *         than that or not aligned, or params->photo is not packed, REFOCUS_ERR_UNSUPPORTED when
+ *         that has more than 8 bits. Thread-safe.
  */
 REFOCUS_API int refocus_depth_repair(const struct refocus_depth_map *map,
                                      const struct refocus_repair_params *params,

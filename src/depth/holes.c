@@ -12,6 +12,7 @@ enum {
     SPREADS = 4,             /* scans to spread: enough to turn three corners */
     WIDEST = 16,             /* widest smoothing step, a power of 2 */
     OUTER = 4,               /* w is so much less in the outer columns */
+    COLOUR = 3 * 65535 / 255 /* w is paid so often for a code between colours; holes.h */
 };
 
 struct holes {
@@ -21,6 +22,7 @@ struct holes {
     int width, height;
     uint32_t weight; /* w in half samples */
     uint32_t gap;    /* half samples from a known one on where a hole begins; 0 in a dense map */
+    struct rf_hole_colours colours;
 };
 
 static uint16_t *disparity_row(const struct holes *holes, int y)
@@ -63,11 +65,18 @@ static int unknown_to(const uint8_t *state, int x)
     return x;
 }
 
-/* |p - q|, and in holes + w d(q), in units of 1/65535 half sample: below 2^30 + 2^24. */
-static uint32_t cost(const struct holes *holes, uint32_t weight, uint32_t distance,
-                     uint32_t disparity)
+/* |p - q|, and in holes + w (d(q) + 3 |c(p) - c(q)|), in units of 1/65535 half sample: below 2^33.
+ * p and q are numbered as the states are. */
+static uint64_t cost(const struct holes *holes, uint32_t weight, uint32_t distance,
+                     uint32_t disparity, ptrdiff_t p, ptrdiff_t q)
 {
-    return distance * 65535 + (distance > holes->gap ? weight * disparity : 0);
+    uint32_t apart = disparity;
+
+    if (distance <= holes->gap)
+        return (uint64_t)distance * 65535;
+    if (holes->colours.own)
+        apart += COLOUR * rf_hole_colours_apart(&holes->colours, (size_t)p, (size_t)q);
+    return (uint64_t)distance * 65535 + (uint64_t)weight * apart;
 }
 
 /* A row's samples from the first known one to the last one; last < first if none is known. */
@@ -103,22 +112,26 @@ static uint32_t weight_at(const struct holes *holes, struct known known, int x)
     return is_outer(known, x) ? holes->weight / OUTER : holes->weight;
 }
 
-/* Let the sample at @p x take its neighbour's disparity when that costs less. */
+/* Let an unknown sample take the disparity of another one, `step` away, when that costs less. */
 static void spread_from(const struct holes *holes, uint32_t weight, uint16_t *disparity,
-                        uint8_t *state, uint16_t from, uint8_t from_state, uint32_t step)
+                        uint8_t *state, const uint16_t *from, const uint8_t *from_state,
+                        uint32_t step)
 {
+    const ptrdiff_t p = state - holes->state, q = from_state - holes->state;
     uint32_t distance;
 
-    if (from_state == RF_SAMPLE_UNKNOWN)
+    if (*from_state == RF_SAMPLE_UNKNOWN)
         return;
-    distance = from_state + step;
+    distance = *from_state + step;
     if (distance > FARTHEST)
         distance = FARTHEST;
-    if (*state == RF_SAMPLE_UNKNOWN ||
-        cost(holes, weight, distance, from) < cost(holes, weight, *state, *disparity)) {
-        *disparity = from;
-        *state = (uint8_t)distance;
-    }
+    if (*state != RF_SAMPLE_UNKNOWN &&
+        cost(holes, weight, distance, *from, p, q) >= cost(holes, weight, *state, *disparity, p, p))
+        return;
+    *disparity = *from;
+    *state = (uint8_t)distance;
+    if (holes->colours.own)
+        memcpy(holes->colours.surface + 3 * p, holes->colours.surface + 3 * q, 3);
 }
 
 /* Samples from a border of the map on, along a row or a column. */
@@ -172,8 +185,8 @@ static void look_behind(const struct holes *holes, const struct line *line)
 
     if (behind > 0)
         spread_from(holes, holes->weight, disparity_at(holes, line, first - 1),
-                    state_at(holes, line, first - 1), *disparity_at(holes, line, behind),
-                    RF_SAMPLE_KNOWN, STRAIGHT);
+                    state_at(holes, line, first - 1), disparity_at(holes, line, behind),
+                    state_at(holes, line, behind), STRAIGHT);
 }
 
 static void look_behind_from_borders(const struct holes *holes)
@@ -200,11 +213,11 @@ static void spread_down(const struct holes *holes, uint32_t weight, int x, int y
     const uint16_t *last = disparity_row(holes, before);
     const uint8_t *last_state = state_row(holes, before);
 
-    spread_from(holes, weight, d, state, last[x], last_state[x], STRAIGHT);
+    spread_from(holes, weight, d, state, last + x, last_state + x, STRAIGHT);
     if (x > 0)
-        spread_from(holes, weight, d, state, last[x - 1], last_state[x - 1], DIAGONAL);
+        spread_from(holes, weight, d, state, last + x - 1, last_state + x - 1, DIAGONAL);
     if (x + 1 < holes->width)
-        spread_from(holes, weight, d, state, last[x + 1], last_state[x + 1], DIAGONAL);
+        spread_from(holes, weight, d, state, last + x + 1, last_state + x + 1, DIAGONAL);
 }
 
 /* Scans rows from the top or the bottom, and each row in both directions. */
@@ -223,12 +236,12 @@ static void spread(const struct holes *holes, int down, enum samples which)
                 spread_down(holes, weight_at(holes, known, x), x, y, down ? y - 1 : y + 1);
         for (int x = 0; (x = unknown_from(state, x + 1, width)) < width;)
             if (is_meant(known, x, which))
-                spread_from(holes, weight_at(holes, known, x), d + x, state + x, d[x - 1],
-                            state[x - 1], STRAIGHT);
+                spread_from(holes, weight_at(holes, known, x), d + x, state + x, d + x - 1,
+                            state + x - 1, STRAIGHT);
         for (int x = width - 1; (x = unknown_to(state, x - 1)) >= 0;)
             if (is_meant(known, x, which))
-                spread_from(holes, weight_at(holes, known, x), d + x, state + x, d[x + 1],
-                            state[x + 1], STRAIGHT);
+                spread_from(holes, weight_at(holes, known, x), d + x, state + x, d + x + 1,
+                            state + x + 1, STRAIGHT);
     }
 }
 
@@ -344,8 +357,24 @@ static uint32_t gap_of(const struct holes *holes)
     return gap;
 }
 
-void rf_fill_holes(uint16_t *disparity, ptrdiff_t stride, int width, int height, uint8_t *state)
+/* Settles what surfaces look like beside holes, which is where they spread from. */
+static void settle_colours(const struct holes *holes)
 {
+    const int width = holes->width, height = holes->height;
+
+    for (int y = 0; y < height; y++)
+        for (int x = -1; (x = unknown_from(state_row(holes, y), x + 1, width)) < width;)
+            for (int j = y > 0 ? y - 1 : 0; j <= y + 1 && j < height; j++)
+                for (int i = x > 0 ? x - 1 : 0; i <= x + 1 && i < width; i++)
+                    if (state_row(holes, j)[i] == RF_SAMPLE_KNOWN)
+                        rf_hole_colours_settle(&holes->colours, holes->disparity, holes->stride,
+                                               holes->state, width, height, i, j, CONTINUOUS);
+}
+
+void rf_fill_holes(uint16_t *disparity, ptrdiff_t stride, int width, int height, uint8_t *state,
+                   const struct refocus_image *photo)
+{
+    const size_t samples = (size_t)width * (size_t)height;
     const int side = width > height ? width : height;
     struct holes holes = {.disparity = disparity,
                           .stride = stride,
@@ -355,6 +384,11 @@ void rf_fill_holes(uint16_t *disparity, ptrdiff_t stride, int width, int height,
                           .weight = (uint32_t)(side > 128 ? side / 8 : 16) * STRAIGHT};
 
     holes.gap = gap_of(&holes);
+    if (photo) {
+        holes.colours = (struct rf_hole_colours){state + samples, state + 4 * samples};
+        rf_hole_colours_load(&holes.colours, photo, width, height);
+        settle_colours(&holes);
+    }
     spread_all(&holes);
     for (int step = WIDEST; step >= 1; step /= 2) {
         smooth(&holes, step, 1);

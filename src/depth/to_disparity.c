@@ -11,6 +11,7 @@
 #include "depth/speckle.h"
 #include "depth/strays.h"
 #include "image/format.h"
+#include "image/read.h"
 
 /* Each value of large maps of whole numbers is converted once. REFOCUS_MAX_SIDE is below 2^16, so
  * 32 bits hold their number. */
@@ -230,15 +231,21 @@ static int take_values(struct conversion *conversion, const struct refocus_repai
     return conversion->values ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
 }
 
-/* Memory for the state of samples, and with specks for finding patches: behind the values where
- * the caller gives it. */
+/* Bytes of a sample's state, with those of its colours. */
+static uint64_t state_bytes(const struct refocus_repair_params *params)
+{
+    return params->photo ? 1 + RF_HOLE_COLOUR_BYTES : 1;
+}
+
+/* Memory for the state of samples and their colours, and with specks for finding patches: behind
+ * the values where the caller gives it. */
 static int take_memory(const struct refocus_depth_map *map,
                        const struct refocus_repair_params *params, uint8_t **state, uint32_t **work)
 {
     const uint64_t samples = (uint64_t)map->width * (uint64_t)map->height;
     const bool specks = params->speckle > 1;
 
-    if (samples > SIZE_MAX / sizeof **work || (specks && samples > INT32_MAX))
+    if (samples > SIZE_MAX / (1 + RF_HOLE_COLOUR_BYTES) || (specks && samples > INT32_MAX))
         return REFOCUS_ERR_MEMORY;
     if (params->memory) {
         uint8_t *const behind = (uint8_t *)params->memory + sizeof(struct values);
@@ -247,7 +254,7 @@ static int take_memory(const struct refocus_depth_map *map,
         *state = behind + (specks ? (size_t)samples * sizeof **work : 0);
         return REFOCUS_OK;
     }
-    *state = malloc((size_t)samples);
+    *state = malloc((size_t)(samples * state_bytes(params)));
     *work = specks && *state ? malloc((size_t)samples * sizeof **work) : NULL;
     if (*state && (*work || !specks))
         return REFOCUS_OK;
@@ -272,7 +279,9 @@ static bool good_repair(const struct refocus_repair_params *params,
 {
     if (params->memory &&
         ((uintptr_t)params->memory % sizeof(uint32_t) ||
-         params->memory_bytes < refocus_repair_memory(map->width, map->height, params->speckle)))
+         params->memory_bytes <
+             refocus_repair_memory(map->width, map->height, params->speckle) +
+                 (state_bytes(params) - 1) * (uint64_t)map->width * (uint64_t)map->height))
         return false;
     return params->speckle >= 0 && params->speckle <= REFOCUS_MAX_SPECKLE &&
            (!params->confidence ||
@@ -300,11 +309,22 @@ static int read_arguments(struct refocus_depth_map *map, struct refocus_repair_p
                                given_params);
 }
 
+/* Read the photo that the parameters point to: 8 bits, packed. */
+static int read_photo(struct refocus_repair_params *params, struct refocus_image *own)
+{
+    const int status = rf_read_image(NULL, "photo", own, params->photo);
+
+    params->photo = own;
+    return status == REFOCUS_OK && !refocus_format_bytes(own->format) ? REFOCUS_ERR_ARGUMENT
+                                                                      : status;
+}
+
 int refocus_depth_repair(const struct refocus_depth_map *given_map,
                          const struct refocus_repair_params *given_params, uint16_t *disparity,
                          ptrdiff_t stride, struct refocus_depth_report *report)
 {
     struct refocus_depth_map own_map;
+    struct refocus_image own_photo;
     struct refocus_repair_params own_params = {.memory = NULL};
     const struct refocus_depth_map *const map = &own_map;
     const struct refocus_repair_params *const params = &own_params;
@@ -315,6 +335,8 @@ int refocus_depth_repair(const struct refocus_depth_map *given_map,
     int status;
 
     status = read_arguments(&own_map, &own_params, given_map, given_params, report);
+    if (status == REFOCUS_OK && params->photo)
+        status = read_photo(&own_params, &own_photo);
     if (status == REFOCUS_OK)
         status = check(map, disparity, stride);
     if (status == REFOCUS_OK && !good_repair(params, map))
@@ -350,7 +372,7 @@ int refocus_depth_repair(const struct refocus_depth_map *given_map,
     if (params->confidence)
         write_confidence(map, state, params);
     if (state && conversion.scale != 0)
-        rf_fill_holes(disparity, stride, map->width, map->height, state);
+        rf_fill_holes(disparity, stride, map->width, map->height, state, params->photo);
     found = report_of(&conversion);
     if (report)
         status = refocus_struct_write(report, FIRST_REPORT, &found, sizeof found);

@@ -51,6 +51,18 @@ class DepthAndInfo(Case):
         self.assertEqual((width, height, bits, channels), (W, H, 8, 3))
         self.assertEqual(sum(row.count(b'\0\0\0') for row in rows), less['unknown'])
 
+    def test_holes_by_the_photo(self):
+        """A hole at a silhouette goes to the surface that looks like it, and to the farther one alone
+        where there is no photo."""
+        pictures.ppm('sides.ppm', 96, 64, lambda x, y: (60,) * 3 if x < 50 else (200,) * 3)
+        pictures.pgm('hole.pgm', 96, 64, lambda x, y: 0 if 44 <= x < 54 and 20 <= y < 44
+                     else 240 if x < 50 else 20)
+        for photo, ends in (('sides.ppm', '--depth'), 50), ((), 44):
+            self.succeeds('depth', *photo, 'hole.pgm', '--invalid', 'zero', '-o', 'd.pgm')
+            width, height, values = pictures.read_pnm('d.pgm')
+            row = values[32 * width:33 * width]
+            self.assertEqual([x for x in range(width) if row[x] > 32768], list(range(ends)))
+
     def test_strays(self):
         """A sample far nearer than all others is filled, which a line says, unless --near is given."""
         pictures.pgm('stray.pgm', W, H,

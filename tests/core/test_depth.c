@@ -295,7 +295,7 @@ static void holes_in_slopes(void **state)
             map[i] = (uint16_t)(off < radius ? 0 : 20000 + SLOPE * (i % W));
             known[i] = off < radius ? RF_SAMPLE_UNKNOWN : RF_SAMPLE_KNOWN;
         }
-        rf_fill_holes(map, 2 * W, W, H, known);
+        rf_fill_holes(map, 2 * W, W, H, known, NULL);
         for (int i = 0; i < W * H; i++) {
             const int off = abs(map[i] - 20000 - SLOPE * (i % W));
 

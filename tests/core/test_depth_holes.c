@@ -49,7 +49,7 @@ static void fill(int border, int width, uint16_t disparity, int gap)
                 i < HOLE || is_gap ? RF_SAMPLE_UNKNOWN : RF_SAMPLE_KNOWN);
         }
     }
-    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
+    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0], NULL);
 }
 
 /* Samples of the hole at the middle of the thing that are nearer than the far surface. */
@@ -101,7 +101,7 @@ static int fill_beside_near(int border)
         for (int i = 0; i < SIDE; i++)
             put(border, i, at, at < SIDE / 2 ? FAR : 62000,
                 i < HOLE ? RF_SAMPLE_UNKNOWN : RF_SAMPLE_KNOWN);
-    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
+    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0], NULL);
     while (along < SIDE - 1 && get(border, 0, along) < FAR + FAR)
         along++;
     return along - SIDE / 2;
@@ -127,7 +127,7 @@ static void dents_follow_what_is_above(void **nothing)
             state[y][x] = y < (x < 60 ? 8 : 12) || (y < 14 && x >= 72 && x < 96) ? RF_SAMPLE_UNKNOWN
                                                                                  : RF_SAMPLE_KNOWN;
         }
-    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
+    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0], NULL);
     for (int y = 12; y < 14; y++)
         for (int x = 72; x < 96; x++)
             assert_int_equal(map[y][x], 42000);
@@ -141,13 +141,13 @@ static void lines_without_samples(void **nothing)
     memset(state, RF_SAMPLE_UNKNOWN, sizeof state);
     map[9][7] = 60000;
     state[9][7] = RF_SAMPLE_KNOWN;
-    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
+    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0], NULL);
     for (int i = 0; i < SIDE * SIDE; i++)
         assert_int_equal(map[i / SIDE][i % SIDE], 60000);
     for (int x = 0; x < SIDE; x += 40) {
         memset(state[0], RF_SAMPLE_UNKNOWN, sizeof state[0]);
         state[0][x] = RF_SAMPLE_KNOWN;
-        rf_fill_holes(map[0], sizeof map[0], SIDE, 1, state[0]);
+        rf_fill_holes(map[0], sizeof map[0], SIDE, 1, state[0], NULL);
         assert_int_equal(map[0][SIDE - 1], 60000);
     }
 }
@@ -168,7 +168,7 @@ static void fill_sparse(uint32_t percent, int strip)
                               ? RF_SAMPLE_UNKNOWN
                               : RF_SAMPLE_KNOWN;
         }
-    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
+    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0], NULL);
 }
 
 /* The samples of sparse maps, as of a laser scanner, are taken for what is around them, near or
@@ -213,7 +213,7 @@ static void parts_are_dense(void **nothing)
             map[y][x] = x < 54 ? FAR : 62000;
             state[y][x] = x < 30 || (x >= 54 && x < 70) ? RF_SAMPLE_KNOWN : RF_SAMPLE_UNKNOWN;
         }
-    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0]);
+    rf_fill_holes(map[0], sizeof map[0], SIDE, SIDE, state[0], NULL);
     for (int y = 0; y < SIDE; y++)
         for (int x = 30; x < 54; x++)
             assert_int_equal(map[y][x], FAR);
@@ -265,6 +265,61 @@ static void fill_leaves_no_streaks(void **test)
     assert_true(along / n < 200);
 }
 
+enum { SILHOUETTE = 130, HOLE_FROM = 116, HOLE_TO = 136, ZOOM = 2 };
+
+/* Fills a hole of which all but the last columns lie on a near surface of one code, that ends at
+ * the silhouette before a far one of another. Returns where the far one begins in a row. */
+static int silhouette_by(const struct refocus_repair_params *given, uint8_t near, uint8_t far)
+{
+    static uint16_t samples[SIDE][SIDE], out[SIDE][SIDE];
+    static uint8_t rgb[SIDE * ZOOM][SIDE * ZOOM][3];
+    const struct refocus_image photo =
+        refocus_image_packed(REFOCUS_FORMAT_BGR8, rgb, SIDE * ZOOM, SIDE * ZOOM, sizeof rgb[0]);
+    struct refocus_repair_params params = *given;
+    struct refocus_depth_map given_map = refocus_depth_map_default();
+    int x = 0;
+
+    for (int y = 0; y < SIDE * ZOOM; y++)
+        for (x = 0; x < SIDE * ZOOM; x++)
+            memset(rgb[y][x], x < SILHOUETTE * ZOOM ? near : far, 3);
+    for (int y = 0; y < SIDE; y++)
+        for (x = 0; x < SIDE; x++)
+            samples[y][x] = x >= HOLE_FROM && x < HOLE_TO && y > 80 && y < 160 ? 0
+                            : x < SILHOUETTE                                   ? 50000
+                                                                               : FAR;
+    given_map.samples = samples;
+    given_map.sample = REFOCUS_SAMPLE_U16;
+    given_map.width = given_map.height = SIDE;
+    given_map.stride = sizeof samples[0];
+    given_map.flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN;
+    given_map.value_near = 65535;
+    params.photo = &photo;
+    assert_int_equal(refocus_depth_repair(&given_map, &params, out[0], sizeof out[0], NULL),
+                     REFOCUS_OK);
+    for (x = 0; out[SIDE / 2][x] > 2 * FAR; x++) {
+    }
+    return x;
+}
+
+/* A hole is filled from the surface that looks like it, in memory of the caller as well; and from
+ * the farther one where both look the same. */
+static void photo_says_which_side(void **nothing)
+{
+    struct refocus_repair_params params = refocus_repair_params_default();
+    const size_t photo_bytes = (size_t)6 * SIDE * SIDE;
+
+    (void)nothing;
+    assert_int_equal(silhouette_by(&params, 200, 60), SILHOUETTE);
+    assert_int_equal(silhouette_by(&params, 60, 200), SILHOUETTE);
+    assert_int_equal(silhouette_by(&params, 100, 100), HOLE_FROM);
+    params.speckle = 4;
+    params.memory_bytes = (size_t)refocus_repair_memory(SIDE, SIDE, 4) + photo_bytes;
+    params.memory = malloc(params.memory_bytes);
+    assert_non_null(params.memory);
+    assert_int_equal(silhouette_by(&params, 200, 60), SILHOUETTE);
+    free(params.memory);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -276,6 +331,7 @@ int main(void)
         cmocka_unit_test(gaps_are_no_holes),
         cmocka_unit_test(parts_are_dense),
         cmocka_unit_test(fill_leaves_no_streaks),
+        cmocka_unit_test(photo_says_which_side),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -134,7 +134,10 @@ static int repair(void)
                                           .meaning = REFOCUS_DEPTH_DISPARITY,
                                           .flags = REFOCUS_DEPTH_ZERO_IS_UNKNOWN};
 
+    const struct refocus_image image = photo();
+
     params.speckle = 4;
+    params.photo = &image;
     params.confidence = confidence;
     params.confidence_stride = W;
     return refocus_depth_repair(&map, &params, out, 2 * W, NULL);
@@ -180,6 +183,7 @@ static void repairs_in_memory_given(void **state)
     uint8_t *work = malloc(bytes + 4);
     struct refocus_repair_params params = refocus_repair_params_default();
     struct refocus_depth_map map = refocus_depth_map_default();
+    const struct refocus_image image = photo();
 
     (void)state;
     assert_non_null(work);
@@ -201,6 +205,11 @@ static void repairs_in_memory_given(void **state)
     map.sample = REFOCUS_SAMPLE_U16;
     params.memory = work;
     params.memory_bytes = (size_t)refocus_repair_memory(W, H, 0) - 1;
+    assert_int_equal(refocus_depth_repair(&map, &params, out, 2 * W, NULL), REFOCUS_ERR_ARGUMENT);
+    params.memory_bytes++;
+    assert_int_equal(refocus_depth_repair(&map, &params, out, 2 * W, NULL), REFOCUS_OK);
+    params.photo = &image;
+    params.memory_bytes += 6 * W * H - 1;
     assert_int_equal(refocus_depth_repair(&map, &params, out, 2 * W, NULL), REFOCUS_ERR_ARGUMENT);
     params.memory_bytes++;
     assert_int_equal(refocus_depth_repair(&map, &params, out, 2 * W, NULL), REFOCUS_OK);

@@ -145,8 +145,27 @@ static void use_photo(const struct refocus_image *photo)
 {
     const struct refocus_upsample_params upsample = refocus_upsample_params_default();
     const struct refocus_disparity map = misuse_map();
+    struct refocus_repair_params repair = refocus_repair_params_default();
+    const struct refocus_depth_map depth = depth_map();
 
     REFUSED(refocus_upsample, photo, &map, &upsample, out, 2 * W);
+    repair.photo = photo;
+    if (photo)
+        REFUSED(refocus_depth_repair, &depth, &repair, out, 2 * W, NULL);
+}
+
+/* Pictures that are good, but not to fill holes by: of Y, U and V, and of 16 bits. */
+static void other_photos(void)
+{
+    static uint8_t pixels[W * H * 6];
+    struct refocus_repair_params repair = refocus_repair_params_default();
+    const struct refocus_depth_map depth = depth_map();
+    struct refocus_image photo = refocus_image_planar(REFOCUS_FORMAT_I420, pixels, W, H);
+
+    repair.photo = &photo;
+    REFUSED(refocus_depth_repair, &depth, &repair, out, 2 * W, NULL);
+    photo = refocus_image_packed(REFOCUS_FORMAT_RGB16, pixels, W, H, W * 6);
+    ANSWERS(REFOCUS_ERR_UNSUPPORTED, refocus_depth_repair, &depth, &repair, out, 2 * W, NULL);
 }
 
 static void use_map(const struct refocus_disparity *map)
@@ -177,6 +196,7 @@ static void upsampling(void)
     const struct refocus_disparity map = misuse_map();
 
     misuse_images(use_photo);
+    other_photos();
     misuse_maps(use_map);
     misuse_strides(use_stride, 2 * W);
     REFUSED(refocus_upsample, &photo, &map, NULL, out, 2 * W);

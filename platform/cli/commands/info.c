@@ -85,6 +85,7 @@ static int measure_depth(struct input *input, const struct settings *settings,
         return status;
     refocus_depth_set_invalid(map, settings->depth.invalid);
     params.speckle = (int32_t)settings->depth.speckle;
+    params.photo = input_hole_photo(input);
     found->unit_is_doubtful =
         unit_is_doubtful(input->photo, &settings->depth, false, found->unit_line);
     input->disparity = samples <= SIZE_MAX / 2 ? malloc((size_t)samples * 2) : NULL;

@@ -122,6 +122,14 @@ int input_placed(const struct input *input, const struct depth_settings *setting
     return status;
 }
 
+const struct refocus_image *input_hole_photo(const struct input *input)
+{
+    const struct refocus_image *photo = input->photo ? input->photo->image : NULL;
+    const int bytes = photo && photo->plane[0] ? refocus_format_bytes(photo->format) : 0;
+
+    return (bytes == 3 || bytes == 4) && input->orientation <= 1 ? photo : NULL;
+}
+
 /* A sample is no surer than the file says; those that were filled stay guesses. */
 static void weigh(struct input *input)
 {
@@ -184,6 +192,7 @@ int input_convert(struct input *input, const struct depth_settings *settings)
     input->report = refocus_depth_report_default();
     params.confidence = input->confidence;
     params.confidence_stride = map->width;
+    params.photo = input_hole_photo(input);
     if (input->disparity && input->confidence)
         status = refocus_depth_repair(map, &params, input->disparity, (ptrdiff_t)map->width * 2,
                                       &input->report);

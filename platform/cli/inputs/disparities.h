@@ -12,6 +12,10 @@ bool input_has_edges_placed(const struct input *input, const struct depth_settin
  * NULL. */
 const uint8_t *input_confidence(const struct input *input);
 
+/* The photo, to fill holes by its colours; NULL where there is none of 8 bits, or the map is yet to
+ * be turned. */
+const struct refocus_image *input_hole_photo(const struct input *input);
+
 /* These return exit codes and print why it is not EXIT_DONE. */
 
 /* Check that the map's nearest distance is nearer than its farthest. */
