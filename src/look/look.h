@@ -46,9 +46,11 @@ struct rf_stars {
 /* Grain of the photo, measured where it is smooth. */
 struct rf_grain {
     /* number of blocks by luma and by variance between every other pixel, in 64 bins an octave; the
-     * sum of their variances between neighbours, 1/16 code^2; and how much they are texture, Q8 */
+     * sum of their variances between neighbours, 1/16 code^2; how much they are texture, Q8; and by
+     * how much variance grows less with distance, 1/64 octave */
     uint32_t blocks[RF_NOISE_LEVELS][RF_NOISE_BINS], near[RF_NOISE_LEVELS][RF_NOISE_BINS];
     uint32_t rough[RF_NOISE_LEVELS][RF_NOISE_BINS];
+    int32_t bend[RF_NOISE_LEVELS][RF_NOISE_BINS];
     bool any;                        /* there is some */
     uint16_t sigma[RF_NOISE_LEVELS]; /* standard deviation of luma, 1/256 code */
     int side;                        /* weight of neighbours in smoothed noise, Q7 */

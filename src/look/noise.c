@@ -9,6 +9,11 @@
  * hundredth where that is noise, and more than 2.8 times where it is a texture that fills all of
  * them. They have as good as the same where it is a pattern, as stripes are.
  *
+ * Coarse noise is told by the bend that noise_blocks.c measures. Texture has one above 0 only where
+ * its growth halves at least from one octave to the next; white noise has 0.35, since its smoothest
+ * blocks were selected. From a quarter of an octave on all is noise. What counts is the mean of the
+ * smoothest tenth: with a hundredth it is chance, and more than a tenth have edges in reach.
+ *
  * A brightness of texture takes the least noise of the others, and a photo of which less than two
  * fifths of the blocks have a brightness of noise has none: flowers, leaves and grass have no
  * smooth place to tell it by. What is too smooth to have noise that counts is of neither.
@@ -51,6 +56,9 @@ static const double steeper = 1.25, silent = 1.0, heard = 1.5;
 static const double noise_spread = 2.2, texture_spread = 2.8, few_blocks = 0.4, enough_blocks = 0.6;
 static const double pattern_spread = 1.04, chance_spread = 1.08;
 
+/* The bend, in octaves, from which on a brightness is one of noise. */
+static const double noise_bend = 0.25;
+
 /* Sums over the smoothest blocks, in code^2. */
 struct smoothest {
     double near, far;
@@ -76,7 +84,7 @@ static struct level level_of(const struct rf_grain *grain, int level, struct smo
     struct level of = {0, -1, 0, false};
     uint32_t passed = 0, rough = 0;
     double spread;
-    int bin = 0;
+    int bin = 0, bend = 0;
 
     for (int i = 0; i < RF_NOISE_BINS; i++)
         of.blocks += blocks[i];
@@ -87,9 +95,15 @@ static struct level level_of(const struct rf_grain *grain, int level, struct smo
         sums->near += grain->near[level][bin] / 16.0;
         sums->far += blocks[bin] * rf_noise_bin_middle(bin);
         rough += grain->rough[level][bin];
+        bend += grain->bend[level][bin];
     }
     of.variance = rf_noise_bin_middle(bin - 1);
     of.noise = 1 - rough / ((double)RF_NOISE_ROUGH * passed);
+    for (; passed < of.blocks / 10; bin++) {
+        passed += blocks[bin];
+        bend += grain->bend[level][bin];
+    }
+    of.noise = fmax(of.noise, ramp(bend / ((double)RF_NOISE_OCTAVE * passed), 0, noise_bend));
     while (passed < of.blocks / 4)
         passed += blocks[bin++];
     spread = sqrt(rf_noise_bin_middle(bin - 1) / of.variance);

@@ -11,6 +11,13 @@
  * fourth pixel, which reaches out of the block, is four times that between every other one, as that
  * of slopes is, and of noise up to twice, as chance alone has it. The side of a block that differs
  * most does not count, as it may be an edge.
+ *
+ * Noise that demosaicking, JPEG or a change of size made coarse grows from 2 to 4 pixels as much as
+ * texture that a lens made smooth, but hardly from 4 to 8: smoothed by a Gaussian of 1.2 pixels it
+ * grows 2.6 and 1.1 times, which is 1.4 and 0.1 octaves. Texture that looks alike at all sizes
+ * grows by as many octaves each time. So the bend, the octaves from 2 to 4 less twice those from 4
+ * to 8, is summed up as well: 1.4 - 2 x 0.1 = 1.2 of that noise, 1.4 - 2 x 1.4 = -1.4 of such
+ * texture.
  */
 #include "look/noise_blocks.h"
 
@@ -24,17 +31,20 @@
 enum {
     BLOCK = 8,
     MOST_BLOCKS = 8192, /* larger photos are measured in every second, third... block each way */
-    REACH = 4,          /* pixels around a block that are looked at, too */
+    REACH = 8,          /* pixels around a block that are looked at, too */
     SIDE = BLOCK + 2 * REACH,
     MOST_SAMPLES = 2 * BLOCK * BLOCK,    /* second differences of a block */
     MOST_SQUARE = (2 * 251) * (2 * 251), /* second differences of codes from 2 to 253 */
-    OCTAVE = 64,                         /* bins of an octave of variance */
     MOST_NEAR = 1 << 17,                 /* larger variances between neighbours count as this */
+    OCTAVE = RF_NOISE_OCTAVE,
+    MOST_BEND = 2 * OCTAVE, /* as do steeper bends, so that an edge does not outvote all others */
 };
 static_assert(16 * MOST_SAMPLES <= INT32_MAX / MOST_SQUARE, "sums of squares");
 static_assert(16 * MOST_SQUARE / 6 < 2 * OCTAVE << (RF_NOISE_BINS / OCTAVE - 2), "a bin for each");
 static_assert(MOST_NEAR <= UINT32_MAX / 2 / MOST_BLOCKS, "sums of variances");
 static_assert(16 * MOST_SQUARE / 6 <= INT32_MAX / RF_NOISE_ROUGH, "products of variances");
+static_assert(16 * MOST_SQUARE / 6 <= INT32_MAX / (2 * OCTAVE), "logarithms of variances");
+static_assert(MOST_BEND <= INT32_MAX / 2 / MOST_BLOCKS, "sums of bends");
 
 /* The variance between every fourth pixel, as times that between every other one, up to which a
  * block is one of noise, and from which on of texture. */
@@ -98,10 +108,10 @@ static int variance_within(int v[SIDE][SIDE], int step)
     return variance_of_differences(all);
 }
 
-/* Variance between the pixels of a block and those around it, which are REACH away, -1 if these are
+/* Variance between the pixels of a block and those around it, which are step away, -1 if these are
  * not known. Of the four sides that have some the one with most is left out: there may be an edge.
  */
-static int variance_beyond(int v[SIDE][SIDE])
+static int variance_beyond(int v[SIDE][SIDE], int step)
 {
     struct differences side[4] = {{0, 0}};
     int sum = 0, most = 0, sides = 0;
@@ -110,8 +120,8 @@ static int variance_beyond(int v[SIDE][SIDE])
         for (int k = REACH; k < REACH + BLOCK; k++) {
             const int after = k >= REACH + BLOCK / 2;
 
-            add_difference(&side[after], v[i][k - REACH], v[i][k], v[i][k + REACH]);
-            add_difference(&side[2 + after], v[k - REACH][i], v[k][i], v[k + REACH][i]);
+            add_difference(&side[after], v[i][k - step], v[i][k], v[i][k + step]);
+            add_difference(&side[2 + after], v[k - step][i], v[k][i], v[k + step][i]);
         }
     }
     for (int i = 0; i < 4; i++) {
@@ -179,6 +189,24 @@ static int roughness_of(int variance, int farther)
     return RF_NOISE_ROUGH * rf_smaller(rf_larger(farther - from, 0), range) / range;
 }
 
+/* The logarithm of a variance, in 1/OCTAVE octave from a constant on. */
+static int octaves_of(int variance)
+{
+    return bin_of(2 * OCTAVE * rf_larger(variance, 1));
+}
+
+/* By how many octaves a block's variance grows from 2 pixels to 4, less twice those from 4 to 8, in
+ * 1/OCTAVE octave; 0 if not known. */
+static int bend_of(int variance, int farther, int farthest)
+{
+    const int grows = octaves_of(farther) - octaves_of(variance);
+    const int goes_on = octaves_of(farthest) - octaves_of(farther);
+
+    if (farther < 0 || farthest < 0)
+        return 0;
+    return rf_smaller(rf_larger(grows - 2 * goes_on, -MOST_BEND), MOST_BEND);
+}
+
 static void count_block(struct rf_grain *grain, const struct rf_photo_source *photo, int x0, int y0)
 {
     int v[SIDE][SIDE], sum = 0;
@@ -192,11 +220,12 @@ static void count_block(struct rf_grain *grain, const struct rf_photo_source *ph
     {
         const int level = sum / (BLOCK * BLOCK) / RF_NOISE_WIDTH;
         const int variance = variance_within(v, 2), bin = bin_of(variance);
-        const int near = variance_within(v, 1);
+        const int near = variance_within(v, 1), farther = variance_beyond(v, 4);
 
         grain->blocks[level][bin]++;
         grain->near[level][bin] += (uint32_t)rf_smaller(near, MOST_NEAR);
-        grain->rough[level][bin] += (uint32_t)roughness_of(variance, variance_beyond(v));
+        grain->rough[level][bin] += (uint32_t)roughness_of(variance, farther);
+        grain->bend[level][bin] += bend_of(variance, farther, variance_beyond(v, 8));
     }
 }
 
@@ -209,6 +238,7 @@ void rf_count_noise_blocks(const struct rf_look *look)
     memset(look->grain->blocks, 0, sizeof look->grain->blocks);
     memset(look->grain->near, 0, sizeof look->grain->near);
     memset(look->grain->rough, 0, sizeof look->grain->rough);
+    memset(look->grain->bend, 0, sizeof look->grain->bend);
     while (blocks > (int64_t)MOST_BLOCKS * (step / BLOCK) * (step / BLOCK))
         step += BLOCK;
     for (int y = 0; y + BLOCK <= photo->height && !rf_cancelled(look->exec); y += step)
