@@ -94,9 +94,11 @@ struct refocus_thin_params {
                                least, and is phased in up to 5/4 of that. Not where something thick
                                is as near, nor with masks, figures, rings, cat's eyes and fringes.
                                In focus, before what is blurred by two pixels and more, the pixels
-                               that they cover in part stay sharp, so that their edges are not in
-                               steps. They are looked for in the first render of a photo, which
-                               takes some frames' time. 0 = no, the default */
+                               that they, and thick things, cover in part stay sharp, so that their
+                               edges are not in steps and a bright subject has no halo; out of focus
+                               those of thick things are blurred as these are. They are looked for
+                               in the first render of a photo, which takes some frames' time. 0 =
+                               no, the default */
 };
 
 static inline struct refocus_thin_params refocus_thin_params_default(void)

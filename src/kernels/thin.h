@@ -1,13 +1,15 @@
-/* thin.h: the contract of find_thin, which finds the pixels of wires and hair. */
+/* thin.h: the contract of find_thin, which finds the pixels of wires and hair, and those at
+ * silhouettes. */
 #ifndef RF_KERNELS_THIN_H
 #define RF_KERNELS_THIN_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 enum { RF_THIN_REACH = 10, RF_THIN_SHARE = 20480 };
 
-/* A mixture: a pixel of which alpha is of a thin structure and the rest of its background. */
+/* A mixture: a pixel of which alpha is of something near and the rest of its background. */
 struct rf_thin {
     uint8_t at;    /* 16 y + x in its tile */
     uint8_t alpha; /* 255 = 1 */
@@ -15,6 +17,8 @@ struct rf_thin {
     uint16_t light[3]; /* F, Q12 */
     uint16_t whole[3]; /* light as a pixel of N alone, Q12: alpha N and (1 - alpha) times the mean
                           light of the background; of the caller's matte alone */
+    bool thick;        /* it lies beside what is no thin structure, or is of the caller's matte: it
+                          is never splatted */
 };
 
 /* A tile of a photo in planes, of pixel (0, 0) on, rows `stride` apart. The photo goes
@@ -45,7 +49,7 @@ struct rf_thin_tile {
  *     width       of what is kept: steps from far pixel to far pixel less one, the least of
  *                 four axes; of others: pixels in a row that are near, begin at the first or
  *                 the second step and end before a far one, the least of eight directions.
- *                 At most 7, else none
+ *                 Thin is a width of 7 at the most
  *     hit         the first clean pixel of each direction, one of them at 4 steps or nearer;
  *                 else, or if the width is 1, the first far one
  *     weight      1440 / squared distance, rounded down
@@ -61,10 +65,10 @@ struct rf_thin_tile {
  *                 C - F, all rounded down; else no less than keeps C - (1 - alpha) F between 0 and
  *                 alpha white
  *
- * None is what has no N, or has light above 4000 in N or C; what is not kept and has an
- * alpha below 12, or (C - F)^2 < 2 spread + 144. What is kept has then, and with 0, an
- * alpha of 255. The near disparity is its own of what is kept, else the greatest of
- * N's; the far one is d.
+ * None is what is kept and not thin, has no N, or has light above 4000 in N or C; what is not kept
+ * and has an alpha below 12, or (C - F)^2 < 2 spread + 144, 8 spread if it is not thin: there, only
+ * the light tells a mixture. What is kept has then, and with 0, an alpha of 255. The near disparity
+ * is its own of what is kept, else the greatest of N's; the far one is d.
  */
 typedef int rf_find_thin_fn(struct rf_thin *out, const struct rf_thin_tile *tile, int most,
                             void *share);

@@ -208,6 +208,7 @@ static void list_band(void *context, int band, int worker)
                     .alpha = (uint8_t)pass->alpha.at[y * pass->alpha.stride + x],
                     .near_disparity = pass->near.at[y * pass->near.stride + x],
                     .far_disparity = pass->far.at[y * pass->far.stride + x],
+                    .thick = true,
                 };
                 for (int c = 0; c < 3; c++)
                     thin->whole[c] = mean.channel[c][y * mean.stride + x];

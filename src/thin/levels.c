@@ -73,26 +73,47 @@ static bool is_near(const struct rf_thin_pass *t, const struct rf_thin *thin, in
 
 /* A pixel that the map has far can hardly be covered by more than half: with a greater alpha, its
  * own texture was mistaken for N. */
+static bool is_mistaken(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
+{
+    return thin->alpha > MOST_FAR_ALPHA && !is_near(t, thin, tx, ty);
+}
+
 bool rf_is_matted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
 {
     const int level = level_of(thin->at);
 
-    if (thin->alpha > MOST_FAR_ALPHA && !is_near(t, thin, tx, ty))
+    if (is_mistaken(t, thin, tx, ty))
         return false;
     return abs(rf_near_blur(t, thin, tx, ty)) <= matte_blur(level) &&
            rf_thin_blur(t, thin->far_disparity, tx * RF_TILE, ty * RF_TILE) >= far_blur(level);
 }
 
+/* Whether the caller knows what N hides at a mixture. It is put only where it is farther than the
+ * map, which has F here: that would be inpainted. */
+static bool is_known(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
+{
+    const int x = t->view->x0 + tx * RF_TILE + thin->at % RF_TILE;
+    const int y = t->view->y0 + ty * RF_TILE + thin->at / RF_TILE;
+
+    return t->behind && rf_is_behind(t->behind, x, y, thin->near_disparity);
+}
+
 void rf_choose_near(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice)
 {
+    const bool given = rf_thin_run_of(t, tx, ty)->given;
     uint32_t count;
     const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
 
     for (uint32_t i = 0; i < count; i++, thin++) {
-        const int level = level_of(thin->at), near = rf_near_blur(t, thin, tx, ty);
-        const int far = rf_thin_blur(t, thin->far_disparity, tx * RF_TILE, ty * RF_TILE);
+        const int level = level_of(thin->at);
+        int near, far;
 
-        if (thin->alpha < SIDE || abs(near) <= matte_blur(level) || far - near < far_blur(level))
+        if (!thin->thick || thin->alpha < SIDE || is_mistaken(t, thin, tx, ty))
+            continue;
+        near = rf_near_blur(t, thin, tx, ty);
+        far = rf_thin_blur(t, thin->far_disparity, tx * RF_TILE, ty * RF_TILE);
+        if (abs(near) <= matte_blur(level) || far - near < far_blur(level) ||
+            (!given && is_known(t, thin, tx, ty)))
             continue;
         choice->nears = true;
         choice->near[i / 64] |= UINT64_C(1) << i % 64;
@@ -101,7 +122,7 @@ void rf_choose_near(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin
 
 bool rf_is_splatted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
 {
-    return rf_near_blur(t, thin, tx, ty) <= -splat_blur_of(t, level_of(thin->at));
+    return !thin->thick && rf_near_blur(t, thin, tx, ty) <= -splat_blur_of(t, level_of(thin->at));
 }
 
 /* Rays hit thin structures often enough where they lie closer than 1.8 pixels, and miss many from

@@ -87,12 +87,13 @@ static void choose_band(void *context, int band, int worker)
         struct rf_thin_choice *choice = rf_thin_choice_of(t, tx, band);
 
         *choice = (struct rf_thin_choice){.splats = false};
-        if (rf_thin_run_of(t, tx, band)->given)
-            rf_choose_near(t, tx, band, choice);
-        else if (!t->finds || is_noisy(t, tx, band))
-            continue;
-        else if (t->disc_scale)
-            choose_splatted(t, tx, band, choice);
+        if (!rf_thin_run_of(t, tx, band)->given) {
+            if (!t->finds || is_noisy(t, tx, band))
+                continue;
+            if (t->disc_scale)
+                choose_splatted(t, tx, band, choice);
+        }
+        rf_choose_near(t, tx, band, choice);
         if (t->mattes)
             rf_choose_matted(t, tx, band, choice);
     }
@@ -107,6 +108,14 @@ static bool is_apart(const struct rf_thin_choice *choice, uint32_t i)
 {
     return rf_has_bit(choice->splat, i) || rf_has_bit(choice->matte, i) ||
            rf_has_bit(choice->near, i);
+}
+
+/* Whether the light of a mixture is exchanged: what was found is drawn as N with that of the photo.
+ */
+static bool is_swapped(const struct rf_thin_choice *choice, uint32_t i, bool given)
+{
+    return rf_has_bit(choice->splat, i) || rf_has_bit(choice->matte, i) ||
+           (given && rf_has_bit(choice->near, i));
 }
 
 /* Where N is composited, the planes have the circle of confusion of F. */
@@ -223,7 +232,7 @@ void rf_thin_sharp_means(const struct rf_thin_pass *t, int tx, int ty,
                 (uint16_t)(4 *
                            t->light.channel[c][at + i / RF_TILE * t->view->stride + i % RF_TILE]);
     for (uint32_t i = 0; i < count; i++) {
-        if (!is_apart(choice, i))
+        if (!is_swapped(choice, i, rf_thin_run_of(t, tx, ty)->given))
             continue;
         for (int c = 0; c < 3; c++)
             mean[c][thin[i].at] =
@@ -235,6 +244,7 @@ void rf_thin_sharp_means(const struct rf_thin_pass *t, int tx, int ty,
 
 static void swap_tile(const struct rf_thin_pass *t, int tx, int ty)
 {
+    const bool given = rf_thin_run_of(t, tx, ty)->given;
     const ptrdiff_t stride = t->view->stride, tile = ty * RF_TILE * stride + tx * RF_TILE;
     uint16_t *const red = t->light.channel[0] + tile, *const green = t->light.channel[1] + tile,
                     *const blue = t->light.channel[2] + tile;
@@ -244,16 +254,18 @@ static void swap_tile(const struct rf_thin_pass *t, int tx, int ty)
 
     for (uint32_t i = 0; i < count; i++) {
         const ptrdiff_t at = thin[i].at / RF_TILE * stride + thin[i].at % RF_TILE;
-        const uint16_t light[3] = {red[at], green[at], blue[at]};
         uint16_t *const own = rf_has_bit(choice->near, i) ? thin[i].whole : thin[i].light;
+        uint16_t light[3];
 
-        if (!is_apart(choice, i))
+        if (!is_swapped(choice, i, given))
             continue;
-        red[at] = own[0];
-        green[at] = own[1];
-        blue[at] = own[2];
-        for (int c = 0; c < 3; c++)
-            own[c] = light[c];
+        memcpy(light, own, sizeof light);
+        own[0] = red[at];
+        own[1] = green[at];
+        own[2] = blue[at];
+        red[at] = light[0];
+        green[at] = light[1];
+        blue[at] = light[2];
     }
 }
 

@@ -21,6 +21,11 @@
  * up to about half a pixel of its own blur, before what is blurred by two or more pixels, where
  * nothing nearer reaches.
  *
+ * Pixels beside thick things that the map gives to the background are mixtures, too: the light of a
+ * bright subject would be a halo on a dark wall. They are matted in focus. Out of focus, but not as
+ * far as F, they are drawn as pixels of N: the planes get C at the depth of N, where alpha is 1/8
+ * or more; but not where the caller knows what is hidden.
+ *
  * F is the mean of the pixels around of the far surface that counts most, each by the inverse
  * square of its distance; N that of the near ones around by how much they differ from F. alpha is
  * the part of N - F in C - F, at least as much as keeps N between black and white. Where C tells

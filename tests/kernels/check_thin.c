@@ -123,7 +123,8 @@ static void find_most(struct photo *p)
 static bool same(const struct rf_thin *a, const struct rf_thin *b)
 {
     return a->at == b->at && a->alpha == b->alpha && a->near_disparity == b->near_disparity &&
-           a->far_disparity == b->far_disparity && !memcmp(a->light, b->light, sizeof a->light);
+           a->far_disparity == b->far_disparity && a->thick == b->thick &&
+           !memcmp(a->light, b->light, sizeof a->light);
 }
 
 static uint64_t share[RF_THIN_SHARE / sizeof(uint64_t)];

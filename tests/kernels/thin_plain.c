@@ -275,7 +275,7 @@ static bool shines(const struct look *l)
     return false;
 }
 
-/* Whether a pixel is of something thin, or beside it and a mixture. A hair of one pixel
+/* Whether a pixel is of something thin, or beside something near and a mixture. A hair of one pixel
  * has nothing clean beside it that is as like what it hides. */
 static bool take_apart(struct look *l, struct rf_thin *thin)
 {
@@ -283,7 +283,8 @@ static bool take_apart(struct look *l, struct rf_thin *thin)
     bool differs;
 
     l->width = l->near ? own_width(l) : width_beside(l);
-    if (l->width > THIN || ((l->width == 1 || !set_far(l, true)) && !set_far(l, false)))
+    if ((l->near && l->width > THIN) ||
+        ((l->width == 1 || !set_far(l, true)) && !set_far(l, false)))
         return false;
     for (int c = 0; c < 3; c++)
         l->light[c] = l->p->light[c][place(l, l->x, l->y)];
@@ -291,14 +292,15 @@ static bool take_apart(struct look *l, struct rf_thin *thin)
     if (!near || shines(l))
         return false;
     alpha = share(l);
-    differs = contrast(l) >= 2 * (int64_t)l->spread + FAINT;
+    differs = contrast(l) >= (l->width > THIN ? 8 : 2) * (int64_t)l->spread + FAINT;
     if (!l->near && (alpha < LEAST || !differs))
         return false;
     if (alpha == 0 || !differs)
         alpha = 255; /* it may be anything */
     *thin = (struct rf_thin){.alpha = (uint8_t)alpha,
                              .near_disparity = (uint16_t)(l->near ? l->own : near),
-                             .far_disparity = (uint16_t)l->far};
+                             .far_disparity = (uint16_t)l->far,
+                             .thick = l->width > THIN};
     for (int c = 0; c < 3; c++)
         thin->light[c] = (uint16_t)l->far_light[c];
     return true;

@@ -212,7 +212,7 @@ static void true_layers(void **state)
     } cases[] = {{NEAR / 65535.0f, 6, 22, 55, 55}, /* on the subject */
                  {NEAR / 65535.0f - 0.05f, 2, 12, 37, 33},
                  {NEAR / 65535.0f - 0.15f, 0, 13, 44, 43},
-                 {0.47f, 1.5, 15, 46, 46},         /* The exact map alone reaches 45. */
+                 {0.47f, 1, 15, 47, 46},           /* The exact map alone reaches 46. */
                  {FAR / 65535.0f, 10, 25, 46, 46}, /* on the wall */
                  {0, 1, 12, 44, 44}};
     static uint16_t soft[PIXELS];

@@ -161,26 +161,26 @@ static void strands(void **state)
     picture_free(&far);
 }
 
-/* Two wires in focus: the background is blurred, their edges are not. */
-static void matted(void **state)
+/* Two lines in focus, so many times as wide as wires: the background is blurred, their edges are
+ * not, and their light stays off the background. */
+static void check_matted(const char *what, double times)
 {
     static uint8_t out[MOST], background[MOST];
     struct picture p = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){30, 60, 50}, FAR), far, share;
     struct setting s = plain;
-    double off[2] = {0, 0};
+    double off[2] = {0, 0}, beside[2] = {0, 0};
     int pixels = 0;
 
-    (void)state;
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         if (i % WIDTH > 170)
             memset(p.rgb + 3 * i, 130, 3);
     far = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){0, 0, 0}, FAR);
     memcpy(far.rgb, p.rgb, MOST);
     share = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){0, 0, 0}, FAR);
-    picture_line(&p, 100, 0, 0.4, 1, 3, 220);
-    picture_line(&p, 0, 60, 1, 0.15, 2, 220);
-    picture_line(&share, 100, 0, 0.4, 1, 3, 255);
-    picture_line(&share, 0, 60, 1, 0.15, 2, 255);
+    picture_line(&p, 100, 0, 0.4, 1, 3 * times, 220);
+    picture_line(&p, 0, 60, 1, 0.15, 2 * times, 220);
+    picture_line(&share, 100, 0, 0.4, 1, 3 * times, 255);
+    picture_line(&share, 0, 60, 1, 0.15, 2 * times, 255);
     s.focus = NEAR / 65535.0f;
     render_fresh(&far, false, &s, background);
     for (int pass = 0; pass < 2; pass++) {
@@ -193,15 +193,54 @@ static void matted(void **state)
             if (alpha > 0 && alpha < 1) {
                 off[pass] += fabs(out[3 * i] - should);
                 pixels += !pass;
+            } else {
+                beside[pass] += fabs(out[3 * i] - should);
             }
         }
     }
-    printf("matted: %.2f codes off, by rays %.2f\n", off[0] / pixels, off[1] / pixels);
+    printf("%s: %.2f codes off, by rays %.2f; beside it %.0f, %.0f\n", what, off[0] / pixels,
+           off[1] / pixels, beside[0], beside[1]);
     assert_true(off[0] < 6 * pixels);
     assert_true(off[0] < off[1] / 3);
+    assert_true(beside[0] < beside[1] / 2);
     picture_free(&p);
     picture_free(&far);
     picture_free(&share);
+}
+
+static void matted(void **state)
+{
+    (void)state;
+    check_matted("wires", 1);
+    check_matted("beams", 12);
+}
+
+/* A bright beam a pixel out of focus, either way, has no halo on the wall behind it: what is
+ * farther from it than that blur stays as dark. */
+static void halo(void **state)
+{
+    static uint8_t out[MOST], wall[3] = {30, 60, 50};
+
+    (void)state;
+    for (int side = -1; side <= 1; side += 2) {
+        struct picture p = picture_flat(WIDTH, HEIGHT, wall, FAR), share;
+        struct setting s = plain;
+        double sum[2] = {0, 0};
+
+        share = picture_flat(WIDTH, HEIGHT, wall, FAR);
+        picture_line(&p, 100, 0, 0.4, 1, 40, 220);
+        picture_line(&share, 100, 0, 0.4, 1, 48, 220);
+        s.focus = NEAR / 65535.0f + (float)side / K;
+        for (s.thin = 0; s.thin < 2; s.thin++) {
+            render_fresh(&p, true, &s, out);
+            for (int i = 0; i < WIDTH * HEIGHT; i++)
+                sum[s.thin] += share.rgb[3 * i] == wall[0] ? abs(out[3 * i] - wall[0]) : 0;
+        }
+        printf("halo: %.0f, by rays %.0f\n", sum[1], sum[0]);
+        assert_true(sum[1] < sum[0] / 2);
+        picture_free(&p);
+        picture_free(&share);
+    }
 }
 
 /* A stem a little out of focus is as dense with its rims matted as without: rays of what is inside
@@ -246,6 +285,7 @@ static void elsewhere(void **state)
 {
     static uint8_t out[MOST], expected[MOST];
     struct picture p = picture_fence(WIDTH, HEIGHT, 1),
+                   wire = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){9, 80, 7}, FAR),
                    thick = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){9, 80, 7}, FAR);
     struct setting on = plain, off = plain;
 
@@ -257,16 +297,22 @@ static void elsewhere(void **state)
     render_fresh(&p, true, &on, out);
     assert_true(memcmp(out, expected, MOST));
     on.blur = off.blur = 8; /* too little for splatted coverage, too much for what is in focus */
-    render_fresh(&p, true, &on, out);
-    render_fresh(&p, true, &off, expected);
-    assert_same_pixels(out, expected, WIDTH, HEIGHT, "the fence a little blurred");
+    picture_line(&wire, 160, 0, 0.1, 1, 3, 200); /* where wires of a fence cross it is thick */
+    render_fresh(&wire, true, &on, out);
+    render_fresh(&wire, true, &off, expected);
+    assert_same_pixels(out, expected, WIDTH, HEIGHT, "a wire a little blurred");
     on = off = plain;
     off.thin = 0;
-    picture_line(&thick, 160, 0, 0.1, 1, 30, 200);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        if (i % WIDTH >= 160 && i % WIDTH < 190) { /* no pixel is a mixture */
+            memset(thick.rgb + 3 * i, 200, 3);
+            thick.disparity[i] = NEAR;
+        }
     render_fresh(&thick, true, &on, out);
     render_fresh(&thick, true, &off, expected);
     assert_same_pixels(out, expected, WIDTH, HEIGHT, "a beam");
     picture_free(&p);
+    picture_free(&wire);
     picture_free(&thick);
 }
 
@@ -419,9 +465,16 @@ static void memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wire),    cmocka_unit_test(matted),    cmocka_unit_test(strands),
-        cmocka_unit_test(dense),   cmocka_unit_test(elsewhere), cmocka_unit_test(same_everywhere),
-        cmocka_unit_test(regions), cmocka_unit_test(sequence),  cmocka_unit_test(memory),
+        cmocka_unit_test(wire),
+        cmocka_unit_test(matted),
+        cmocka_unit_test(halo),
+        cmocka_unit_test(strands),
+        cmocka_unit_test(dense),
+        cmocka_unit_test(elsewhere),
+        cmocka_unit_test(same_everywhere),
+        cmocka_unit_test(regions),
+        cmocka_unit_test(sequence),
+        cmocka_unit_test(memory),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* find_thin.c: finds the pixels of a tile that mix a thin structure with its background, and in
- * what parts. */
+/* find_thin.c: finds the pixels of a tile that mix something near with its background, and in what
+ * parts. */
 #include "kernels/autovec/thin_parts.h"
 
 #include <assert.h>
@@ -40,6 +40,7 @@ static void add_pixel(struct rf_thin_batch *b, const struct rf_thin_row *row,
 
     b->at[k] = (uint8_t)(y * RF_TILE + x);
     b->kept[k] = row->kept[x];
+    b->thin[k] = row->thin[x];
     b->level[k] = row->level[x];
     b->own[k] = *map;
     b->light[0][k] = *red;
@@ -72,8 +73,8 @@ struct share {
 };
 static_assert(sizeof(struct share) <= RF_THIN_SHARE, "it fits the memory of callers");
 
-/* Writes the mixtures among the batch: pixels of something thin, or beside it and mixed. The
- * batch is empty afterwards. */
+/* Writes the mixtures among the batch: pixels of something thin, or beside something near and
+ * mixed. The batch is empty afterwards. */
 static int separate(struct rf_thin *out, int most, struct rf_thin_batch *b,
                     const struct rf_thin_tile *t, struct share *share)
 {
@@ -95,7 +96,8 @@ static int separate(struct rf_thin *out, int most, struct rf_thin_batch *b,
             .near_disparity = kept ? b->own[k] : m.near[k],
             .far_disparity = m.far[k],
             .light = {(uint16_t)m.far_light[0][k], (uint16_t)m.far_light[1][k],
-                      (uint16_t)m.far_light[2][k]}};
+                      (uint16_t)m.far_light[2][k]},
+            .thick = !b->thin[k]};
     }
     memset(b->weight, 0, sizeof b->weight);
     b->count = 0;

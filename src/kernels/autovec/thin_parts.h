@@ -72,9 +72,10 @@ struct rf_thin_row {
  * square of its distance. Pixels beyond `count` hit nothing. */
 struct rf_thin_batch {
     int count;
-    uint8_t at[BATCH];                              /* 16 y + x */
-    uint16_t kept[BATCH], level[BATCH], own[BATCH]; /* disparity */
-    uint16_t light[3][BATCH];                       /* C */
+    uint8_t at[BATCH];                 /* 16 y + x */
+    uint16_t kept[BATCH], thin[BATCH]; /* masks */
+    uint16_t level[BATCH], own[BATCH]; /* disparity */
+    uint16_t light[3][BATCH];          /* C */
     uint16_t weight[WAYS][BATCH], disparity[WAYS][BATCH], hit[3][WAYS][BATCH];
 };
 

@@ -1,5 +1,5 @@
-/* thin_row.c: find_thin: finds the pixels of a row on or beside thin structures, and the nearest
- * background pixels in eight directions. */
+/* thin_row.c: find_thin: finds the pixels of a row on thin structures or beside something near, and
+ * the nearest background pixels in eight directions. */
 #include "kernels/autovec/thin_parts.h"
 
 static ptrdiff_t step_of(int i)
@@ -87,7 +87,7 @@ static void count_unclean(uint16_t *restrict unclean, const uint16_t *restrict a
     }
 }
 
-/* Finds which pixels are thin, or beside one that is, a bit each. */
+/* Finds which pixels are thin or beside something near, a bit each. */
 static unsigned find_width(struct rf_thin_row *row)
 {
     for (int x = 0; x < RF_TILE; x++) {
@@ -103,8 +103,9 @@ static unsigned find_width(struct rf_thin_row *row)
         width = row->kept[x] ? own : other;
         row->width[x] = width;
         row->thin[x] = width <= THIN ? 0xffff : 0;
+        row->look[x] = (uint16_t)(row->thin[x] | ~row->kept[x]);
     }
-    return bits_of(row->thin);
+    return bits_of(row->look);
 }
 
 /* Counts the steps to what is hit. A hair of one pixel has nothing clean beside it that is as like
