@@ -6,6 +6,7 @@
 
 #include "image/format.h"
 #include "kernels/kernels.h"
+#include "support/compare.h"
 
 enum { ROWS = 16 }; /* rows of a work item */
 
@@ -102,11 +103,32 @@ static void mean_around(const struct rf_behind_pass *pass, int x, int y, int ste
         light[c] = (uint16_t)((sum[c] + count / 2) / count);
 }
 
+/* Whether rays that would meet the layer, of this blur, at a pixel of the window look past it:
+ * those to two or more of eight places around see what is deeper, and less out of focus. */
+static bool is_passed(const struct rf_viewport *view, const struct rf_behind_pass *pass, int blur,
+                      int x, int y)
+{
+    static const int8_t way[8][2] = {{4, 0},  {3, 3},   {0, 4},  {-3, 3},
+                                     {-4, 0}, {-3, -3}, {0, -4}, {3, -3}};
+    const int step = rf_in_pixels(abs(blur), pass->blur.unit) * 3 / 16; /* three quarters in all */
+    int deeper = 0;
+
+    for (int i = 0; i < 8; i++) {
+        const int u = rf_clamp(x + way[i][0] * step / 256, 0, view->width - 1);
+        const int v = rf_clamp(y + way[i][1] * step / 256, 0, view->height - 1);
+        const int seen = pass->blur.at[v * pass->blur.stride + u];
+
+        deeper += seen - blur > pass->apart && seen + blur < 0;
+    }
+    return deeper > 1;
+}
+
 /* A row of the window. */
 static void put_row(const struct rf_viewport *view, const struct rf_behind_pass *pass,
                     const int16_t *own_blur, int y)
 {
     const uint16_t *disparity = pass->disparity.at + y * pass->disparity.stride;
+    const int16_t *seen = pass->blur.at + y * pass->blur.stride;
     const ptrdiff_t at = y * pass->background.light.stride;
     int16_t *blur = pass->background.blur.at + y * pass->background.blur.stride;
 
@@ -114,7 +136,9 @@ static void put_row(const struct rf_viewport *view, const struct rf_behind_pass 
         const int photo_x = view->x0 + x, photo_y = view->y0 + y;
         uint16_t light[3];
 
-        if (blur[x] != RF_NO_BLUR || !rf_is_behind(pass->behind, photo_x, photo_y, disparity[x]))
+        if (blur[x] != RF_NO_BLUR || own_blur[x] <= seen[x] ||
+            !rf_is_behind(pass->behind, photo_x, photo_y, disparity[x]) ||
+            is_passed(view, pass, own_blur[x], x, y))
             continue;
         mean_around(pass, photo_x, photo_y, steps_of(pass, own_blur[x]), light);
         for (int c = 0; c < 3; c++)

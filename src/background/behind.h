@@ -4,6 +4,16 @@
  * is the hidden background, and known; push-pull inpaints the rest from both (inpaint.h). The layer
  * is kept as it came, as codes and disparities, since it is read at marked pixels alone.
  *
+ * Rays that pass all that is seen meet the hidden background at one blur, about that of the deepest
+ * around (gather/corners.h). So what is left out of the layer, as if it were not known, is
+ *
+ *     as near     what has no more blur than the surface that is seen before it: F of a mixture
+ *                 (thin/thin.h) was read from it, and behind that lies another one
+ *     passed      what would be seen as sharp as what is deeper, though many rays pass it: two or
+ *                 more of eight places around, three quarters of its blur away, show something
+ *                 deeper by more than `apart` (inpaint.h) and less out of focus. So it is with a
+ *                 wire behind a wire before a sky in focus, but not with a wall behind a bar
+ *
  * A blurred layer is smoothed as the photo is, where rays lie far apart (passes/prefilter.h): its
  * light is the mean over the square of 2^n - 1 pixels each way about a pixel, n the number of steps
  * of the pre-filter at its blur. With 64 rays a blur of 10 pixels takes one step, the mean of 3 x
@@ -49,6 +59,8 @@ struct rf_behind_pass {
     const int *above;                  /* |s| that each step of the pre-filter begins at, Q7.8 */
     int steps;                         /* number of those */
     struct rf_disparity_q16 disparity; /* read: the photo's */
+    struct rf_blur_q8 blur;            /* read: of what is seen, which is F of separated mixtures */
+    int apart;                         /* rf_layers_apart() */
     struct rf_background background;   /* written where its blur is RF_NO_BLUR */
 };
 

@@ -76,12 +76,15 @@ static void mark_and_push(struct refocus_renderer *r, struct mark *mark)
 void rf_pass_mark_background(struct rf_frame *f, int levels)
 {
     struct refocus_renderer *r = rf_renderer_of(f);
+    const int16_t apart = rf_layers_apart(f->params->max_blur_radius, f->focus.unit);
     const struct rf_behind_pass behind = {.behind = &r->photo.behind,
                                           .transfer = &r->transfer[r->blend],
                                           .plan = &f->plan,
                                           .above = f->prefilter_above,
                                           .steps = RF_PREFILTER_STEPS,
                                           .disparity = r->disparity,
+                                          .blur = r->blur,
+                                          .apart = apart,
                                           .background = r->background};
     struct mark mark = {.r = r,
                         .behind = r->photo.behind.width ? &behind : NULL,
@@ -96,7 +99,7 @@ void rf_pass_mark_background(struct rf_frame *f, int levels)
                                  .background = r->background},
                         .levels = levels};
 
-    r->pyramid.apart = rf_layers_apart(f->params->max_blur_radius, f->focus.unit);
+    r->pyramid.apart = apart;
     rf_plane_read(&r->lifetimes, RF_PLANE_BLUR);
     rf_plane_read(&r->lifetimes, RF_PLANE_SMOOTH);
     mark_and_push(r, &mark);
