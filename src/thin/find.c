@@ -2,13 +2,14 @@
 #include "colour/transfer.h"
 #include "thin/mixture.h"
 
-/* F is what the caller knows to be behind. */
+/* F is what the caller knows to be behind, where the map has the pixel near; else it is seen. */
 static void take_behind(const struct rf_thin_pass *t, struct rf_thin *thin, int tx, int ty)
 {
     const int x = tx * RF_TILE + thin->at % RF_TILE, y = ty * RF_TILE + thin->at / RF_TILE;
     const size_t at = (size_t)y * (size_t)t->behind->width + (size_t)x;
+    const uint16_t own = t->disparity.at[y * t->disparity.stride + x];
 
-    if (!rf_is_behind(t->behind, x, y, t->disparity.at[y * t->disparity.stride + x]))
+    if (own != thin->near_disparity || !rf_is_behind(t->behind, x, y, own))
         return;
     for (int c = 0; c < 3; c++)
         thin->light[c] = t->transfer->to_light[t->behind->code[4 * at + (size_t)c]];

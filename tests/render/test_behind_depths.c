@@ -191,10 +191,39 @@ static void same_by_regions(void **state)
     refocus_renderer_destroy(&renderer);
 }
 
+/* A fence in focus, whose edges mix with the wall: what is behind the wall is no part of that. */
+static void mixtures_are_of_what_is_seen(void **state)
+{
+    static uint8_t layer[4 * W * H], out[3 * W * H], expected[3 * W * H];
+    static uint16_t layer_map[W * H];
+    struct picture fence = picture_fence(W, H, 3);
+    const struct refocus_image photo = picture_image(&fence);
+    const struct refocus_image black =
+        refocus_image_packed(REFOCUS_FORMAT_RGBA8, layer, W, H, 4 * W);
+    const struct refocus_disparity map = picture_disparity(&fence);
+    const struct refocus_disparity farther = refocus_disparity16(layer_map, W, H, 2 * W);
+    struct refocus_scene scene = refocus_scene_default(&photo, &map);
+    struct refocus_renderer *renderer = create(K);
+
+    (void)state;
+    assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_OK);
+    render(renderer, FENCE_NEAR / 65535.0f, 20, expected);
+    for (int i = 0; i < W * H; i++)
+        layer[4 * i + 3] = fence.disparity[i] == FENCE_FAR ? 255 : 0;
+    scene.behind = &black;
+    scene.behind_disparity = &farther;
+    assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_OK);
+    render(renderer, FENCE_NEAR / 65535.0f, 20, out);
+    assert_same_pixels(out, expected, W, H, "a layer behind the wall");
+    refocus_renderer_destroy(&renderer);
+    picture_free(&fence);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(board_is_blurred),
-                                       cmocka_unit_test(same_by_regions)};
+                                       cmocka_unit_test(same_by_regions),
+                                       cmocka_unit_test(mixtures_are_of_what_is_seen)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
