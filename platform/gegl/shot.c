@@ -84,6 +84,7 @@ static int make_map(struct map *map, const struct rf_gegl_shot *shot, char *why)
     map->confidence = map->disparity ? malloc((size_t)count) : NULL;
     repair.confidence = map->confidence;
     repair.confidence_stride = shot->depth_width;
+    repair.photo = is_deep(shot->photo->format) ? NULL : shot->photo;
     if (map->confidence)
         status = refocus_depth_repair(&samples, &repair, map->disparity,
                                       2 * (ptrdiff_t)shot->depth_width, &report);

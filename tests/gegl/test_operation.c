@@ -282,26 +282,32 @@ static void odd_floats(void **state)
     graph_close(&graph);
 }
 
-/* Where the map is clear it says nothing: depth comes from around. */
+/* Where the map is clear it says nothing: depth comes from around, at its silhouette from the side
+ * that looks alike. */
 static void holes(void **state)
 {
-    const GeglRectangle hole = {8, 8, 10, 10}, whole = {0, 0, 64, 48};
+    const GeglRectangle hole[] = {{8, 8, 10, 10}, {32, 8, 10, 10}};
+    const GeglRectangle whole = {0, 0, 64, 48}, near = {32, 0, 32, 48};
     const guint16 clear[2] = {65535, 0};
+    const guint8 red[3] = {250, 20, 20};
     struct graph graph;
     guint8 *with, *without;
 
     (void)state;
-    graph_open(&graph, graph_picture("R'G'B' u8", 0, 0, 64, 48, 1),
-               graph_map("Y'A u16", 0, 0, 64, 48));
-    gegl_node_set(graph.lens, "focus", 0.05, "depth-edges", FALSE, NULL);
-    without = graph_take(&graph, &whole, "R'G'B' u8");
-    gegl_buffer_set_color_from_pixel(graph.depth, &hole, clear, babl_format("Y'A u16"));
-    with = graph_take(&graph, &whole, "R'G'B' u8");
-    for (size_t i = 0; i < 64 * 48 * 3; i++)
-        assert_in_range(with[i] - without[i] + 2, 0, 4);
-    g_free(with);
-    g_free(without);
-    graph_close(&graph);
+    for (int k = 0; k < 2; k++) {
+        graph_open(&graph, graph_picture("R'G'B' u8", 0, 0, 64, 48, 1),
+                   graph_map("Y'A u16", 0, 0, 64, 48));
+        gegl_buffer_set_color_from_pixel(graph.photo, &near, red, babl_format("R'G'B' u8"));
+        gegl_node_set(graph.lens, "focus", 0.05, "depth-edges", FALSE, NULL);
+        without = graph_take(&graph, &whole, "R'G'B' u8");
+        gegl_buffer_set_color_from_pixel(graph.depth, &hole[k], clear, babl_format("Y'A u16"));
+        with = graph_take(&graph, &whole, "R'G'B' u8");
+        for (size_t i = 0; i < 64 * 48 * 3; i++)
+            assert_in_range(with[i] - without[i] + 2, 0, 4);
+        g_free(with);
+        g_free(without);
+        graph_close(&graph);
+    }
 }
 
 static int run(void)
