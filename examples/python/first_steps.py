@@ -14,7 +14,7 @@ data = pathlib.Path(__file__).resolve().parent.parent / 'data' / 'nightlights'
 out = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else 'out')
 out.mkdir(parents=True, exist_ok=True)
 photo = refocus.photo_read(data / 'allfocus.png').image
-disparity, report = refocus.depth_read(data / 'disparity.png').disparity()
+disparity, report = refocus.depth_read(data / 'disparity.png').disparity(photo)
 print('photo', photo.shape, photo.dtype, '- disparities', disparity.shape, disparity.dtype)
 
 # %% One picture: what is at column 200, row 300 is sharp, the rest blurred by up to 20 pixels

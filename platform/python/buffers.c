@@ -116,6 +116,13 @@ int rf_image_get(struct rf_buffers *buffers, PyObject *tuple, int writable, cons
     return 0;
 }
 
+int rf_image_get_if_any(struct rf_buffers *buffers, PyObject *tuple, const char *what,
+                        struct refocus_image *memory, const struct refocus_image **image)
+{
+    *image = tuple == Py_None ? NULL : memory;
+    return *image ? rf_image_get(buffers, tuple, 0, what, memory) : 0;
+}
+
 /* Whether a side is one of a picture; the library itself would see it cut to 32 bits. */
 static int check_sides(const struct rf_rows *rows, const char *what)
 {

@@ -2,22 +2,23 @@
 #include "module.h"
 
 /* (samples, out, meaning, flags, value_near, value_far, metres_per_unit, near_m, far_m, speckle,
- * confidence) */
+ * confidence, photo or None) */
 static PyObject *depth_to_disparity(PyObject *module, PyObject *args)
 {
     struct refocus_depth_map map = refocus_depth_map_default();
     struct refocus_repair_params params = refocus_repair_params_default();
     struct refocus_depth_report report = refocus_depth_report_default();
     struct rf_buffers buffers = {0};
-    PyObject *samples, *out, *confidence;
+    PyObject *samples, *out, *confidence, *picture;
+    struct refocus_image photo;
     struct rf_rows rows;
     uint16_t *to = NULL;
     ptrdiff_t stride = 0;
     int status = REFOCUS_OK;
 
-    if (!PyArg_ParseTuple(args, "OOIIdddddiO", &samples, &out, &map.meaning, &map.flags,
+    if (!PyArg_ParseTuple(args, "OOIIdddddiOO", &samples, &out, &map.meaning, &map.flags,
                           &map.value_near, &map.value_far, &map.metres_per_unit, &map.near_m,
-                          &map.far_m, &params.speckle, &confidence))
+                          &map.far_m, &params.speckle, &confidence, &picture))
         return NULL;
     if (rf_map_rows_get(&buffers, samples, 0, "depth", &rows) != 0)
         goto end;
@@ -39,7 +40,8 @@ static PyObject *depth_to_disparity(PyObject *module, PyObject *args)
     map.height = (int32_t)rows.rows;
     if (rf_map16_get(&buffers, out, "out", map.width, map.height, &to, &stride) != 0 ||
         rf_bytes_get(&buffers, confidence, 1, "confidence", map.width, map.height,
-                     &params.confidence, &params.confidence_stride) != 0)
+                     &params.confidence, &params.confidence_stride) != 0 ||
+        rf_image_get_if_any(&buffers, picture, "photo", &photo, &params.photo) != 0)
         goto end;
     Py_BEGIN_ALLOW_THREADS status = refocus_depth_repair(&map, &params, to, stride, &report);
     Py_END_ALLOW_THREADS end : rf_buffers_release(&buffers);

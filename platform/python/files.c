@@ -191,7 +191,8 @@ static PyObject *photo_parts(PyObject *module, PyObject *args)
     return parts;
 }
 
-/* (photo, matte instead of depth, out, confidence: receives 0 for what was filled) */
+/* (photo, matte instead of depth, out, confidence: receives 0 for what was filled, picture that
+ * holes are filled by or None) */
 static PyObject *photo_disparity(PyObject *module, PyObject *args)
 {
     struct refocus_depth_report report = refocus_depth_report_default();
@@ -199,12 +200,13 @@ static PyObject *photo_disparity(PyObject *module, PyObject *args)
     const struct refocus_photo *photo;
     const struct refocus_depth_map *map;
     struct rf_buffers buffers = {0};
-    PyObject *capsule, *out, *confidence;
+    struct refocus_image image;
+    PyObject *capsule, *out, *confidence, *picture;
     uint16_t *to;
     ptrdiff_t stride;
     int is_matte, status = REFOCUS_OK;
 
-    if (!PyArg_ParseTuple(args, "OpOO", &capsule, &is_matte, &out, &confidence))
+    if (!PyArg_ParseTuple(args, "OpOOO", &capsule, &is_matte, &out, &confidence, &picture))
         return NULL;
     photo = PyCapsule_GetPointer(capsule, PHOTO);
     if (!photo)
@@ -214,7 +216,8 @@ static PyObject *photo_disparity(PyObject *module, PyObject *args)
         return rf_raise(module, REFOCUS_ERR_NO_DEPTH, NULL);
     if (rf_map16_get(&buffers, out, "out", map->width, map->height, &to, &stride) == 0 &&
         rf_bytes_get(&buffers, confidence, 1, "confidence", map->width, map->height,
-                     &params.confidence, &params.confidence_stride) == 0) {
+                     &params.confidence, &params.confidence_stride) == 0 &&
+        rf_image_get_if_any(&buffers, picture, "photo", &image, &params.photo) == 0) {
         Py_BEGIN_ALLOW_THREADS status = refocus_depth_repair(map, &params, to, stride, &report);
         Py_END_ALLOW_THREADS
     }

@@ -33,6 +33,9 @@ int rf_map_rows_get(struct rf_buffers *buffers, PyObject *object, int writable, 
                     struct rf_rows *rows);
 int rf_image_get(struct rf_buffers *buffers, PyObject *tuple, int writable, const char *what,
                  struct refocus_image *image);
+/* A picture to read, held in MEMORY; NULL for None. */
+int rf_image_get_if_any(struct rf_buffers *buffers, PyObject *tuple, const char *what,
+                        struct refocus_image *memory, const struct refocus_image **image);
 int rf_disparity_get(struct rf_buffers *buffers, PyObject *object, const char *what,
                      struct refocus_disparity *map);
 /* A map of 16 bits to be written, of WIDTH x HEIGHT. */

@@ -187,11 +187,8 @@ static int get_scene(struct rf_buffers *buffers, PyObject *const part[6],
             return -1;
         scene->matte = &map[1];
     }
-    if (part[3] != Py_None) {
-        if (rf_image_get(buffers, part[3], 0, "behind", &image[1]) != 0)
-            return -1;
-        scene->behind = &image[1];
-    }
+    if (rf_image_get_if_any(buffers, part[3], "behind", &image[1], &scene->behind) != 0)
+        return -1;
     if (part[4] != Py_None) {
         if (rf_disparity_get(buffers, part[4], "behind_disparity", &map[2]) != 0)
             return -1;

@@ -53,7 +53,7 @@ class Render(Case):
         folder = DATA / 'portrait'
         photo = refocus.photo_read(folder / 'allfocus.png').image
         depth = refocus.depth_read(folder / 'depth_lowres.png', 'mm')
-        disparity, report = depth.disparity()
+        disparity, report = depth.disparity(photo)
         self.assertGreater(report.unknown, 0)
         self.assertEqual((depth.confidence == 0).sum(), report.unknown + report.strays)
         for edges, option, blur in ((refocus.DepthEdges.AUTO, 'auto', 20),

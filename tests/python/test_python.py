@@ -218,6 +218,30 @@ class Depth(Case):
                      for kind, unit in (('f', 'disparity'), ('H', 'disparity/16')))
         self.same(low, high)
 
+    def test_holes_take_the_surface_that_looks_like_them(self):
+        near, hole = numpy.s_[:, 30:60], numpy.s_[10:30, 26:40]
+        metres = numpy.full((HEIGHT, WIDTH), 4, numpy.float32)
+        metres[near] = 1
+        photo = numpy.full((HEIGHT, WIDTH, 3), 40, numpy.uint8)
+        photo[near] = 200
+        whole = refocus.depth_to_disparity(metres, 'm')[0]
+        metres[hole] = math.nan
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, 'depth.npy')
+            numpy.save(path, metres)
+            depth = refocus.depth_read(path, 'm')
+            small = photo[::2, ::3].copy()
+            far = whole.copy()
+            far[hole] = 0
+            for given, order, wanted in ((photo, 'rgb', whole), (small, 'bgr', whole),
+                                         (None, 'rgb', far)):
+                self.same(refocus.depth_to_disparity(metres, 'm', photo=given, order=order)[0],
+                          wanted)
+                self.same(depth.disparity(given, order)[0], wanted)
+            for of in (lambda: refocus.depth_to_disparity(metres, 'm', photo=photo.astype('H')),
+                       lambda: depth.disparity(photo.astype('H'))):
+                self.assertRaises(refocus.UnsupportedError, of)
+
     def test_upsampling_and_edges(self):
         small = self.disparity[::4, ::4].copy()
         clean = refocus.upsample(self.photo, small)

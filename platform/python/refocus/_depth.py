@@ -16,6 +16,7 @@ _ZERO, _MAX, _2047 = 1, 2, 4
 def depth_to_disparity(depth: Buffer, unit: str = 'disparity', *, near_m: float = 0.0,
                        far_m: float = 0.0, speckle: int = 0, zero_is_unknown: bool | None = None,
                        max_is_unknown: bool = False, confidence: Buffer | None = None,
+                       photo: Image | Buffer | None = None, order: str = 'rgb',
                        out: Buffer | None = None) -> tuple[typing.Any, DepthReport]:
     """Disparities of 16 bits, 65535 nearest, and what was found: refocus_depth_repair().
 
@@ -24,8 +25,9 @@ def depth_to_disparity(depth: Buffer, unit: str = 'disparity', *, near_m: float 
     disparity span their type, floats and integers of 'disparity/16' (16ths of a pixel, or other
     parts) the least to the greatest value there is. In distances 0
     means unknown, unless `zero_is_unknown` says otherwise; NaN and infinity always do. Unknown
-    samples, and patches of fewer than `speckle`, are filled. `confidence` (uint8) receives 255
-    for samples as measured and 0 for filled ones.
+    samples, and patches of fewer than `speckle`, are filled, with a `photo` of that view, of 8 bits,
+    from the surface that looks like them. `confidence` (uint8) receives 255 for samples as measured
+    and 0 for filled ones.
     """
     view = memoryview(depth)
     near, far, metres = 0.0, 0.0, 0.0
@@ -48,7 +50,7 @@ def depth_to_disparity(depth: Buffer, unit: str = 'disparity', *, near_m: float 
     report = _core.depth_to_disparity(
         depth, out, _DISTANCE if is_distance else _DISPARITY,
         (_ZERO if unknown else 0) | (_MAX if max_is_unknown else 0), near, far, metres, near_m,
-        far_m, speckle, confidence)
+        far_m, speckle, confidence, None if photo is None else as_image(photo, order)._tuple())
     return out, made(DepthReport, report)
 
 

@@ -41,13 +41,18 @@ class Photo:
         """Whether disparity() has something to give."""
         return self._depth is not None
 
-    def disparity(self) -> tuple[Array, DepthReport]:
+    def disparity(self, photo: Image | Buffer | None = None,
+                  order: str = 'rgb') -> tuple[Array, DepthReport]:
         """Its depth as disparities of 16 bits; `NoDepthError` when it carries none.
 
-        `confidence` then says which samples are guesses: give it to render() with the map.
+        Holes are filled by the colours of `photo`, a picture of that view of 8 bits: its own one if
+        it has any. `confidence` then says which samples are guesses: give it to render() with the map.
         """
         sure = None if self._depth is None else numpy.empty(self._depth[::-1], numpy.uint8)
-        out, report = self._map(self._depth, False, sure)
+        if photo is None and self._lies_as_its_depth():
+            photo = self.image
+        out, report = self._map(self._depth, False, sure,
+                                None if photo is None else as_image(photo, order)._tuple())
         if sure is not None and report.unknown + report.specks + report.strays > 0:
             self.confidence = sure if self.confidence is None else numpy.minimum(
                 sure, self.confidence)
@@ -55,14 +60,21 @@ class Photo:
 
     def matte(self) -> Array:
         """How much of each pixel is subject, 65535 = all; `NoDepthError` when it has no matte."""
-        return self._map(self._matte, True, None)[0]
+        return self._map(self._matte, True, None, None)[0]
+
+    def _lies_as_its_depth(self) -> bool:
+        if self.image is None or self._depth is None:
+            return False
+        height, width = self.image.shape[:2]
+        return (width > height) == (self._depth[0] > self._depth[1])
 
     def _map(self, size: tuple[int, int] | None, is_matte: bool,
-             confidence: Array | None) -> tuple[Array, DepthReport]:
+             confidence: Array | None,
+             photo: tuple[typing.Any, ...] | None) -> tuple[Array, DepthReport]:
         if size is None:
             raise NoDepthError('the file has no ' + ('matte' if is_matte else 'depth'))
         out = numpy.empty(size[::-1], numpy.uint16)
-        report = _core.photo_disparity(self._handle, is_matte, out, confidence)
+        report = _core.photo_disparity(self._handle, is_matte, out, confidence, photo)
         return out, made(DepthReport, report)
 
 
