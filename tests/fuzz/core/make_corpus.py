@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the seeds of fuzz_core and fuzz_edges into corpus/core/ and corpus/edges/; the order is
-that of take() in fuzz_core.c and fuzz_edges.c."""
+"""Writes the seeds of fuzz_core, fuzz_edges and fuzz_repair into corpus/core/, edges/ and repair/;
+the order is that of take() in these files."""
 import random
 import struct
 from pathlib import Path
@@ -72,6 +72,39 @@ def seeds_of_edges():
     }
 
 
+def repair(width, height, sample=1, meaning=1, flags=1, near=255, far=0, unknown=(), speckle=0, form=1,
+           photo=(20, 20), upwards=0, wild=0):
+    ends = (0, 0, 0, 30) if meaning == 1 else (65, 0, 0, 40)
+    codes = [*unknown, 0, 0, 0, 0][:4]
+    return bytes([7 * wild]) + b"".join(map(u16, (
+        sample - 1, width - 1, height - 1, meaning - 1, flags, near, far, *ends, len(unknown), *codes,
+        speckle, form - 1, photo[0] - 1, photo[1] - 1, upwards)))
+
+
+def seeds_of_repair():
+    """Maps with holes, which are zeros, and photos of any size."""
+    noise = random.Random(2)
+    holes = bytes(noise.choice((0, 0, 60, 61, 200, 201, 255)) for _ in range(97))
+    two = (bytes([200] * 9 + [0] * 6 + [40] * 12) * 5)
+    metres = b"".join(struct.pack("<f", v) for v in (1, 1.1, 4, 0, float("nan"), 4.2, float("inf")) * 3)
+    return {
+        "holes": repair(40, 40, photo=(40, 40)) + holes,
+        "silhouette": repair(27, 30, photo=(40, 13), form=2) + two,
+        "upwards": repair(40, 33, photo=(9, 40), form=4, upwards=1) + two,
+        "speckle": repair(40, 40, speckle=30, form=3) + holes,
+        "words": repair(31, 40, sample=2, flags=7) + holes,
+        "distances": repair(40, 28, sample=2, meaning=2, flags=3) + holes,
+        "metres": repair(40, 40, sample=3, meaning=2, flags=1) + metres,
+        "codes": repair(40, 40, flags=0, unknown=(60, 200)) + holes,
+        "one_depth": repair(40, 40, near=7, far=7) + bytes([9, 0, 9, 9]),
+        "all_unknown": repair(12, 12) + bytes([0]),
+        "row": repair(40, 1, photo=(1, 1)) + holes,
+        "column": repair(1, 40, photo=(40, 1)) + holes,
+        "wild": repair(9, 9, wild=1) + holes,
+        "empty": b"",
+    }
+
+
 def chosen(data):
     """Behind two bytes for which draw.h gives pictures as large as they are said to be, as many threads,
     and all that is done twice."""
@@ -81,11 +114,11 @@ def chosen(data):
     return struct.pack(">H", first) + data
 
 
-def write(name, seeds):
+def write(name, seeds, drawn=True):
     folder = CORPUS / name
     folder.mkdir(parents=True, exist_ok=True)
     for seed, data in seeds.items():
-        (folder / seed).write_bytes(chosen(data))
+        (folder / seed).write_bytes(chosen(data) if drawn else data)
 
 
 def main():
@@ -147,6 +180,7 @@ def main():
                                             + lens(.4, 7, 8, 0, 64, gain=8) + aperture + extras)
     write("core", {name: seed + pixels for name, seed in seeds.items()})
     write("edges", seeds_of_edges())
+    write("repair", seeds_of_repair(), drawn=False)
 
 
 if __name__ == "__main__":
