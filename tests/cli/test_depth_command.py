@@ -52,16 +52,25 @@ class DepthAndInfo(Case):
         self.assertEqual(sum(row.count(b'\0\0\0') for row in rows), less['unknown'])
 
     def test_holes_by_the_photo(self):
-        """A hole at a silhouette goes to the surface that looks like it, and to the farther one alone
-        where there is no photo."""
+        """A hole at a silhouette goes to the surface that looks like it, also in a map that is yet to
+        be turned, and to the farther one alone where there is no photo."""
+        def code(x, y):
+            return 0 if 44 <= x < 54 and 20 <= y < 38 else 240 if x < 50 else 20
         pictures.ppm('sides.ppm', 96, 64, lambda x, y: (60,) * 3 if x < 50 else (200,) * 3)
-        pictures.pgm('hole.pgm', 96, 64, lambda x, y: 0 if 44 <= x < 54 and 20 <= y < 44
-                     else 240 if x < 50 else 20)
-        for photo, ends in (('sides.ppm', '--depth'), 50), ((), 44):
-            self.succeeds('depth', *photo, 'hole.pgm', '--invalid', 'zero', '-o', 'd.pgm')
+        pictures.pgm('hole.pgm', 96, 64, code)
+        pictures.pgm('90.pgm', 64, 96, lambda x, y: code(95 - y, x))
+        pictures.pgm('180.pgm', 96, 64, lambda x, y: code(95 - x, 63 - y))
+        pictures.pgm('270.pgm', 64, 96, lambda x, y: code(y, 63 - x))
+        for ends, *given in (44, 'hole.pgm'), (50, 'sides.ppm', '--depth', 'hole.pgm'), *(
+                (50, 'sides.ppm', '--depth', turn + '.pgm', '--orient-depth', turn)
+                for turn in ('90', '180', '270')):
+            self.succeeds('depth', *given, '--invalid', 'zero', '-o', 'd.pgm')
             width, height, values = pictures.read_pnm('d.pgm')
+            self.assertEqual((width, height), (96, 64))
             row = values[32 * width:33 * width]
             self.assertEqual([x for x in range(width) if row[x] > 32768], list(range(ends)))
+        for name in 'sides.ppm', 'hole.pgm', '90.pgm', '180.pgm', '270.pgm':
+            os.remove(name)
 
     def test_strays(self):
         """A sample far nearer than all others is filled, which a line says, unless --near is given."""

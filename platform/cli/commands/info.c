@@ -85,12 +85,10 @@ static int measure_depth(struct input *input, const struct settings *settings,
         return status;
     refocus_depth_set_invalid(map, settings->depth.invalid);
     params.speckle = (int32_t)settings->depth.speckle;
-    params.photo = input_hole_photo(input);
     found->unit_is_doubtful =
         unit_is_doubtful(input->photo, &settings->depth, false, found->unit_line);
     input->disparity = samples <= SIZE_MAX / 2 ? malloc((size_t)samples * 2) : NULL;
-    status = input->disparity ? refocus_depth_repair(map, &params, input->disparity,
-                                                     (ptrdiff_t)map->width * 2, report)
+    status = input->disparity ? input_repair(input, map, &params, input->disparity, report)
                               : REFOCUS_ERR_MEMORY;
     if (status == REFOCUS_OK)
         return input->photo->image->plane[0] ? measure_photo(input, &settings->lens, found)

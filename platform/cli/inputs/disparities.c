@@ -122,12 +122,51 @@ int input_placed(const struct input *input, const struct depth_settings *setting
     return status;
 }
 
-const struct refocus_image *input_hole_photo(const struct input *input)
+/* The pixels in the middle of each of so many parts of a photo, packed, to be freed; or NULL. */
+static void *sample_photo(const struct refocus_image *photo, int columns, int rows)
+{
+    const int bytes = refocus_format_bytes(photo->format);
+    const uint64_t size = (uint64_t)columns * (uint64_t)rows * (uint64_t)bytes;
+    uint8_t *const samples = size <= SIZE_MAX ? malloc((size_t)size) : NULL, *to = samples;
+
+    for (int y = 0; y < rows && samples; y++) {
+        const int64_t row = (2 * (int64_t)y + 1) * photo->height / (2 * (int64_t)rows);
+        const uint8_t *const from = photo->plane[0] + row * photo->stride[0];
+
+        for (int x = 0; x < columns; x++, to += bytes)
+            memcpy(to, from + (2 * (int64_t)x + 1) * photo->width / (2 * (int64_t)columns) * bytes,
+                   (size_t)bytes);
+    }
+    return samples;
+}
+
+int input_repair(const struct input *input, const struct refocus_depth_map *map,
+                 struct refocus_repair_params *params, uint16_t *disparity,
+                 struct refocus_depth_report *report)
 {
     const struct refocus_image *photo = input->photo ? input->photo->image : NULL;
     const int bytes = photo && photo->plane[0] ? refocus_format_bytes(photo->format) : 0;
+    const bool on_its_side = input->orientation >= 5;
+    const int columns = on_its_side ? map->height : map->width;
+    const int rows = on_its_side ? map->width : map->height;
+    struct refocus_image turned;
+    void *samples = NULL;
+    int status = REFOCUS_ERR_MEMORY;
 
-    return (bytes == 3 || bytes == 4) && input->orientation <= 1 ? photo : NULL;
+    params->photo = bytes == 3 || bytes == 4 ? photo : NULL;
+    if (params->photo && input->orientation > 1) {
+        samples = sample_photo(photo, columns, rows);
+        if (!samples ||
+            !orient_turn(&samples, (size_t)bytes, columns, rows, orient_back(input->orientation)))
+            goto end;
+        turned = refocus_image_packed(photo->format, samples, map->width, map->height,
+                                      (ptrdiff_t)map->width * bytes);
+        params->photo = &turned;
+    }
+    status = refocus_depth_repair(map, params, disparity, (ptrdiff_t)map->width * 2, report);
+end:
+    free(samples);
+    return status;
 }
 
 /* A sample is no surer than the file says; those that were filled stay guesses. */
@@ -192,10 +231,8 @@ int input_convert(struct input *input, const struct depth_settings *settings)
     input->report = refocus_depth_report_default();
     params.confidence = input->confidence;
     params.confidence_stride = map->width;
-    params.photo = input_hole_photo(input);
     if (input->disparity && input->confidence)
-        status = refocus_depth_repair(map, &params, input->disparity, (ptrdiff_t)map->width * 2,
-                                      &input->report);
+        status = input_repair(input, map, &params, input->disparity, &input->report);
     if (status == REFOCUS_ERR_NO_DEPTH)
         return report_failure(EXIT_FAILED, input->depth_name,
                               "no sample of the depth map holds a value; give another "

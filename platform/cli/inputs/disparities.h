@@ -12,9 +12,11 @@ bool input_has_edges_placed(const struct input *input, const struct depth_settin
  * NULL. */
 const uint8_t *input_confidence(const struct input *input);
 
-/* The photo, to fill holes by its colours; NULL where there is none of 8 bits, or the map is yet to
- * be turned. */
-const struct refocus_image *input_hole_photo(const struct input *input);
+/* refocus_depth_repair() of a map as it lies, before it is turned, into packed disparities; by the
+ * colours of the photo, if there is one of 8 bits. */
+int input_repair(const struct input *input, const struct refocus_depth_map *map,
+                 struct refocus_repair_params *params, uint16_t *disparity,
+                 struct refocus_depth_report *report);
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 

@@ -17,9 +17,12 @@ int orient_choose(enum orient orient, bool on_its_side, int photo_orientation, b
 
     if (orient != ORIENT_AUTO || !on_its_side || photo_orientation < 5)
         return asked[orient];
-    if (turned_already && (photo_orientation == 6 || photo_orientation == 8))
-        return 14 - photo_orientation;
-    return photo_orientation;
+    return turned_already ? orient_back(photo_orientation) : photo_orientation;
+}
+
+int orient_back(int orientation)
+{
+    return orientation == 6 || orientation == 8 ? 14 - orientation : orientation;
 }
 
 bool orient_turn(void **samples, size_t bytes, int width, int height, int orientation)

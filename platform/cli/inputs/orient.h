@@ -17,7 +17,10 @@ extern const struct option_word orient_words[];
  * it. */
 int orient_choose(enum orient orient, bool on_its_side, int photo_orientation, bool turned_already);
 
-/* Turn packed samples of 1 or 2 bytes by an EXIF orientation but 2 and 4, in new memory that takes
+/* The EXIF orientation that turns back by what another one turns. */
+int orient_back(int orientation);
+
+/* Turn packed samples of any bytes by an EXIF orientation but 2 and 4, in new memory that takes
  * the place of the old; false without memory. The sides stay the caller's to exchange. */
 bool orient_turn(void **samples, size_t bytes, int width, int height, int orientation);
 
