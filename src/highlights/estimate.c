@@ -6,7 +6,8 @@
 
 #include "support/compare.h"
 
-#define SURE_SKIRT 3.0f /* hue is sure where a third of the light around is the skirt */
+#define LEAST_SKIRT 0.002f
+#define SURE_SKIRT  3.0f /* hue is sure where a third of the light around is the skirt */
 
 uint64_t rf_estimate_bytes(int max_width, int max_height)
 {
@@ -115,25 +116,30 @@ bool rf_estimate_reaches(const struct rf_estimate_row *row, float least,
     return any;
 }
 
+/* Whichever of two is nearer to 0; 0 if their signs differ. */
+static float lesser(float a, float b)
+{
+    return fmaxf(fminf(a, b), 0) + fminf(fmaxf(a, b), 0);
+}
+
 float rf_skirt_hue(const struct rf_light_grid *grid, int x, int y, float hue[3])
 {
     static const float of_luminance[3] = {218.0f / 1024, 732.0f / 1024, 74.0f / 1024};
-    const struct rf_grid_place near = rf_grid_place(grid, 1, x, y);
+    const struct rf_grid_place at = rf_grid_place(grid, 1, x, y);
     const struct rf_grid_place far = rf_grid_place(grid, 3, x, y);
-    float skirt[3], luminance = 0, around = 0;
+    float near[3], skirt[3], around = 0, luminance = 0;
 
     for (int c = 0; c < 3; c++) {
-        const float light = rf_unclipped_at(grid, RF_GRID_RED + (unsigned)c, &near);
-
-        skirt[c] = fmaxf(light - rf_unclipped_at(grid, RF_GRID_RED + (unsigned)c, &far), 0);
+        near[c] = rf_unclipped_at(grid, RF_GRID_RED + (unsigned)c, &at);
+        skirt[c] = near[c] - rf_unclipped_at(grid, RF_GRID_RED + (unsigned)c, &far);
+        around += of_luminance[c] * near[c];
         luminance += of_luminance[c] * skirt[c];
-        around += of_luminance[c] * light;
     }
-    if (luminance < 0.002f)
+    if (luminance <= LEAST_SKIRT)
         return 0;
     for (int c = 0; c < 3; c++)
-        hue[c] = fminf(skirt[c] / luminance, 3);
-    return fminf(SURE_SKIRT * luminance / around, 1);
+        hue[c] = 1 + lesser(skirt[c] / luminance - 1, near[c] / around - 1);
+    return fminf(SURE_SKIRT * (luminance - LEAST_SKIRT) / around, 1);
 }
 
 int rf_clipped_size(const struct rf_light_grid *grid, int x, int y)

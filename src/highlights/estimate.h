@@ -50,8 +50,10 @@ bool rf_estimate_reaches(const struct rf_estimate_row *row, float least,
                          uint8_t reaches[RF_GRID_SIDE]);
 
 /* The hue of the light around the clipped pixels of a cell, as times its luminance: of what
- * exceeds the surroundings. Returns how far that is the highlight's own, 0 to 1: not at all where
- * hardly anything exceeds them. */
+ * exceeds the surroundings. In each channel it is no farther from white than all the light near
+ * the pixels, and white where the two are to different sides of it, which glare would hardly be
+ * but paint may. Returns how far the hue is the highlight's own, 0 to 1: not at all where hardly
+ * anything exceeds the surroundings. */
 float rf_skirt_hue(const struct rf_light_grid *grid, int x, int y, float hue[3]);
 
 /* How many pixels the clipped area around a cell is wide, or so. */

@@ -1,5 +1,6 @@
 /* list_estimate.c: lists the pixels that have lost much of their light to clipping, row by row, as
  * highlights. */
+#include <math.h>
 #include <string.h>
 
 #include "highlights/estimate.h"
@@ -64,11 +65,13 @@ static float gain_at(const struct row *row, const int colour[3], int x)
 /* Adds the light that a pixel has lost, Q12. The lens has spread the highlight's own light around
  * it, so the whole light has the hue of what is around the clipped pixels, as far as that is its
  * own, and what of that the pixel does not show is lost: of a warm lamp that is clipped to white,
- * which holds too much blue, hardly any blue. A channel far below white has lost none. The light
- * that a fixed gain adds has half that hue, and half that of the pixel. */
+ * which holds too much blue, hardly any blue. Of a pixel that has lost little, the hue changes
+ * little. A channel far below white has lost none. The light that a fixed gain adds has half that
+ * hue, and half that of the pixel. */
 static void add_light(struct row *row, const int colour[3], float gain, int cell)
 {
     const bool fixed = !(row->listing->estimate->scale > 0);
+    const float share = fixed ? 0.5f * gain : fminf(1 + gain, 2 * gain);
     const float luminance =
         (218 * (float)colour[0] + 732 * (float)colour[1] + 74 * (float)colour[2]) * (1 / 1024.0f);
 
@@ -78,12 +81,10 @@ static void add_light(struct row *row, const int colour[3], float gain, int cell
     for (int c = 0; c < 3; c++) {
         const float own = (float)colour[c];
         const float toward = row->known * (luminance * row->hue[c] - own);
-        const float whole = (1 + gain) * (own + toward);
+        const float lost = gain * own + share * toward;
 
-        if (fixed)
-            row->light[c] += gain * (own + 0.5f * toward);
-        else if (whole > own)
-            row->light[c] += (whole - own) * nearness_to_white(colour[c]);
+        if (lost > 0)
+            row->light[c] += fixed ? lost : lost * nearness_to_white(colour[c]);
     }
 }
 

@@ -155,6 +155,39 @@ static void colours_of_white(void **state)
         fail_msg("a warm lamp gets %.2f of red, %.2f of blue", part[0], part[2]);
 }
 
+/* The light that something white of so much light gets on a board on a wall. */
+static void get_on_board(const double wall[3], const double board[3], double light, double more[3])
+{
+    const struct thing near = {ELLIPSE, 26, 26, {board[0], board[1], board[2]}};
+    const struct thing white = {ELLIPSE, 8, 8, {light, light, light}};
+    struct picture p = with_skirt(wall, &near, 0, 0);
+    double before[3];
+
+    draw_thing(&p, &white, CX, CY);
+    light_of(&p, 0, before);
+    light_of(&p, 1, more);
+    for (int c = 0; c < 3; c++)
+        more[c] -= before[c];
+    picture_free(&p);
+}
+
+/* Paint near something white and clipped is brighter than what is farther off, but in blue alone,
+ * or not in red: the white does not become blue, or cyan. */
+static void painted(void **state)
+{
+    static const double wall[2][3] = {{0.137, 0.145, 0.191}, {0.385, 0.168, 0.058}};
+    static const double board[2][3] = {{0.128, 0.153, 0.297}, {0.365, 0.253, 0.153}};
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        double more[3];
+
+        get_on_board(wall[i], board[i], 2, more);
+        if (more[0] < 0.5 || more[0] < 0.9 * more[1] || more[0] < 0.9 * more[2])
+            fail_msg("case %d: white gets %.2f %.2f %.2f", i, more[0], more[1], more[2]);
+    }
+}
+
 static void scales(void **state)
 {
     const struct thing lamp = {ELLIPSE, 8, 8, {6, 6, 6}};
@@ -165,6 +198,21 @@ static void scales(void **state)
     added(black, &lamp, 0, 0.05, 0.5f, one);
     if (half[1] < 0.4 * one[1] || half[1] > 0.6 * one[1])
         fail_msg("half the estimate adds %.2f, the whole %.2f", half[1], one[1]);
+}
+
+/* The hue changes little where little light is lost: each channel has lost little. */
+static void little(void **state)
+{
+    const struct thing lamp = {ELLIPSE, 8, 8, {4, 4.5, 9}};
+    double some[3], more[3];
+
+    (void)state;
+    added(black, &lamp, 0, 0.05, 0.02f, some);
+    added(black, &lamp, 0, 0.05, 0.2f, more);
+    assert_true(some[1] > 0.01);
+    for (int c = 0; c < 3; c++)
+        if (some[c] > 2 * 0.1 * more[c])
+            fail_msg("a tenth of the estimate adds %.3f, all of it %.2f", some[c], more[c]);
 }
 
 /* A lamp that moves by parts of a pixel is not another lamp. */
@@ -405,7 +453,9 @@ int main(void)
         cmocka_unit_test(petals),
         cmocka_unit_test(colours),
         cmocka_unit_test(colours_of_white),
+        cmocka_unit_test(painted),
         cmocka_unit_test(scales),
+        cmocka_unit_test(little),
         cmocka_unit_test(steady),
         cmocka_unit_test(crowded),
         cmocka_unit_test(held_no_more),
