@@ -214,7 +214,10 @@ static void mixtures_are_of_what_is_seen(void **state)
     scene.behind_disparity = &farther;
     assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_OK);
     render(renderer, FENCE_NEAR / 65535.0f, 20, out);
-    assert_same_pixels(out, expected, W, H, "a layer behind the wall");
+    /* Where a layer is known, half-covered pixels beside crossings are not drawn as the fence;
+     * taken for what is behind the wall they are up to 51 codes darker. */
+    for (int i = 0; i < 3 * W * H; i++)
+        assert_in_range(abs(out[i] - expected[i]), 0, 4);
     refocus_renderer_destroy(&renderer);
     picture_free(&fence);
 }
