@@ -35,7 +35,7 @@ struct run {
     int16_t light[SIDE][COLUMNS];
     int16_t disparity[SIDE][COLUMNS];
     int16_t noisy[COLUMNS]; /* pixels of a column that lie off the lines through their neighbours */
-    uint16_t off[COLUMNS];  /* how far those of a column do, a quarter, in sum */
+    uint16_t off[COLUMNS];  /* the sum of how far they lie off these lines, a quarter of it */
 };
 
 /* Disparity as a signed number: baseline x86 has no unsigned extremes of 16 bits. */

@@ -17,8 +17,7 @@ struct rf_thin {
     uint16_t light[3]; /* F, Q12 */
     uint16_t whole[3]; /* light as a pixel of N alone, Q12: alpha N and (1 - alpha) times the mean
                           light of the background; of the caller's matte alone */
-    bool thick;        /* it lies beside what is no thin structure, or is of the caller's matte: it
-                          is never splatted */
+    bool thick;        /* N is no thin structure, or is the caller's matte: it is not splatted */
 };
 
 /* A tile of a photo in planes, of pixel (0, 0) on, rows `stride` apart. The photo goes
