@@ -50,42 +50,7 @@ static void highlight_weights(uint16_t weight[256], double sigma)
     }
 }
 
-/* Whether all means from `low` to `high` have the code c. */
-static bool is_code(const struct rf_transfer *transfer, int c, double low, double high)
-{
-    return low >= 0 && high < RF_MEAN_MAX + 4 && transfer->to_code[(int)low] == c &&
-           transfer->to_code[(int)high] == c;
-}
-
-/* Whether code c comes back from its light, with the weight of any pixel whose largest code is c or
- * more. */
-static bool keeps_code(const struct rf_transfer *transfer, const uint16_t weight[256], int c)
-{
-    for (int most = c; most < 256; most++) {
-        const int w = weight[most] >> 3;
-        const double mean = 8192.0 * ((2 * transfer->to_light[c] * w + 2048) >> 12) / w + 0.5;
-
-        if (!is_code(transfer, c, mean - 0.02, mean + 0.02)) /* means of rays are that close */
-            return false;
-    }
-    return true;
-}
-
-/*
- * Whether each code comes back from its weighted mean, although light times weight in 16 bits
- * (kernels.h, weigh) is rounded. It must do so with the weight of any pixel none of whose
- * channels is below it. In sRGB it does for weights of 0.64 and more of the largest, from
- * sigma 272 on.
- */
-static bool keep_codes(const struct rf_transfer *transfer, const uint16_t weight[256])
-{
-    for (int c = 0; c < 256; c++)
-        if (weight[c] < 8 || !keeps_code(transfer, weight, c))
-            return false;
-    return true;
-}
-
-bool rf_weights_of_light(uint16_t light_weight[RF_LIGHT_MAX + 1],
+void rf_weights_of_light(uint16_t light_weight[RF_LIGHT_MAX + 1],
                          const struct rf_transfer *transfer, double sigma)
 {
     uint16_t weight[256];
@@ -93,5 +58,4 @@ bool rf_weights_of_light(uint16_t light_weight[RF_LIGHT_MAX + 1],
     highlight_weights(weight, sigma);
     for (int light = 0; light <= RF_LIGHT_MAX; light++)
         light_weight[light] = weight[transfer->to_code[4 * light]];
-    return keep_codes(transfer, weight);
 }

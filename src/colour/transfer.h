@@ -28,9 +28,8 @@ const uint16_t *rf_light_of_codes(uint32_t blend);
 
 void rf_transfer_init(struct rf_transfer *transfer, int blend);
 
-/* Sets the weight of each Q12 light max(R, G, B) with that sigma. Returns
- * whether each code comes back from its weighted mean. */
-bool rf_weights_of_light(uint16_t light_weight[RF_LIGHT_MAX + 1],
+/* Sets the weight of each Q12 light max(R, G, B) with that sigma. */
+void rf_weights_of_light(uint16_t light_weight[RF_LIGHT_MAX + 1],
                          const struct rf_transfer *transfer, double sigma);
 
 #endif

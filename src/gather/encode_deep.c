@@ -32,7 +32,7 @@ static bool is_in_focus(const struct rf_frame *f, int x, int y)
 {
     const int blur = rf_in_pixels(f->blur.at[y * f->blur.stride + x], f->blur.unit);
 
-    return abs(blur) < RF_KNOWN_FROM && !f->premultiplied;
+    return abs(blur) < RF_KNOWN_FROM;
 }
 
 /* The light of a pixel: its own, as exact as the photo has it, where nothing changed it. Returns

@@ -155,8 +155,6 @@ void rf_encode_yuv_means(const struct rf_frame *f, int tx, int ty, struct rf_rec
      * what that made of one of them. */
     job->own_luma = f->light.channel[0] + y0 * f->view->stride + x0;
     job->own_chroma = f->chroma.light.at + c0 * f->view->stride + x0;
-    for (int p = 0; p < 2; p++)
-        job->within[p] = f->premultiplied ? rf_yuv_within(f->light_weight, p) : 0;
     job->stride = f->view->stride;
     copy_codes(job->y, codes->y + y0 * codes->y_stride + x0, codes->y_stride, w, h);
     copy_codes(job->uv, codes->uv + c0 * codes->uv_stride + x0, codes->uv_stride, w + w % 2, rows);

@@ -80,7 +80,6 @@ struct rf_frame {
     bool prefilter_fades;                       /* steps set in gradually: rf_prefilter_over() */
     struct rf_thin_pass thin;     /* thin structures, composited over the means of rays */
     bool weighted;                /* eq. 5 weights differ from 1 */
-    bool premultiplied;           /* weighted, and light times weight fits 16 bits */
     bool fine;                    /* the aperture is: rf_aperture_is_fine() */
     int row_gap;                  /* rf_row_gap() of gather/tile_rows.h */
     struct rf_look look;          /* spikes of stars, and grain */

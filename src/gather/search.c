@@ -164,7 +164,7 @@ static void search_strip(const struct rf_frame *f, struct share *share, int tx, 
         k->sweep_weighted(sum, &sweep);
         k->search_weighted(sum, &search);
     } else {
-        uint32_t *const sum[4] = {run->sum[0] + i, run->sum[1] + i, run->sum[2] + i, NULL};
+        uint32_t *const sum[3] = {run->sum[0] + i, run->sum[1] + i, run->sum[2] + i};
 
         k->sweep(sum, &sweep);
         k->search(sum, &search);

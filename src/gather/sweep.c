@@ -105,10 +105,10 @@ static void set_lookups(struct lookups *lookups, const struct tile *tile, int fi
     }
 }
 
-/* The sums of a tile: of light, plain or times weight, and of weights. */
+/* The sums of a tile: of light, or of light times weight and of weights. */
 union tally {
-    uint32_t sum[4][LANES];
-    uint64_t weighted[4][LANES]; /* for weights that differ too much for 16 bits */
+    uint32_t sum[3][LANES];
+    uint64_t weighted[4][LANES];
 };
 
 /* The share of a worker, for a tile until its means are computed. Vectors of sums that cross cache
@@ -131,11 +131,6 @@ static uint64_t fine_at(void)
 uint64_t rf_sweep_share(void)
 {
     return fine_at() + sizeof(struct rf_fine_means);
-}
-
-static bool has_wide_sums(const struct rf_frame *f)
-{
-    return f->weighted && !f->premultiplied;
 }
 
 /* Rows of a tile that are computed together. */
@@ -189,15 +184,14 @@ static void sweep_strip(const struct tile *tile, struct strip strip)
 
     f->exec->kernels->sort_rays(&share->sorted, &sort);
     share->past_slabs = share->past_slabs || share->sorted.past_slabs;
-    if (has_wide_sums(f))
+    if (f->weighted)
         weighted((uint64_t *const[4]){run->weighted[0] + first, run->weighted[1] + first,
                                       run->weighted[2] + first, run->weighted[3] + first},
                  &job);
     else
-        f->exec->kernels->sweep((uint32_t *const[4]){run->sum[0] + first, run->sum[1] + first,
-                                                     run->sum[2] + first,
-                                                     f->weighted ? run->sum[3] + first : NULL},
-                                &job);
+        f->exec->kernels->sweep(
+            (uint32_t *const[3]){run->sum[0] + first, run->sum[1] + first, run->sum[2] + first},
+            &job);
 }
 
 /* Sweeps the rows of a tile that are computed. */
@@ -212,7 +206,7 @@ static void sweep_strips(const struct tile *tile, struct rf_tile_rows rows)
 static void clear_run(const struct rf_frame *f, union tally *run, int lanes)
 {
     for (int c = 0; c < (f->weighted ? 4 : 3); c++)
-        if (has_wide_sums(f))
+        if (f->weighted)
             memset(run->weighted[c], 0, (size_t)lanes * sizeof run->weighted[c][0]);
         else
             memset(run->sum[c], 0, (size_t)lanes * sizeof run->sum[c][0]);
@@ -222,14 +216,10 @@ static void clear_run(const struct rf_frame *f, union tally *run, int lanes)
 static void add_run(const struct rf_frame *f, const union tally *run, uint64_t ray_weight,
                     uint64_t rays, struct rf_sums *sums)
 {
-    const bool wide = has_wide_sums(f);
-
     for (int i = 0; i < LANES; i++) {
         for (int c = 0; c < 3; c++)
-            sums->light[c][i] += ray_weight * (wide ? run->weighted[c][i] : run->sum[c][i]);
-        sums->weight[i] += ray_weight * (wide          ? run->weighted[3][i]
-                                         : f->weighted ? run->sum[3][i]
-                                                       : rays);
+            sums->light[c][i] += ray_weight * (f->weighted ? run->weighted[c][i] : run->sum[c][i]);
+        sums->weight[i] += ray_weight * (f->weighted ? run->weighted[3][i] : rays);
     }
 }
 
@@ -296,14 +286,12 @@ static void sweep_means(const struct tile *tile, uint16_t mean[3][LANES])
     sweep_rays(tile, rows);
     if (rf_cancelled(f->exec))
         return;
-    if (!f->premultiplied && rf_exceeds_means(&tile->plan))
+    if (rf_exceeds_means(&tile->plan))
         clamp_run(run, lanes, f->weighted, count);
     for (int c = tile->from; c < tile->to; c++) {
         uint16_t *out = rows.step > 1 ? computed : mean[c];
 
-        if (f->premultiplied)
-            f->exec->kernels->premultiplied_means(out, run->sum[c], run->sum[3], lanes);
-        else if (f->weighted)
+        if (f->weighted)
             f->exec->kernels->weighted_means(out, run->weighted[c], run->weighted[3], lanes);
         else
             f->exec->kernels->means(out, run->sum[c], rf_mean_scale(count), lanes);
@@ -322,8 +310,6 @@ static void sweep_sums(const struct tile *tile, uint16_t mean[3][LANES])
 {
     const struct rf_frame *const f = tile->f;
     const uint64_t most = 4 * RF_MOST_MEAN;
-    const uint64_t unit =
-        f->premultiplied ? 8192 : 4; /* light is Q13 times weight Q12, or plain Q12 */
     const uint16_t softness = rf_softness(f, &tile->plan, tile->background_blur);
     struct rf_sums *const sums = &tile->share->sums;
 
@@ -333,7 +319,7 @@ static void sweep_sums(const struct tile *tile, uint16_t mean[3][LANES])
         return;
     for (int c = tile->from; c < tile->to; c++) {
         for (int i = 0; i < LANES; i++) {
-            const uint64_t w = sums->weight[i], v = (unit * sums->light[c][i] + w / 2) / w;
+            const uint64_t w = sums->weight[i], v = (4 * sums->light[c][i] + w / 2) / w;
 
             mean[c][i] = (uint16_t)(v < most ? v : most);
         }

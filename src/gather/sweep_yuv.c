@@ -63,7 +63,7 @@ static void set_rays(struct lookups *lookups, const struct rf_ray_set *set, int 
 /* The sums of luma [0] and of chroma [1]. A run of rays of one weight sums light, or light times
  * weights of eq. 5 and these weights; `sum` and `weight` add up all runs. */
 struct sums {
-    uint32_t run[2][LANES], run_weight[2][LANES]; /* products fit 16 bits */
+    uint32_t run[2][LANES];
     uint64_t weighted_run[2][LANES], weight_run[2][LANES];
     uint64_t sum[2][LANES], weight[2][LANES];
 };
@@ -79,12 +79,6 @@ struct share {
 uint64_t rf_sweep_yuv_share(void)
 {
     return sizeof(struct share);
-}
-
-/* Whether weights differ too much for products of 16 bits. */
-static bool has_wide_sums(const struct tile *tile)
-{
-    return tile->weight && !tile->f->premultiplied;
 }
 
 static void sweep_plane(const struct tile *tile, bool chroma, const struct rf_sorted_rays *rays,
@@ -104,12 +98,11 @@ static void sweep_plane(const struct tile *tile, bool chroma, const struct rf_so
         .down = plane->down,
     };
 
-    if (has_wide_sums(tile))
+    if (tile->weight)
         tile->f->exec->kernels->sweep1_weighted(sums->weighted_run[chroma],
                                                 sums->weight_run[chroma], &job);
     else
-        tile->f->exec->kernels->sweep1(sums->run[chroma],
-                                       tile->weight ? sums->run_weight[chroma] : NULL, &job);
+        tile->f->exec->kernels->sweep1(sums->run[chroma], &job);
 }
 
 /* Sorts rays, of which chroma shares the first `shared`. All strips of a tile are sorted together:
@@ -157,13 +150,11 @@ static void clear_run(const struct tile *tile, struct sums *sums)
     for (int p = 0; p < 2; p++) {
         const size_t lanes = (size_t)plane[p]->computed.count * RF_TILE;
 
-        if (has_wide_sums(tile)) {
+        if (tile->weight) {
             memset(sums->weighted_run[p], 0, lanes * sizeof sums->weighted_run[p][0]);
             memset(sums->weight_run[p], 0, lanes * sizeof sums->weight_run[p][0]);
         } else {
             memset(sums->run[p], 0, lanes * sizeof sums->run[p][0]);
-            if (tile->weight)
-                memset(sums->run_weight[p], 0, lanes * sizeof sums->run_weight[p][0]);
         }
     }
 }
@@ -175,12 +166,9 @@ static void add_run(const struct tile *tile, struct sums *sums, uint64_t weight,
 
     for (int p = 0; p < 2; p++) {
         for (int i = 0; i < lanes[p]; i++) {
-            const bool wide = has_wide_sums(tile);
-
-            sums->sum[p][i] += weight * (wide ? sums->weighted_run[p][i] : sums->run[p][i]);
-            sums->weight[p][i] += weight * (wide           ? sums->weight_run[p][i]
-                                            : tile->weight ? sums->run_weight[p][i]
-                                                           : (uint64_t)rays[p]);
+            sums->sum[p][i] += weight * (tile->weight ? sums->weighted_run[p][i] : sums->run[p][i]);
+            sums->weight[p][i] +=
+                weight * (tile->weight ? sums->weight_run[p][i] : (uint64_t)rays[p]);
         }
     }
     clear_run(tile, sums);
@@ -228,13 +216,9 @@ static void compute_means(const struct tile *tile, bool chroma, struct sums *sum
     const uint16_t softness = rf_softness(tile->f, &tile->plan, tile->background_blur);
     uint16_t memory[LANES], *computed = plane->computed.step == 1 ? mean : memory;
 
-    for (int i = 0; tile->f->premultiplied && chroma && i < lanes; i++)
-        sums->run[1][i] *= 2; /* Q12 to Q13 */
     if (!tile->weight && !chroma && rf_exceeds_means(&tile->plan))
         rf_clamp_sums(sums->run[0], (uint32_t)rays, lanes);
-    if (tile->f->premultiplied)
-        kernels->premultiplied_means(computed, sums->run[chroma], sums->run_weight[chroma], lanes);
-    else if (tile->weight)
+    if (tile->weight)
         kernels->weighted_means(computed, sums->weighted_run[chroma], sums->weight_run[chroma],
                                 lanes);
     else
@@ -267,9 +251,6 @@ static void sweep_means(struct tile *tile, struct share *share, struct rf_decode
 static void sweep_sums(struct tile *tile, struct share *share, struct rf_decode_job *means)
 {
     const int lanes[2] = {LANES, tile->chroma.rows * RF_TILE};
-    /* Light is Q12 where it is plain; premultiplied it is Q13, chroma Q12, times weights of Q12. */
-    const uint64_t plain[2] = {4, 4}, premultiplied[2] = {1 << 13, 1 << 14};
-    const uint64_t *unit = tile->f->premultiplied ? premultiplied : plain;
     struct sums *const sums = &share->sums;
     uint16_t *const mean[2] = {means->luma, means->chroma};
 
@@ -282,7 +263,7 @@ static void sweep_sums(struct tile *tile, struct share *share, struct rf_decode_
         return;
     for (int p = 0; p < 2; p++)
         for (int i = 0; i < lanes[p]; i++) {
-            const uint64_t w = sums->weight[p][i], v = (unit[p] * sums->sum[p][i] + w / 2) / w;
+            const uint64_t w = sums->weight[p][i], v = (4 * sums->sum[p][i] + w / 2) / w;
 
             mean[p][i] = (uint16_t)(v < 4 * RF_MOST_MEAN ? v : 4 * RF_MOST_MEAN);
         }

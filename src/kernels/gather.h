@@ -22,8 +22,6 @@
  *         sum += last[n][p]
  *
  * Light is at most 65535 / steps, and sums are exact. Pointers are to the strip's first pixel.
- * Where sum[3] is not NULL, the weights of the pixels that are hit are added up there; they lie as
- * those of sweep_weighted, and light does not count by them.
  *
  * An example: a ray has two tests, blurs 1024 to 1280 at q = p + 3 and 512 to 800 at q = p + 2. A
  * pixel finds blur 60 at p + 3, which misses, and 700 at p + 2, which hits: light[p + 2] is added,
@@ -40,11 +38,11 @@ struct rf_sweep_job {
     enum rf_bright bright; /* the light of sweep_weighted */
     int lanes;             /* all of an even number of rows, RF_STRIP at most */
 
-    /* weights of the front, 1 to RF_WEIGHT_MAX in sweep_weighted */
+    /* for sweep_weighted: weights of the front, 1 to RF_WEIGHT_MAX */
     const uint16_t *weight;
     ptrdiff_t weight_stride;
 };
-typedef void rf_sweep_fn(uint32_t *const sum[4], const struct rf_sweep_job *job);
+typedef void rf_sweep_fn(uint32_t *const sum[3], const struct rf_sweep_job *job);
 
 static_assert(16 * RF_LIGHT_MAX <= UINT16_MAX, "16 rays of light up to white fit 16 bits");
 static_assert(8 * RF_CHROMA_MAX <= UINT16_MAX, "8 rays of chroma fit 16 bits");
@@ -69,13 +67,11 @@ struct rf_sweep1_job {
     bool chroma;
     const struct rf_sorted_rays *rays;
 
-    const uint16_t *weight; /* at the tile's first pixel; at most 4095 but for sweep1_weighted */
+    const uint16_t *weight; /* for sweep1_weighted: at the tile's first pixel */
     int down;               /* rows of weights are 1 << down times as far apart */
 };
 
-/* Where weight_sum is not NULL, the weights of the pixels that are hit are added up there; they lie
- * as those of sweep1_weighted. */
-typedef void rf_sweep1_fn(uint32_t *sum, uint32_t *weight_sum, const struct rf_sweep1_job *job);
+typedef void rf_sweep1_fn(uint32_t *sum, const struct rf_sweep1_job *job);
 
 /* sweep1_weighted: sweep1 with light that counts weight times, 1 to RF_WEIGHT_MAX, and sums of
  * weights. The weights of luma lie as its light; elements 2 i and 2 i + 1 of chroma count as the

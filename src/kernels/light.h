@@ -29,45 +29,6 @@ typedef void rf_clamp_row_fn(uint16_t *value, uint16_t most, int n);
 typedef void rf_weighted_means_fn(uint16_t *mean, const uint64_t *sum, const uint64_t *weight,
                                   int n);
 
-/*
- * weigh: weights of n pixels of both layers, and their light times weight.
- *
- *     weight = light_weight[min(max(R, G, B), RF_LIGHT_MAX)] / 8                          Q12
- *     light  = round(2 weight light), 2 round(weight light) of light above 16383          Q13
- *
- * Light is Q12, at most 8 RF_LIGHT_MAX; halves up. brightest[i] becomes the brightest light of
- * pixels RF_TILE i and after, where it exceeds that.
- */
-struct rf_weigh_job {
-    uint16_t *near[3], *far[3];
-    uint16_t *near_weight, *far_weight;
-    uint16_t *brightest;
-    const uint16_t *light_weight; /* RF_LIGHT_MAX + 1, Q15 */
-};
-typedef void rf_weigh_fn(const struct rf_weigh_job *job, int n);
-
-/*
- * weigh1: the same of one plane, all of whose light is
- *
- *     light = round(2 weight light)                                                        Q13
- *
- * and at most 4 RF_LIGHT_MAX. weigh_chroma: n samples of two values, at most 2^15 - 1, times the
- * weight of the first of every two pixels: round(weight value / 4096), halves up. */
-struct rf_weigh1_job {
-    uint16_t *near, *far;
-    uint16_t *near_weight, *far_weight;
-    uint16_t *brightest;
-    const uint16_t *light_weight;
-};
-typedef void rf_weigh1_fn(const struct rf_weigh1_job *job, int n);
-typedef void rf_weigh_chroma_fn(uint16_t *chroma, const uint16_t *weight, int n);
-
-/* premultiplied_means: Q14 means of n sums below 2^31 of Q13 light times Q12 weight, and of the
- * weights: 2^13 sum / weight half up, at most 65520. In single precision, one operation after
- * the other: within 1/2 + 2^-6. */
-typedef void rf_premultiplied_means_fn(uint16_t *mean, const uint32_t *sum, const uint32_t *weight,
-                                       int n);
-
 /* between_rows: a tile of means from some of its rows, 2, 3 or 5 apart (gather/tile_rows.h), by
  * the cubics through four of them, half up, never beyond the one before and the one after. */
 static_assert((uint64_t)13 * (1 << 14) / 8 * UINT16_MAX <= INT32_MAX,

@@ -138,7 +138,7 @@ static void sweep(const struct rf_kernels *k, struct rows *r)
                                      .stride = stride,
                                      .pitch = pitch,
                                      .rays = &r->rays};
-    uint32_t *const sum[4] = {r->strip_sum[0], r->strip_sum[1], r->strip_sum[2], NULL};
+    uint32_t *const sum[3] = {r->strip_sum[0], r->strip_sum[1], r->strip_sum[2]};
 
     for (int n = 0; n < RF_RAY_CHUNK; n++) {
         r->rays.tests[n] = 1;

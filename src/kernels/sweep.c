@@ -1,12 +1,9 @@
 /* sweep.c: sums of what the rays of a strip see, of three planes; sweep_planes.h has the loops. */
 #include "kernels/sweep_planes.h"
 
-void rf_sweep_c(uint32_t *const sum[4], const struct rf_sweep_job *job)
+void rf_sweep_c(uint32_t *const sum[3], const struct rf_sweep_job *job)
 {
     const struct rf_sweep_view view = rf_sweep_view(job);
 
-    if (sum[3])
-        rf_sweep_planes(sum, &view, 3, true);
-    else
-        rf_sweep_planes(sum, &view, 3, false);
+    rf_sweep_planes(sum, &view, 3);
 }

@@ -1,13 +1,9 @@
 /* sweep1.c: sums of what the rays of a tile see, of one plane; sweep_planes.h has the loops. */
 #include "kernels/sweep_planes.h"
 
-void rf_sweep1_c(uint32_t *sum, uint32_t *weight_sum, const struct rf_sweep1_job *job)
+void rf_sweep1_c(uint32_t *sum, const struct rf_sweep1_job *job)
 {
     const struct rf_sweep_view view = rf_sweep1_view(job);
-    uint32_t *const sums[2] = {sum, weight_sum};
 
-    if (weight_sum)
-        rf_sweep_planes(sums, &view, 1, true);
-    else
-        rf_sweep_planes(sums, &view, 1, false);
+    rf_sweep_planes(&sum, &view, 1);
 }

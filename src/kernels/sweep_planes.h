@@ -41,34 +41,29 @@ static RF_ALWAYS_INLINE struct rf_sweep_hit rf_sweep_hit(const struct rf_sweep_v
 }
 
 static RF_ALWAYS_INLINE void rf_sweep_ray_plain(uint32_t *const *sum, const struct rf_sweep_view *v,
-                                                int n, const int planes, const bool weighted)
+                                                int n, const int planes)
 {
     for (int y = 0; y < v->rows; y++) {
         const ptrdiff_t p = rf_row_of(&v->layout, y, v->rows);
-        const ptrdiff_t w = rf_row_of(&v->weight_layout, y, v->rows);
 
         for (int x = 0; x < RF_TILE; x++) {
-            const struct rf_sweep_hit hit =
-                rf_sweep_hit(v, n, p + x, w + rf_weight_column(v, x), planes, weighted);
-            const int i = y * RF_TILE + x;
+            const struct rf_sweep_hit hit = rf_sweep_hit(v, n, p + x, 0, planes, false);
 
             for (int c = 0; c < planes; c++)
-                sum[c][i] += hit.light[c * v->pitch];
-            if (weighted)
-                sum[planes][i] += *hit.weight;
+                sum[c][y * RF_TILE + x] += hit.light[c * v->pitch];
         }
     }
 }
 
-/* Sums of light, and of weights where sum[planes] is not NULL. */
+/* Sums of light. */
 static RF_ALWAYS_INLINE void rf_sweep_planes(uint32_t *const *sum, const struct rf_sweep_view *v,
-                                             const int planes, const bool weighted)
+                                             const int planes)
 {
     struct rf_ray_run run = {0, 0, -1};
 
     while (rf_next_run(&run, v, planes))
         for (int n = run.first; n < run.end; n++)
-            rf_sweep_ray_plain(sum, v, n, planes, weighted);
+            rf_sweep_ray_plain(sum, v, n, planes);
 }
 
 static RF_ALWAYS_INLINE void rf_sweep_weighted_ray_plain(uint64_t *const *sum,

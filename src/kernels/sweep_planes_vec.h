@@ -18,16 +18,16 @@
 
 enum {
     RF_EACH = (int)RF_TILE / (int)VEC_U16, /* vectors of a row */
-    RF_MOST_PLANES = 4,                    /* with that of weights */
-    RF_MOST_VECS = 8,                      /* together, of a plane */
-    RF_FEW_TESTS = 4,                      /* so many or more have no loop of their own */
+    RF_MOST_PLANES = 3,
+    RF_MOST_VECS = 8, /* together, of a plane */
+    RF_FEW_TESTS = 4, /* so many or more have no loop of their own */
 };
 
 /* Rows that are worked on together: `rows` of them from a row on, and as many of the other half,
- * where `halves` is 2. The first lies `at` elements from that of the view, and in its weights. */
+ * where `halves` is 2. The first lies `at` elements from that of the view. */
 struct rf_row_group {
     int row, rows, halves;
-    ptrdiff_t at, weight_at;
+    ptrdiff_t at;
 };
 
 /* Vectors of a group. */
@@ -80,7 +80,7 @@ static RF_ALWAYS_INLINE void rf_add_plane(vec_u16 sum[RF_MOST_VECS], const uint1
 /* Adds what ray n of `tests` tests sees, from the front to the back. */
 static RF_ALWAYS_INLINE void rf_sweep_forwards(rf_sums sum, const struct rf_sweep_view *v, int n,
                                                const int tests, const struct rf_row_group *g,
-                                               const int planes, const bool weighted)
+                                               const int planes)
 {
     const struct rf_sorted_rays *rays = v->rays;
     vec_mask is_free[RF_MOST_VECS], hit[RF_MOST_VECS];
@@ -100,50 +100,33 @@ static RF_ALWAYS_INLINE void rf_sweep_forwards(rf_sums sum, const struct rf_swee
         }
         for (int c = 0; c < planes; c++)
             rf_add_plane(sum[c], q, (c + 1) * v->pitch, &v->layout, hit, g);
-        if (weighted)
-            rf_add_plane(sum[planes], v->weight + v->weight_offset[t][n], g->weight_at,
-                         &v->weight_layout, hit, g);
     }
     for (int c = 0; c < planes; c++)
         rf_add_plane(sum[c], v->last[n], g->at + c * v->pitch, &v->layout, left, g);
-    if (weighted && rays->last_is_background[n])
-        rf_add_plane(sum[planes], v->last_weight[n], g->at, &v->layout, left, g);
-    else if (weighted)
-        rf_add_plane(sum[planes], v->last_weight[n], g->weight_at, &v->weight_layout, left, g);
 }
 
 /* Adds what ray n of one plane sees, from the back to the front. */
 static RF_ALWAYS_INLINE void rf_sweep_backwards(rf_sums sum, const struct rf_sweep_view *v, int n,
-                                                const int tests, const struct rf_row_group *g,
-                                                const bool weighted)
+                                                const int tests, const struct rf_row_group *g)
 {
-    const struct rf_row_layout *const l = &v->layout, *const wl = &v->weight_layout;
-    vec_u16 light[RF_MOST_VECS], weight[RF_MOST_VECS];
+    const struct rf_row_layout *const l = &v->layout;
+    vec_u16 light[RF_MOST_VECS];
 
     for (int j = 0; j < rf_vecs(g); j++)
         light[j] = rf_load_at(v->last[n] + g->at, l, j, g);
-    for (int j = 0; weighted && j < rf_vecs(g); j++)
-        weight[j] = rf_load_at(v->last_weight[n] + g->weight_at, wl, j, g);
     for (int t = tests - 1; t >= 0; t--) {
         const struct rf_limits limits = rf_limits_of(v->rays, t, n);
         const ptrdiff_t q = g->at + v->offset[t][n];
-        const ptrdiff_t p = weighted ? g->weight_at + v->weight_offset[t][n] : 0;
 
         for (int j = 0; j < rf_vecs(g); j++) {
             const vec_mask hit =
                 rf_in_limits(vec_mask_all(), limits, rf_load_at(v->blur + q, l, j, g));
 
             light[j] = vec_u16_load_where(hit, light[j], rf_vector_at(v->light + q, l, j, g));
-            if (weighted)
-                weight[j] =
-                    vec_u16_load_where(hit, weight[j], rf_vector_at(v->weight + p, wl, j, g));
         }
     }
-    for (int j = 0; j < rf_vecs(g); j++) {
+    for (int j = 0; j < rf_vecs(g); j++)
         sum[0][j] = vec_u16_add(sum[0][j], light[j]);
-        if (weighted)
-            sum[1][j] = vec_u16_add(sum[1][j], weight[j]);
-    }
 }
 
 /* The runs of rays of a view. */
@@ -155,14 +138,11 @@ struct rf_ray_runs {
 /* Adds 16-bit sums of a group to those of 32 bits, and clears them. */
 static RF_ALWAYS_INLINE void rf_flush(uint32_t *const *to, rf_sums sum,
                                       const struct rf_sweep_view *v, const struct rf_row_group *g,
-                                      const int planes, const bool weighted)
+                                      const int planes)
 {
-    for (int c = 0; c < planes + weighted; c++)
+    for (int c = 0; c < planes; c++)
         for (int j = 0; j < rf_vecs(g); j++) {
-            const bool twice = planes == 1 && c == planes && v->chroma;
-
-            vec_u16_add_to(to[c] + rf_lane_at(v, j, g),
-                           twice ? vec_u16_twice(sum[c][j]) : sum[c][j]);
+            vec_u16_add_to(to[c] + rf_lane_at(v, j, g), sum[c][j]);
             sum[c][j] = vec_u16_set(0);
         }
 }
@@ -170,28 +150,27 @@ static RF_ALWAYS_INLINE void rf_flush(uint32_t *const *to, rf_sums sum,
 /* Adds what rays first to end - 1 see. */
 static RF_ALWAYS_INLINE void rf_sweep_some(rf_sums sum, const struct rf_sweep_view *v, int first,
                                            int end, const int tests, const struct rf_row_group *g,
-                                           const int planes, const bool weighted)
+                                           const int planes)
 {
     for (int n = first; n < end; n++) {
         const int own = tests < RF_FEW_TESTS ? tests : v->rays->tests[n];
 
         if (planes > 1)
-            rf_sweep_forwards(sum, v, n, own, g, planes, weighted);
+            rf_sweep_forwards(sum, v, n, own, g, planes);
         else
-            rf_sweep_backwards(sum, v, n, own, g, weighted);
+            rf_sweep_backwards(sum, v, n, own, g);
     }
 }
 
 /* All rays at a group. */
 static RF_ALWAYS_INLINE void rf_sweep_group(uint32_t *const *to, const struct rf_sweep_view *v,
                                             const struct rf_ray_runs *runs,
-                                            const struct rf_row_group *g, const int planes,
-                                            const bool weighted)
+                                            const struct rf_row_group *g, const int planes)
 {
     int left = v->steps; /* rays that the sums hold yet */
     rf_sums sum;
 
-    for (int c = 0; c < planes + weighted; c++)
+    for (int c = 0; c < planes; c++)
         for (int j = 0; j < rf_vecs(g); j++)
             sum[c][j] = vec_u16_set(0);
     for (const struct rf_ray_run *run = runs->run; run < runs->run + runs->count; run++) {
@@ -199,54 +178,52 @@ static RF_ALWAYS_INLINE void rf_sweep_group(uint32_t *const *to, const struct rf
             end = run->end < n + left ? run->end : n + left;
             switch (run->tests) {
             case 0:
-                rf_sweep_some(sum, v, n, end, 0, g, planes, weighted);
+                rf_sweep_some(sum, v, n, end, 0, g, planes);
                 break;
             case 1:
-                rf_sweep_some(sum, v, n, end, 1, g, planes, weighted);
+                rf_sweep_some(sum, v, n, end, 1, g, planes);
                 break;
             case 2:
-                rf_sweep_some(sum, v, n, end, 2, g, planes, weighted);
+                rf_sweep_some(sum, v, n, end, 2, g, planes);
                 break;
             case 3:
-                rf_sweep_some(sum, v, n, end, 3, g, planes, weighted);
+                rf_sweep_some(sum, v, n, end, 3, g, planes);
                 break;
             default:
-                rf_sweep_some(sum, v, n, end, RF_FEW_TESTS, g, planes, weighted);
+                rf_sweep_some(sum, v, n, end, RF_FEW_TESTS, g, planes);
             }
             left -= end - n;
             if (left == 0) {
-                rf_flush(to, sum, v, g, planes, weighted);
+                rf_flush(to, sum, v, g, planes);
                 left = v->steps;
             }
         }
     }
     if (left < v->steps)
-        rf_flush(to, sum, v, g, planes, weighted);
+        rf_flush(to, sum, v, g, planes);
 }
 
 /* All rays at groups of `rows` rows, from row `row` on as far as they go. Returns the row after
  * them. One plane is worked on in rows of both halves. */
 static RF_ALWAYS_INLINE int rf_sweep_rows(uint32_t *const *to, const struct rf_sweep_view *v,
                                           const struct rf_ray_runs *runs, int row, const int rows,
-                                          const int planes, const bool weighted)
+                                          const int planes)
 {
     const int halves = planes > 1 ? 1 : 2, all = v->rows / halves;
 
     for (; row + rows <= all; row += rows) {
-        const struct rf_row_group group = {row, rows, halves, row * v->layout.apart,
-                                           row * v->weight_layout.apart};
+        const struct rf_row_group group = {row, rows, halves, row * v->layout.apart};
 
-        rf_sweep_group(to, v, runs, &group, planes, weighted);
+        rf_sweep_group(to, v, runs, &group, planes);
     }
     return row;
 }
 
-/* Sums of light, and, if weighted, in to[planes] of weights. As many rows are worked on together
- * as keep all in registers. */
+/* Sums of light. As many rows are worked on together as keep all in registers. */
 static RF_ALWAYS_INLINE void rf_sweep_planes_vec(uint32_t *const *to, const struct rf_sweep_view *v,
-                                                 const int planes, const bool weighted)
+                                                 const int planes)
 {
-    const int rows = (planes > 1 || weighted ? 2 : 4) / RF_EACH;
+    const int rows = (planes > 1 ? 2 : 4) / RF_EACH;
     struct rf_ray_run run = {0, 0, -1};
     struct rf_ray_runs runs;
     int row;
@@ -254,13 +231,13 @@ static RF_ALWAYS_INLINE void rf_sweep_planes_vec(uint32_t *const *to, const stru
     runs.count = 0;
     while (rf_next_run(&run, v, planes))
         runs.run[runs.count++] = run;
-    row = rf_sweep_rows(to, v, &runs, 0, rows, planes, weighted);
+    row = rf_sweep_rows(to, v, &runs, 0, rows, planes);
     if (rows > 3)
-        row = rf_sweep_rows(to, v, &runs, row, 3, planes, weighted);
+        row = rf_sweep_rows(to, v, &runs, row, 3, planes);
     if (rows > 2)
-        row = rf_sweep_rows(to, v, &runs, row, 2, planes, weighted);
+        row = rf_sweep_rows(to, v, &runs, row, 2, planes);
     if (rows > 1)
-        rf_sweep_rows(to, v, &runs, row, 1, planes, weighted);
+        rf_sweep_rows(to, v, &runs, row, 1, planes);
 }
 
 #endif

@@ -2,12 +2,9 @@
  * the loops. */
 #include "kernels/sweep_planes_vec.h"
 
-void RF_VEC(rf_sweep)(uint32_t *const sum[4], const struct rf_sweep_job *job)
+void RF_VEC(rf_sweep)(uint32_t *const sum[3], const struct rf_sweep_job *job)
 {
     const struct rf_sweep_view view = rf_sweep_view(job);
 
-    if (sum[3])
-        rf_sweep_planes_vec(sum, &view, 3, true);
-    else
-        rf_sweep_planes_vec(sum, &view, 3, false);
+    rf_sweep_planes_vec(sum, &view, 3);
 }

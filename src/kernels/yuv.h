@@ -29,16 +29,15 @@ typedef void rf_guide_fn(uint8_t *rgb, const uint8_t *luma, const uint8_t *uv,
  *     Y = to_code[L - E] of its pixels
  *
  * with L' the mean of the luminances of the pixels that share a sample: of 2 x 2 if `down`, of
- * 2 x 1 else. Means above white are white. Pixels whose luminance and chroma are what they
- * were, `within` of 4 times `own`, keep their codes; samples all of whose pixels do, too.
+ * 2 x 1 else. Means above white are white. Pixels whose luminance and chroma are 4 times
+ * `own` keep their codes; samples all of whose pixels do, too.
  */
 struct rf_decode_job {
     const struct rf_yuv_curve *curve;
     int down;
     uint16_t luma[RF_TILE * RF_TILE], chroma[RF_TILE * RF_TILE]; /* rows of RF_TILE, Q14 */
-    const uint16_t *own_luma, *own_chroma; /* Q12, of the tile's first element */
-    ptrdiff_t stride;                      /* stride of both planes */
-    uint16_t within[2];                    /* bounds of luma and of chroma; 15 at most */
+    const uint16_t *own_luma, *own_chroma;               /* Q12, of the tile's first element */
+    ptrdiff_t stride;                                    /* stride of both planes */
     uint8_t y[RF_TILE * RF_TILE], uv[RF_TILE * RF_TILE]; /* in: codes that were; out */
 };
 typedef void rf_decode_fn(struct rf_decode_job *job);

@@ -91,8 +91,6 @@ static bool is_there(const struct rf_frame *f, const struct parts *parts, bool l
 {
     const struct rf_pass_cache *m = &rf_renderer_of(f)->cache;
 
-    if (m->premultiplied && (!f->premultiplied || m->sigma != f->params->sigma))
-        return false;
     return rf_same_lens(f) && contains(m->window, parts->bins) && has_same_thin(f) &&
            (layers ? m->background && rf_same_light(f) && contains(m->exact, parts->visible) &&
                          (!m->weighted || rf_is_sweep(f))
@@ -280,11 +278,9 @@ static void make_weights(struct rf_frame *f)
 {
     struct rf_pass_cache *m = &rf_renderer_of(f)->cache;
 
-    if (rf_cancelled(&rf_renderer_of(f)->exec) ||
-        (m->weighted && m->sigma == f->params->sigma && m->premultiplied == f->premultiplied))
+    if (rf_cancelled(&rf_renderer_of(f)->exec) || (m->weighted && m->sigma == f->params->sigma))
         return;
     m->weighted = true;
-    m->premultiplied = f->premultiplied;
     m->sigma = -1; /* until all of them are there */
     rf_pass_weights(f);
     if (!rf_cancelled(&rf_renderer_of(f)->exec))
@@ -355,8 +351,8 @@ void rf_run_passes(struct rf_frame *f, struct rf_rect region, enum rf_need need,
         rf_set_planes(f);
         f->bright = layers ? r->cache.bright : RF_WHITE;
     } else {
-        /* The background is inpainted from smooth light that is neither boosted nor weighted. */
-        if (r->cache.boosted || r->cache.premultiplied)
+        /* The background is inpainted from smooth light that is not boosted. */
+        if (r->cache.boosted)
             r->cache = (struct rf_pass_cache){0};
         make_in_window(f, &parts, layers);
     }

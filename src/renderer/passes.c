@@ -19,20 +19,6 @@
 #include "thin/thin.h"
 #include "tiles/ranges.h"
 
-/* Whether sums of premultiplied light stay below 2^31: 8 times white in Q13, with twice the rays
- * for highlights. */
-static bool may_premultiply(const struct rf_frame *f)
-{
-    const struct rf_settings *p = f->params;
-
-    static_assert((int64_t)(2 * RF_PLAIN_GAIN) * (2 * RF_LIGHT_MAX) * (2 * 8192) <= INT32_MAX,
-                  "the sum of all rays fits 31 bits");
-    if (rf_renderer_of(f)->yuv->on && rf_renderer_of(f)->light_weight[0] >> 3 < RF_YUV_LEAST_WEIGHT)
-        return false;
-    return rf_is_sweep(f) && p->highlight_gain <= 2 * RF_PLAIN_GAIN &&
-           p->rays != REFOCUS_RAYS_FULL && p->rays <= 8192;
-}
-
 /* Computes eq. 5 over the Q12 values of the blend in use. */
 void rf_set_weights(struct rf_frame *f)
 {
@@ -40,15 +26,11 @@ void rf_set_weights(struct rf_frame *f)
     const float sigma = f->params->sigma;
 
     f->weighted = rf_weighs(f->params);
-    f->premultiplied = false;
-    if (!f->weighted)
+    if (!f->weighted || (r->weight_sigma == sigma && r->weight_blend == r->blend))
         return;
-    if (r->weight_sigma != sigma || r->weight_blend != r->blend) {
-        r->keep_codes = rf_weights_of_light(r->light_weight, &r->transfer[r->blend], sigma);
-        r->weight_sigma = sigma;
-        r->weight_blend = r->blend;
-    }
-    f->premultiplied = r->keep_codes && may_premultiply(f);
+    rf_weights_of_light(r->light_weight, &r->transfer[r->blend], sigma);
+    r->weight_sigma = sigma;
+    r->weight_blend = r->blend;
 }
 
 /* Works in the planes of a lens setting, whose contents end. */
@@ -301,8 +283,6 @@ static void weigh_band(void *context, int band, int worker)
 {
     const struct rf_frame *f = context;
     const struct refocus_renderer *r = rf_renderer_of(f);
-    const struct rf_weights_chroma chroma = {r->chroma.size, r->chroma.smooth,
-                                             r->chroma.background};
     const struct rf_weights pass = {
         .light_weight = r->light_weight,
         .smooth = rf_is_sweep(f) ? r->smooth : weighed_by_search(f),
@@ -310,14 +290,11 @@ static void weigh_band(void *context, int band, int worker)
         .background = r->background.light,
         .weight = f->weight,
         .background_weight = r->background_weight,
-        .bins = r->bins,
-        .chroma = r->yuv->on && rf_is_sweep(f) ? &chroma : NULL,
+        .is_luminance = r->yuv->on && rf_is_sweep(f),
     };
 
-    if (f->premultiplied)
-        rf_premultiply_rows(&r->exec, &r->view, &pass, band, worker);
-    else
-        rf_weigh_rows(&r->view, &pass, band);
+    (void)worker;
+    rf_weigh_rows(&r->view, &pass, band);
 }
 
 static void expand_band(void *context, int band, int worker)

@@ -8,8 +8,7 @@
  *     smooth              <-  light, blur, spacing of the rays, gain of highlights
  *     hidden background   <-  smooth, blur
  *
- * The shape of the aperture and rays as dense as before change none of them, nor does sigma,
- * unless the light of both layers is premultiplied by its weight (passes/weights.h).
+ * The shape of the aperture, rays as dense as before and sigma change none of them.
  * For a region only a window of the photo is worked on: the region, the pixels that its rays
  * reach, those that the marks of the background there depend on, and as many around as its
  * inpainting needs. The planes of the window are kept for the next call.

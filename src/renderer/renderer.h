@@ -73,7 +73,6 @@ struct rf_pass_cache {
     bool background;       /* the hidden background */
     bool textured;         /* texture is continued in it */
     bool weighted;         /* weights of `sigma` lie in place of its blur */
-    bool premultiplied;    /* the light of both layers is multiplied by them */
     float sigma;
     float own_sigma; /* weights of the photo's own light are of it and of own_blend; -1: none are */
     uint32_t own_blend;
@@ -173,7 +172,6 @@ struct refocus_renderer {
 
     struct rf_transfer *transfer; /* RF_BLEND_COUNT of them */
     uint16_t *light_weight;       /* eq. 5: weight of Q12 light max(R, G, B), Q15 */
-    bool keep_codes;              /* as rf_weights_of_light() says: light may be premultiplied */
     float weight_sigma;           /* sigma of light_weight, in weight_blend */
     uint32_t weight_blend;
 

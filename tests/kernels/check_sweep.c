@@ -17,9 +17,6 @@ enum {
     LANES = RF_STRIP_LANES,
 };
 
-/* Sums of a run: light; light and weights; or light times weight and weights. */
-enum kind { PLAIN, WITH_WEIGHTS, WEIGHTED };
-
 struct stage {
     struct guarded front, background; /* groups of planes: blur and light, light and weight */
     struct guarded weight;            /* weight of the front */
@@ -27,8 +24,7 @@ struct stage {
     struct rf_sorted_rays rays;
     uint8_t tested[MOST_SLABS][RF_RAY_CHUNK]; /* slab of a test */
     struct rf_sweep_job job;
-    enum kind kind;
-    uint32_t sum[4][LANES], expected[4][LANES]; /* [3]: of weights */
+    uint32_t sum[3][LANES], expected[3][LANES];
     uint64_t weighted[4][LANES], expected_weighted[4][LANES];
 };
 
@@ -38,7 +34,6 @@ static void count(struct stage *s, int pixel, const uint16_t *red, uint16_t weig
         s->expected[c][pixel] += red[c * PITCH];
         s->expected_weighted[c][pixel] += (uint64_t)red[c * PITCH] * weight;
     }
-    s->expected[3][pixel] += weight;
     s->expected_weighted[3][pixel] += weight;
 }
 
@@ -173,9 +168,6 @@ static void make_stage(struct stage *s, int tests, bool same, enum place place, 
     s->job.bright = noise(&seed) % 2 ? RF_WHITE : (enum rf_bright)(noise(&seed) % 4);
     most = 4095 * (s->job.bright == RF_WHITE ? 1 : 2 << s->job.bright);
     s->job.steps = 65535 / most;
-    s->kind = noise(&seed) % 2 ? WITH_WEIGHTS : PLAIN;
-    if (s->kind == WITH_WEIGHTS && heaviest > most)
-        heaviest = most;
     background = make_group(&s->background, 4, 0, most, extreme, place, &seed);
     make_weights(background + 3 * PITCH, STRIDE, heaviest, extreme, &seed);
     weight = guarded_place(&s->weight, weights * 2, 2, place, noise(&seed) % 17);
@@ -186,7 +178,7 @@ static void make_stage(struct stage *s, int tests, bool same, enum place place, 
     make_blurs(s, (int16_t *)front, &seed);
     make_rays(s, front, background, tests, same, &seed);
     s->job.blur = (const int16_t *)front;
-    for (int c = 0; c < 4; c++)
+    for (int c = 0; c < 3; c++)
         for (int i = 0; i < LANES; i++)
             s->sum[c][i] = s->expected[c][i] = noise(&seed);
     for (int c = 0; c < 4; c++)
@@ -207,13 +199,12 @@ static bool is_same(const struct subject *subject, const struct stage *s, const 
     return false;
 }
 
-static void run(const struct rf_kernels *kernels, struct stage *s, enum kind kind)
+static void run(const struct rf_kernels *kernels, struct stage *s, bool weighted)
 {
     uint64_t *const wide[4] = {s->weighted[0], s->weighted[1], s->weighted[2], s->weighted[3]};
-    uint32_t *const sum[4] = {s->sum[0], s->sum[1], s->sum[2],
-                              kind == WITH_WEIGHTS ? s->sum[3] : NULL};
+    uint32_t *const sum[3] = {s->sum[0], s->sum[1], s->sum[2]};
 
-    if (kind == WEIGHTED)
+    if (weighted)
         kernels->sweep_weighted(wide, &s->job);
     else
         kernels->sweep(sum, &s->job);
@@ -226,10 +217,10 @@ static bool check_case(const struct subject *subject, struct stage *s, int tests
     for (int i = 0; i < s->job.lanes; i++)
         for (int n = 0; n < s->rays.rays; n++)
             follow(s, i, n);
-    run(&subject->kernels, s, s->kind);
+    run(&subject->kernels, s, false);
     if (s->job.bright != RF_BRIGHTEST) /* the contract bounds the light that is weighed */
-        run(&subject->kernels, s, WEIGHTED);
-    for (int c = 0; c < (s->kind == WITH_WEIGHTS ? 4 : 3); c++)
+        run(&subject->kernels, s, true);
+    for (int c = 0; c < 3; c++)
         for (int i = 0; i < LANES; i++)
             if (!is_same(subject, s, "sweep", seed, c, i, s->sum[c][i], s->expected[c][i]))
                 return false;
@@ -280,7 +271,7 @@ int check_sweep(const struct subject *subject)
 struct bench {
     struct stage *stage;
     const struct rf_kernels *kernels;
-    enum kind kind;
+    bool weighted;
 };
 
 static void call(void *context)
@@ -288,7 +279,7 @@ static void call(void *context)
     const struct bench *b = context;
 
     for (int i = 0; i < 50; i++)
-        run(b->kernels, b->stage, b->kind);
+        run(b->kernels, b->stage, b->weighted);
 }
 
 /* The seed's rays are repeated until a chunk is full. */
@@ -311,19 +302,17 @@ static void fill_chunk(struct rf_sorted_rays *rays)
     rays->rays = RF_RAY_CHUNK;
 }
 
-static void bench_case(const struct subject *subject, struct stage *s, int tests, enum kind kind)
+static void bench_case(const struct subject *subject, struct stage *s, int tests, bool weighted)
 {
-    static const char *const names[] = {"sweep", "with weights", "weighted"};
     const double samples = 50.0 * RF_RAY_CHUNK * LANES;
-    struct bench b = {s, &subject->plain, kind};
+    struct bench b = {s, &subject->plain, weighted};
     double plain, own;
     char name[24];
 
-    for (uint32_t seed = 5; seed == 5 || s->rays.rays < 15 || s->job.bright || s->kind == PLAIN;
-         seed++)
+    for (uint32_t seed = 5; seed == 5 || s->rays.rays < 15 || s->job.bright; seed++)
         make_stage(s, tests, true, INSIDE, seed);
     fill_chunk(&s->rays);
-    snprintf(name, sizeof name, "%s, %d", names[kind], tests);
+    snprintf(name, sizeof name, "%s, %d", weighted ? "weighted" : "sweep", tests);
     plain = best_time(call, &b);
     b.kernels = &subject->kernels;
     own = best_time(call, &b);
@@ -338,7 +327,7 @@ void bench_sweep(const struct subject *subject)
     if (!create(&s))
         return;
     for (int tests = 0; tests <= 5; tests++)
-        for (int kind = PLAIN; kind <= WEIGHTED; kind++)
-            bench_case(subject, &s, tests, (enum kind)kind);
+        for (int weighted = 0; weighted < 2; weighted++)
+            bench_case(subject, &s, tests, weighted);
     destroy(&s);
 }

@@ -109,20 +109,13 @@ static RF_ALWAYS_INLINE void decode_luma(uint8_t *restrict y, const uint16_t *re
         y[i] = to_code[at[i]];
 }
 
-/* Where rows of a tile are not `within` of 4 times what they were: not 0. Modulo 2^16, as both are
- * 65520 at most: 16 less than could be mistaken for near. */
+/* Where rows of a tile are not 4 times what they were: not 0. */
 static RF_ALWAYS_INLINE void differences(uint16_t *restrict differs, const uint16_t *restrict mean,
-                                         const uint16_t *own, ptrdiff_t stride, uint16_t within,
-                                         int rows)
+                                         const uint16_t *own, ptrdiff_t stride, int rows)
 {
-    const uint16_t most = (uint16_t)(2 * within);
-
     for (int i = 0; i < rows * RF_TILE; i += RF_TILE, own += stride)
-        for (int x = 0; x < RF_TILE; x++) {
-            const uint16_t above = (uint16_t)(mean[i + x] - (uint16_t)(4 * own[x]) + within);
-
-            differs[i + x] = (uint16_t)(above > most ? above - most : 0);
-        }
+        for (int x = 0; x < RF_TILE; x++)
+            differs[i + x] = (uint16_t)(mean[i + x] - (uint16_t)(4 * own[x]));
 }
 
 static RF_ALWAYS_INLINE void choose(uint8_t *restrict to, const uint16_t *restrict differs,
@@ -150,8 +143,8 @@ static RF_ALWAYS_INLINE void put_codes(struct rf_decode_job *job, const uint8_t 
     uint16_t luma[RF_TILE * RF_TILE], chroma[RF_TILE * RF_TILE];
     uint32_t of_pixels[SAMPLES], of_samples[SAMPLES], wide[SAMPLES], any[SAMPLES];
 
-    differences(luma, job->luma, job->own_luma, job->stride, job->within[0], RF_TILE);
-    differences(chroma, job->chroma, job->own_chroma, job->stride, job->within[1], rows);
+    differences(luma, job->luma, job->own_luma, job->stride, RF_TILE);
+    differences(chroma, job->chroma, job->own_chroma, job->stride, rows);
     memcpy(of_pixels, luma, sizeof luma);
     memcpy(of_samples, chroma, (size_t)n * sizeof chroma[0]);
     widen(of_samples, n / 2);
