@@ -45,14 +45,8 @@ int check_edges(const struct subject *subject);
 int check_edge_planes(const struct subject *subject);
 int check_focus(void);
 
-/* Prints a line with the time of each kernel, in plain C and by the subject. */
+/* Prints a line with the time of each kernel of rows, in plain C and by the subject. */
 void bench_rows(const struct subject *subject);
-void bench_aim(const struct subject *subject);
-void bench_search(const struct subject *subject);
-void bench_sweep(const struct subject *subject);
-void bench_thin(const struct subject *subject);
-void bench_edges(const struct subject *subject);
-void bench_edge_planes(const struct subject *subject);
 
 /* Seconds that the fastest of several runs of call(context) takes. */
 double best_time(void (*call)(void *context), void *context);

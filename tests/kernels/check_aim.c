@@ -396,31 +396,3 @@ int check_aim(const struct subject *subject)
         printf("ok    %-12s %-6s %d cases\n", "aim", subject->cpu, (int)seed - 1);
     return !good;
 }
-
-struct bench {
-    struct view *view;
-    rf_sort_rays_fn *sort_rays;
-};
-
-static void call(void *context)
-{
-    const struct bench *b = context;
-
-    for (int i = 0; i < 100; i++)
-        b->sort_rays(&b->view->sorted, &b->view->job);
-}
-
-void bench_aim(const struct subject *subject)
-{
-    static struct view view;
-    struct bench b = {&view, subject->plain.sort_rays};
-    double plain, own;
-
-    for (uint32_t seed = 1; view.job.slabs != 4; seed++)
-        make_view(&view, RF_RAY_CHUNK, seed);
-    plain = best_time(call, &b);
-    b.sort_rays = subject->kernels.sort_rays;
-    own = best_time(call, &b);
-    printf("ok    %-12s %-6s c %.3f  %s %.3f ns/ray\n", "sort_rays, 4", subject->cpu,
-           plain * 1e9 / (100.0 * RF_RAY_CHUNK), subject->cpu, own * 1e9 / (100.0 * RF_RAY_CHUNK));
-}

@@ -6,6 +6,8 @@
 #include "check.h"
 #include "../clock.h"
 
+#include <refocus/measure.h>
+
 #include <stdio.h>
 #include <string.h>
 
@@ -43,6 +45,16 @@ static int check_vec(uint32_t cpu)
     return 0;
 }
 
+/* The kernels that have a row in src/kernels/measure.c. */
+static void bench_measured(uint32_t cpu)
+{
+    struct refocus_kernel_time time = refocus_kernel_time_default();
+
+    for (uint32_t i = 0; refocus_measure_kernel(i, cpu, &time) == REFOCUS_OK; i++)
+        printf("ok    %-15s %-6s c %.3f  %s %.3f ns/%s\n", time.name, refocus_cpu_name(cpu),
+               time.ns_c, refocus_cpu_name(cpu), time.ns, time.unit);
+}
+
 int main(int argc, char **argv)
 {
     const bool bench = argc == 2 && !strcmp(argv[1], "--bench");
@@ -62,13 +74,8 @@ int main(int argc, char **argv)
             !rf_kernels_select(&subject.plain, &plain))
             continue;
         if (bench && cpu != REFOCUS_CPU_C) {
-            bench_aim(&subject);
-            bench_sweep(&subject);
-            bench_search(&subject);
+            bench_measured(cpu);
             bench_rows(&subject);
-            bench_thin(&subject);
-            bench_edges(&subject);
-            bench_edge_planes(&subject);
         } else if (!bench) {
             failures += check_vec(cpu) + check_aim(&subject) + check_windows(&subject) +
                         check_sweep(&subject) + check_discs(&subject) + check_light(&subject) +
