@@ -21,7 +21,6 @@
  *     vec_u16_min(a, b)       a < b ? a : b
  *     vec_u16_equal(a, b)     a == b ? 0xffff : 0
  *     vec_u16_any(a)          whether any lane is not 0
- *     vec_u16_greatest(a)     the greatest lane
  *     vec_u16_bits(mask)      VEC_BITS bits a lane, lane 0 lowest, of lanes all 0 or all 1
  *     vec_u16_lane0(a)        lane 0
  *     vec_u16_spread(a)       every lane = lane 0
@@ -82,13 +81,10 @@
  *     vec_u8_load(p)          lane i = p[i]
  *     vec_u8_store(p, v)      p[i] = lane i
  *     vec_u8_set(x)           every lane = x
- *     vec_u8_absdiff(a, b)    |a - b|
- *     vec_u8_apart(a, b)      the same where both are below 128
+ *     vec_u8_apart(a, b)      |a - b|, where both are below 128
  *     vec_u8_adds(a, b)       min(a + b, 255)
  *     vec_u8_subs(a, b)       max(a - b, 0)
- *     vec_u8_half(v)          v >> 1
  *     vec_u8_table(p)         the table p[0] to p[15]
- *     vec_u8_lookup(table, v) table[v]; every v is below 16
  *     vec_u8_lookup_or_0(table, v)  v < 16 ? table[v] : 0, v any
  *     vec_u8_of_masks(a, b)   0 or 255 for lanes of a and then of b that are 0 or 0xffff
  *     vec_u8_least(v), vec_u8_most(v)  of all lanes

@@ -32,13 +32,6 @@ static inline vec_u16 vec_u16_spread(vec_u16 a)
     return _mm256_broadcastw_epi16(_mm256_castsi256_si128(a));
 }
 
-static inline uint16_t vec_u16_greatest(vec_u16 a)
-{
-    const __m128i all = _mm_max_epu16(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1));
-
-    return (uint16_t)~_mm_extract_epi16(_mm_minpos_epu16(_mm_xor_si128(all, _mm_set1_epi8(-1))), 0);
-}
-
 /* packus and unpack work on 128-bit halves. */
 static inline vec_u16 vec_u16_even(vec_u16 a, vec_u16 b)
 {

@@ -120,18 +120,6 @@ static inline vec_u16 vec_u16_max(vec_u16 a, vec_u16 b)
     return vmaxq_u16(a, b);
 }
 
-static inline uint16_t vec_u16_greatest(vec_u16 a)
-{
-#if defined(__aarch64__)
-    return vmaxvq_u16(a);
-#else
-    uint16x4_t m = vpmax_u16(vget_low_u16(a), vget_high_u16(a));
-
-    m = vpmax_u16(m, m);
-    return vget_lane_u16(vpmax_u16(m, m), 0);
-#endif
-}
-
 static inline int vec_u16_any(vec_u16 a)
 {
     const uint64x2_t words = vreinterpretq_u64_u16(a);
@@ -305,11 +293,6 @@ static inline vec_u8 vec_u8_set(uint8_t x)
     return vdupq_n_u8(x);
 }
 
-static inline vec_u8 vec_u8_absdiff(vec_u8 a, vec_u8 b)
-{
-    return vabdq_u8(a, b);
-}
-
 static inline vec_u8 vec_u8_apart(vec_u8 a, vec_u8 b)
 {
     return vabdq_u8(a, b);
@@ -325,17 +308,13 @@ static inline vec_u8 vec_u8_subs(vec_u8 a, vec_u8 b)
     return vqsubq_u8(a, b);
 }
 
-static inline vec_u8 vec_u8_half(vec_u8 v)
-{
-    return vshrq_n_u8(v, 1);
-}
-
 static inline vec_u8 vec_u8_table(const uint8_t *p)
 {
     return vld1q_u8(p);
 }
 
-static inline vec_u8 vec_u8_lookup(vec_u8 table, vec_u8 v)
+/* A table has 16 entries, and there is nothing beyond. */
+static inline vec_u8 vec_u8_lookup_or_0(vec_u8 table, vec_u8 v)
 {
 #if defined(__aarch64__)
     return vqtbl1q_u8(table, v);
@@ -344,12 +323,6 @@ static inline vec_u8 vec_u8_lookup(vec_u8 table, vec_u8 v)
 
     return vcombine_u8(vtbl2_u8(halves, vget_low_u8(v)), vtbl2_u8(halves, vget_high_u8(v)));
 #endif
-}
-
-/* A table has 16 entries, and there is nothing beyond. */
-static inline vec_u8 vec_u8_lookup_or_0(vec_u8 table, vec_u8 v)
-{
-    return vec_u8_lookup(table, v);
 }
 
 static inline void vec_u8_add_wide(vec_u16 sum[2], vec_u8 v)

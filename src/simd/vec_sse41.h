@@ -31,11 +31,6 @@ static inline vec_u16 vec_u16_spread(vec_u16 a)
     return _mm_shuffle_epi8(a, _mm_set1_epi16(0x0100));
 }
 
-static inline uint16_t vec_u16_greatest(vec_u16 a)
-{
-    return (uint16_t)~_mm_extract_epi16(_mm_minpos_epu16(_mm_xor_si128(a, _mm_set1_epi8(-1))), 0);
-}
-
 static inline vec_u16 vec_u16_even(vec_u16 a, vec_u16 b)
 {
     const __m128i low = _mm_set1_epi32(0xffff);

@@ -217,11 +217,6 @@ static inline vec_u8 vec_u8_set(uint8_t x)
     return VEC_LANES(set1_epi8)((char)x);
 }
 
-static inline vec_u8 vec_u8_absdiff(vec_u8 a, vec_u8 b)
-{
-    return VEC_WHOLE(or)(VEC_LANES(subs_epu8)(a, b), VEC_LANES(subs_epu8)(b, a));
-}
-
 static inline vec_u8 vec_u8_apart(vec_u8 a, vec_u8 b)
 {
     return VEC_LANES(abs_epi8)(VEC_LANES(sub_epi8)(a, b));
@@ -235,16 +230,6 @@ static inline vec_u8 vec_u8_adds(vec_u8 a, vec_u8 b)
 static inline vec_u8 vec_u8_subs(vec_u8 a, vec_u8 b)
 {
     return VEC_LANES(subs_epu8)(a, b);
-}
-
-static inline vec_u8 vec_u8_half(vec_u8 v)
-{
-    return VEC_WHOLE(and)(VEC_LANES(srli_epi16)(v, 1), VEC_LANES(set1_epi8)(127));
-}
-
-static inline vec_u8 vec_u8_lookup(vec_u8 table, vec_u8 v)
-{
-    return VEC_LANES(shuffle_epi8)(table, v);
 }
 
 /* A lane whose highest bit is set is shuffled to 0. */
