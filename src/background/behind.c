@@ -10,6 +10,15 @@
 
 enum { ROWS = 16 }; /* rows of a work item */
 
+void rf_lay_out_behind(struct rf_behind *behind, struct rf_arena *arena, int max_width,
+                       int max_height)
+{
+    const uint64_t pixels = (uint64_t)max_width * (uint64_t)max_height;
+
+    behind->code = rf_arena_take(arena, pixels, 4);
+    behind->disparity = rf_arena_take(arena, pixels, sizeof *behind->disparity);
+}
+
 struct load {
     const struct refocus_image *image;
     const struct refocus_disparity *map;

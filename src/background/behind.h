@@ -31,6 +31,7 @@
 #include "focus/focus.h"
 #include "image/planes.h"
 #include "image/viewport.h"
+#include "support/arena.h"
 #include "support/executor.h"
 
 /* The layer, of the whole photo. */
@@ -39,6 +40,10 @@ struct rf_behind {
     uint8_t *code;       /* R, G, B, alpha of each pixel; alpha 0: nothing is known there */
     uint16_t *disparity; /* Q16, of each pixel */
 };
+
+/* Lays out a layer of a photo of at most this size. */
+void rf_lay_out_behind(struct rf_behind *behind, struct rf_arena *arena, int max_width,
+                       int max_height);
 
 /* Copies a layer of R, G, B; map and image have the same size. */
 void rf_behind_load(const struct rf_executor *exec, const struct refocus_image *image,

@@ -54,43 +54,6 @@ static void lay_out_lists(struct rf_arena *arena, struct rf_photo *photo, int wi
     photo->band_blend = rf_arena_take(arena, (uint64_t)(height + RF_TILE - 1) / RF_TILE, 1);
 }
 
-/* Lays out the thin structures of a photo of this size. */
-static void lay_out_thin(struct rf_arena *arena, struct rf_thin_list *thin, int width, int height)
-{
-    const uint64_t across = (uint64_t)(width + RF_TILE - 1) / RF_TILE;
-    const uint64_t down = (uint64_t)(height + RF_TILE - 1) / RF_TILE;
-
-    thin->pixel = rf_arena_take(arena, rf_thin_capacity(width) * down, sizeof *thin->pixel);
-    thin->run = rf_arena_take(arena, across * down, sizeof *thin->run);
-    thin->given = rf_arena_take(arena, down, sizeof *thin->given);
-}
-
-/* Lays out a second layer of a photo of this size. */
-static void lay_out_behind(struct rf_arena *arena, struct rf_behind *behind, int width, int height)
-{
-    const uint64_t pixels = (uint64_t)width * (uint64_t)height;
-
-    behind->code = rf_arena_take(arena, pixels, 4);
-    behind->disparity = rf_arena_take(arena, pixels, sizeof *behind->disparity);
-}
-
-/* Lays out the coverage that thin structures are drawn into. Its sources share memory with the
- * pyramid, which comes later. */
-static void lay_out_coverage(struct rf_arena *arena, struct rf_coverage *coverage, int width,
-                             int height)
-{
-    const uint64_t across = (uint64_t)(width + RF_TILE - 1) / RF_TILE;
-    const uint64_t down = (uint64_t)(height + RF_TILE - 1) / RF_TILE;
-
-    coverage->stride = (int)(across * (RF_TILE / RF_COVERAGE_CELL)) + 1;
-    coverage->cell =
-        rf_arena_take(arena, (uint64_t)coverage->stride * down * (RF_TILE / RF_COVERAGE_CELL),
-                      sizeof *coverage->cell);
-    coverage->sources = rf_arena_take(arena, down, sizeof *coverage->sources);
-    coverage->choice = rf_arena_take(arena, across * down, sizeof *coverage->choice);
-    coverage->swapped = rf_arena_take(arena, down, sizeof *coverage->swapped);
-}
-
 /* The bytes that refocus_prepare_scene() works in. */
 static uint64_t prepare_bytes(const struct refocus_renderer_params *params)
 {
@@ -387,14 +350,14 @@ static void lay_out(struct refocus_renderer *r, const struct refocus_renderer_pa
     after = lay_out_pyramid(r, arena, across, down, pad);
     arena->used = prepared > after ? prepared : after;
     if (r->has_thin) {
-        lay_out_coverage(arena, &r->coverage, w, h);
-        lay_out_thin(arena, &r->photo.thin, w, h);
+        rf_lay_out_coverage(&r->coverage, arena, w, h);
+        rf_lay_out_thin(&r->photo.thin, arena, w, h);
     }
     if (params->textured && !params->in_place)
         r->texture = rf_arena_take(arena, (uint64_t)threads, rf_texture_scratch_bytes());
     r->has_behind = params->behind && !params->in_place;
     if (r->has_behind)
-        lay_out_behind(arena, &r->photo.behind, w, h);
+        rf_lay_out_behind(&r->photo.behind, arena, w, h);
     lay_out_tiles(r, params, arena, across, down, pad);
     r->ray_sets.memory = rf_arena_take(arena, params->in_place ? few_rays(params) : RF_FULL_RAYS,
                                        sizeof *r->ray_sets.memory);

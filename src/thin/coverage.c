@@ -16,6 +16,20 @@ uint64_t rf_coverage_source_bytes(void)
     return sizeof(struct rf_coverage_source);
 }
 
+void rf_lay_out_coverage(struct rf_coverage *coverage, struct rf_arena *arena, int max_width,
+                         int max_height)
+{
+    const uint64_t across = (uint64_t)(max_width + RF_TILE - 1) / RF_TILE;
+    const uint64_t down = (uint64_t)(max_height + RF_TILE - 1) / RF_TILE;
+
+    coverage->stride = (int)(across * CELLS) + 1;
+    coverage->cell =
+        rf_arena_take(arena, (uint64_t)coverage->stride * down * CELLS, sizeof *coverage->cell);
+    coverage->sources = rf_arena_take(arena, down, sizeof *coverage->sources);
+    coverage->choice = rf_arena_take(arena, across * down, sizeof *coverage->choice);
+    coverage->swapped = rf_arena_take(arena, down, sizeof *coverage->swapped);
+}
+
 /* Sums over the pixels of a cell. */
 struct sum {
     int32_t light[4]; /* sums of alpha N (three channels) and of alpha, 4096 = 1 */

@@ -2,6 +2,17 @@
 #include "colour/transfer.h"
 #include "thin/mixture.h"
 
+void rf_lay_out_thin(struct rf_thin_list *list, struct rf_arena *arena, int max_width,
+                     int max_height)
+{
+    const uint64_t across = (uint64_t)(max_width + RF_TILE - 1) / RF_TILE;
+    const uint64_t down = (uint64_t)(max_height + RF_TILE - 1) / RF_TILE;
+
+    list->pixel = rf_arena_take(arena, rf_thin_capacity(max_width) * down, sizeof *list->pixel);
+    list->run = rf_arena_take(arena, across * down, sizeof *list->run);
+    list->given = rf_arena_take(arena, down, sizeof *list->given);
+}
+
 /* F is what the caller knows to be behind, where the map has the pixel near; else it is seen. */
 static void take_behind(const struct rf_thin_pass *t, struct rf_thin *thin, int tx, int ty)
 {

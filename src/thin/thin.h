@@ -63,6 +63,7 @@
 #include "image/planes.h"
 #include "image/viewport.h"
 #include "kernels/thin.h"
+#include "support/arena.h"
 #include "support/executor.h"
 #include "tiles/bins.h"
 
@@ -123,6 +124,14 @@ struct rf_coverage {
     int stride;
 };
 
+/* Lay out the list of a photo of at most this size, and its coverage layer but for the sources, of
+ * which each has rf_coverage_source_bytes(). */
+void rf_lay_out_thin(struct rf_thin_list *list, struct rf_arena *arena, int max_width,
+                     int max_height);
+void rf_lay_out_coverage(struct rf_coverage *coverage, struct rf_arena *arena, int max_width,
+                         int max_height);
+uint64_t rf_coverage_source_bytes(void);
+
 /* Arguments of the passes of this folder: the planes and lists that they read and write. */
 struct rf_thin_pass {
     const struct rf_executor *exec;
@@ -150,7 +159,6 @@ enum {
     RF_COVERAGE_BLUR = 8 << 8,   /* Q7.8: two cells, the least blur that is splatted */
     RF_COVERAGE_SOURCES = 4 * 4, /* cells of a tile */
 };
-uint64_t rf_coverage_source_bytes(void); /* Returns the size of one source. */
 
 /* Finds the mixtures of the photo, all of which is in the window, whose light is of `blend`. */
 void rf_thin_find(const struct rf_thin_pass *t, uint32_t blend);
