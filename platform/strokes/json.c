@@ -1,16 +1,17 @@
-/* json.c: the file of strokes is read and written. */
+/* json.c: the file of strokes is read. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "hold.h"
+#include "json.h"
 
 #ifdef RF_HAVE_JANSSON
 #include <jansson.h>
 
-enum { MAX_BYTES = 64 << 20, VERSION = 1 };
+enum { MAX_BYTES = 64 << 20 };
 
-static const char *const kinds[] = {"all", "object", "more", "less", "brush", "fill"};
+const char *const rf_stroke_kinds[] = {"all", "object", "more", "less", "brush", "fill"};
 
 struct reading {
     struct refocus_strokes *strokes;
@@ -165,9 +166,10 @@ static int read_kind(struct reading *reading, int index, json_t *object,
     const char *strange;
     uint32_t kind = 0;
 
-    while (name && kind < sizeof kinds / sizeof *kinds && strcmp(name, kinds[kind]) != 0)
+    while (name && kind < sizeof rf_stroke_kinds / sizeof *rf_stroke_kinds &&
+           strcmp(name, rf_stroke_kinds[kind]) != 0)
         kind++;
-    if (!name || kind == sizeof kinds / sizeof *kinds)
+    if (!name || kind == sizeof rf_stroke_kinds / sizeof *rf_stroke_kinds)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
                       "strokes[%d].kind must be all, object, more, less, brush or fill", index);
     *stroke = refocus_stroke_default(kind, 0);
@@ -220,10 +222,10 @@ static int paint(struct reading *reading, int index, json_t *object)
     if (status == REFOCUS_OK) {
         status = refocus_strokes_begin(reading->strokes, &stroke, NULL);
         if (status == REFOCUS_ERR_STATE)
-            status =
-                refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                       "strokes[%d] is '%s', which needs %s before it", index, kinds[stroke.kind],
-                       stroke.kind == REFOCUS_STROKE_FILL ? "a layer" : "an object");
+            status = refuse(reading->reason, REFOCUS_ERR_FORMAT,
+                            "strokes[%d] is '%s', which needs %s before it", index,
+                            rf_stroke_kinds[stroke.kind],
+                            stroke.kind == REFOCUS_STROKE_FILL ? "a layer" : "an object");
         else if (status == REFOCUS_OK && count > 0)
             status = refocus_strokes_extend(reading->strokes, points, count, NULL);
         if (status == REFOCUS_ERR_MEMORY)
@@ -247,9 +249,10 @@ static int read_head(struct reading *reading, json_t *root)
     if (!json_is_object(root) || !json_object_get(root, "refocus-strokes"))
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
                       "no file of strokes: it has no key 'refocus-strokes'");
-    if (json_integer_value(json_object_get(root, "refocus-strokes")) != VERSION)
+    if (json_integer_value(json_object_get(root, "refocus-strokes")) != RF_STROKES_VERSION)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT,
-                      "'refocus-strokes' must be %d, the version that is known here", VERSION);
+                      "'refocus-strokes' must be %d, the version that is known here",
+                      RF_STROKES_VERSION);
     strange = strange_key(root, known);
     if (strange)
         return refuse(reading->reason, REFOCUS_ERR_FORMAT, "it has an unknown key '%.40s'",
@@ -328,81 +331,6 @@ int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes, siz
     return status;
 }
 
-static json_t *fill_json(const struct refocus_fill *fill)
-{
-    return json_pack("[[f, f, f], [f, f, f]]", (double)fill->x0, (double)fill->y0, (double)fill->d0,
-                     (double)fill->x1, (double)fill->y1, (double)fill->d1);
-}
-
-static json_t *points_json(const float *points, int count)
-{
-    json_t *const list = json_array();
-
-    for (int i = 0; i < count; i++) {
-        if (json_array_append_new(
-                list, json_pack("[f, f]", (double)points[2 * i], (double)points[2 * i + 1]))) {
-            json_decref(list);
-            return NULL;
-        }
-    }
-    return list;
-}
-
-static json_t *stroke_json(const struct refocus_stroke *stroke, const float *points, int count)
-{
-    const uint32_t kind = stroke->kind;
-    json_t *const object = json_pack("{s:s}", "kind", kinds[kind]);
-    int failed = !object;
-
-    if (kind != REFOCUS_STROKE_ALL && kind != REFOCUS_STROKE_FILL) {
-        failed |= json_object_set_new(object, "radius", json_real((double)stroke->radius));
-        if (kind == REFOCUS_STROKE_OBJECT || kind == REFOCUS_STROKE_MORE)
-            failed |= json_object_set_new(object, "reach", json_real((double)stroke->reach));
-        failed |= json_object_set_new(object, "points", points_json(points, count));
-    }
-    if (stroke->fill.kind == REFOCUS_FILL_SOLID)
-        failed |= json_object_set_new(object, "disparity", json_real((double)stroke->fill.d0));
-    if (stroke->fill.kind == REFOCUS_FILL_GRADIENT)
-        failed |= json_object_set_new(object, "gradient", fill_json(&stroke->fill));
-    if (!failed)
-        return object;
-    json_decref(object);
-    return NULL;
-}
-
-int refocus_strokes_save(const struct refocus_strokes *strokes, char **text, size_t *size)
-{
-    json_t *root, *list;
-    int32_t width, height;
-    int failed;
-
-    if (!strokes || !text || !size)
-        return REFOCUS_ERR_ARGUMENT;
-    *text = NULL;
-    rf_strokes_size(strokes, &width, &height);
-    list = json_array();
-    root = json_pack("{s:i, s:i, s:i, s:O}", "refocus-strokes", (int)VERSION, "width", (int)width,
-                     "height", (int)height, "strokes", list);
-    failed = !root || !list;
-    for (int i = 0; i < refocus_strokes_count(strokes) && !failed; i++) {
-        struct refocus_stroke stroke = refocus_stroke_default(REFOCUS_STROKE_ALL, 1);
-        const float *points;
-        int count;
-
-        refocus_strokes_get(strokes, i, &stroke, &points, &count);
-        /* A stroke that was begun and never drawn selects nothing, and has no words. */
-        if (count > 0 || stroke.kind == REFOCUS_STROKE_ALL || stroke.kind == REFOCUS_STROKE_FILL)
-            failed = json_array_append_new(list, stroke_json(&stroke, points, count));
-    }
-    if (!failed)
-        *text = json_dumps(root, JSON_REAL_PRECISION(9) | JSON_INDENT(1));
-    json_decref(list);
-    json_decref(root);
-    if (!*text)
-        return REFOCUS_ERR_MEMORY;
-    *size = strlen(*text);
-    return REFOCUS_OK;
-}
 #else
 int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes, size_t size,
                          struct refocus_strokes_reason *reason)
@@ -413,16 +341,6 @@ int refocus_strokes_load(struct refocus_strokes *strokes, const void *bytes, siz
     if (reason)
         snprintf(reason->text, sizeof reason->text,
                  "this build reads no files of strokes; build it with jansson");
-    return REFOCUS_ERR_UNSUPPORTED;
-}
-
-int refocus_strokes_save(const struct refocus_strokes *strokes, char **text, size_t *size)
-{
-    (void)strokes;
-    if (text)
-        *text = NULL;
-    if (size)
-        *size = 0;
     return REFOCUS_ERR_UNSUPPORTED;
 }
 #endif
