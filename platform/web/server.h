@@ -109,6 +109,14 @@ double server_now_ms(void);
 /* RF_WEB_SESSION random digits. */
 bool server_random(char digits[RF_WEB_SESSION + 1]);
 
+/* arguments.c */
+
+/* Takes the arguments of a request that has found its way; answers it where one is wrong. */
+void request_take_arguments(struct server *server, struct request *request);
+
+/* Finds the process of the session that a request names; answers it where there is none. */
+void request_find_process(struct server *server, struct request *request);
+
 /* request.c: the callbacks of the library. */
 enum MHD_Result request_handle(void *of, struct MHD_Connection *connection, const char *url,
                                const char *method, const char *version, const char *data,
