@@ -11,9 +11,10 @@
 #include <string.h>
 
 /* The sizes of sets. A tile uses the smallest set that is dense enough for its blur, at most the
- * preset's. Where a small highlight is in reach, whose disc would show the single rays, it is at
- * most twice that. */
-static const int class_rays[] = {24, 32, 48, 64, 96, 128, 192, 256, 384, 512};
+ * preset's. Fewer than 48 would do for a blur of up to two pixels, but as the focus or the aperture
+ * moves, the weights of the pixels there would change in steps that show. Where a small highlight
+ * is in reach, whose disc would show the single rays, it is at most twice that. */
+static const int class_rays[] = {48, 64, 96, 128, 192, 256, 384, 512};
 enum { CLASSES = sizeof class_rays / sizeof *class_rays, DENSER = 2 };
 enum { MASK_SIDE = 2 * REFOCUS_PLAIN_BLUR_RADIUS + 1 };
 static_assert(MASK_SIDE * MASK_SIDE == RF_FULL_RAYS, "a ray for each pixel of the largest mask");
@@ -132,7 +133,7 @@ static struct refocus_ray *make_set(struct rf_ray_set *set, const struct refocus
 }
 
 /* Makes the set of as many rays as were asked for, the smaller ones, and if asked for denser ones.
- * For 40 rays they are 24, 32 and 40, and then 48 and 64. */
+ * For 80 rays they are 48, 64 and 80, and then 96 and 128. */
 static int make_classes(struct rf_ray_sets *sets, const struct rf_ray_request *request,
                         struct rf_run *run)
 {

@@ -10,7 +10,7 @@
 #include "support/pool.h"
 
 enum {
-    RF_RAY_CLASSES = 12, /* a preset's own set, smaller ones, and denser ones for highlights */
+    RF_RAY_CLASSES = 10, /* a preset's own set, smaller ones, and denser ones for highlights */
     RF_FULL_RAYS = 255 * 255,
 };
 

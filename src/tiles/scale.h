@@ -7,8 +7,11 @@
 #include "image/planes.h"
 
 /*
- * Bins of signed blur: a quarter pixel wide where none exceeds 31.5 pixels, half up to 63.5,
- * then whole pixels. Their edges lie so that |s| < 1/2 pixel, the blurs that leave a pixel as it
+ * Bins of signed blur: a sixteenth of a pixel wide where none exceeds 7.5 pixels, an eighth up to
+ * 15.5, a quarter up to 31.5, half up to 63.5, then whole pixels. The middle of a slab, by which
+ * rays look, moves by half a bin as a surface comes to the next one, and many rays then hit the
+ * next pixel at once: the narrower the bins, the more evenly a pull of the focus goes. Their edges
+ * lie so that |s| < 1/2 pixel, the blurs that leave a pixel as it
  * is, are whole bins. Blurs in units of two pixels and more have bins of a pixel up to 31.5, and
  * from there on of a sixteenth of the octave: 2 pixels up to 63.5, 4 up to 127.5, and so on.
  */

@@ -15,14 +15,20 @@ enum {
     HALF = 128, /* 1/256 pixel, as all of these */
     LARGEST = RF_PLAIN_RADIUS * 256,
     LEAST_NOISE = 64, /* tiles of less noise are clean */
+    NARROWEST = 4,    /* shift of the narrowest bins */
 };
 
 struct rf_bin_scale rf_bin_scale_of(float largest_blur, int unit)
 {
-    const int shift = unit || largest_blur > 63.5f ? 8 : largest_blur <= 31.5f ? 6 : 7;
+    int shift = NARROWEST;
 
-    /* So -31.5 .. 31.5 pixels are bins 3 .. 255 at shift 6, -63.5 .. 63.5 bins 1 .. 255 at
-     * shift 7, -127 .. 127 bins 0 .. 254 at shift 8. */
+    /* So -7.5 .. 7.5 pixels are bins 15 .. 255 at shift 4, -15.5 .. 15.5 bins 7 .. 255 at shift 5,
+     * -31.5 .. 31.5 bins 3 .. 255 at shift 6, -63.5 .. 63.5 bins 1 .. 255 at shift 7, -127 .. 127
+     * bins 0 .. 254 at shift 8. */
+    while (shift < 8 && (unit || largest_blur > (float)(1 << shift) * 0.5f - 0.5f))
+        shift++;
+    static_assert(((15 * 128 + HALF) >> 4) + 127 < RF_BINS, "bins of 7.5 pixels at shift 4");
+    static_assert(((31 * 128 + HALF) >> 5) + 127 < RF_BINS, "bins of 15.5 pixels at shift 5");
     static_assert(((63 * 128 + HALF) >> 6) + 127 < RF_BINS, "bins of 31.5 pixels at shift 6");
     static_assert(((127 * 128 + HALF) >> 7) + 127 < RF_BINS, "bins of 63.5 pixels at shift 7");
     static_assert(((LARGEST + HALF) >> 8) + 127 < RF_BINS, "bins of 127 pixels at shift 8");

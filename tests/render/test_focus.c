@@ -165,14 +165,15 @@ static void check_same(struct refocus_renderer *renderer, const struct refocus_s
 
 static void plain_lens(void **state)
 {
+    enum { BLUR = 30 }; /* of lens and field alike: bins of a quarter pixel */
     static uint16_t map[W * H];
     const struct refocus_disparity picture = refocus_disparity16(map, W, H, 2 * W);
     struct picture p = picture_make(W, H, 6);
-    struct refocus_renderer *renderer = prepared(&p, 12, 2);
+    struct refocus_renderer *renderer = prepared(&p, BLUR, 2);
 
     (void)state;
     for (uint32_t method = 0; method < REFOCUS_METHOD_COUNT; method++) {
-        const struct refocus_settings plain = refocus_settings_default(0.45f, 12);
+        const struct refocus_settings plain = refocus_settings_default(0.45f, BLUR);
         const int df = (int)floor((double)plain.render.focus_disparity * 65535 + 0.5);
         struct refocus_settings params = plain;
         struct refocus_focus_plane plane;

@@ -19,8 +19,11 @@ struct bins {
 static double bin_width(const struct twin *t)
 {
     const double largest = t->K * fmax(t->df, 1 - t->df) + t->unit / 256.0;
+    double width = 1;
 
-    return t->unit > 1 ? 0 : largest <= 31.5 ? 0.25 : largest <= 63.5 ? 0.5 : 1;
+    while (width > 0.0625 && largest <= 64 * width - 0.5)
+        width /= 2;
+    return t->unit > 1 ? 0 : width;
 }
 
 /* Whole pixels to bins, and back to the least of a bin. */

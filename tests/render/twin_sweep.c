@@ -1,7 +1,7 @@
 /* twin_sweep.c: the sweep in double precision: rays, slab by slab. See src/gather/sweep.c. */
 #include "twin_slabs.h"
 
-enum { SETS = 6 };
+enum { SETS = 4 };
 
 /* Ray sets from the coarsest to the preset's own. */
 struct sets {
@@ -11,7 +11,7 @@ struct sets {
 
 static struct sets make_sets(const struct twin *t)
 {
-    static const int sizes[SETS] = {24, 32, 48, 64, 96, 128};
+    static const int sizes[SETS] = {48, 64, 96, 128};
     struct sets sets = {{0}, {0}, 0};
 
     for (int i = 0; i < SETS && sizes[i] < t->params->render.rays; i++)
