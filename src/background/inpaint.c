@@ -5,6 +5,7 @@
 
 #include "image/border.h"
 #include "kernels/kernels.h"
+#include "support/compare.h"
 
 enum { BAND = 16, SMALL = 64 }; /* rows; levels that are not worth sharing out */
 
@@ -205,6 +206,76 @@ struct yuv_step {
     const struct rf_inpaint_chroma *chroma;
 };
 
+/* How many of the 2 x 2 pixels of a block are known. */
+static int known_of(const struct rf_level *fine, int x, int y)
+{
+    const int16_t *const blur = fine->blur.at + 2 * y * fine->blur.stride + 2 * x;
+    int known = 0;
+
+    for (int i = 0; i < 4; i++)
+        known += blur[i / 2 * fine->blur.stride + i % 2] != RF_NO_BLUR;
+    return known;
+}
+
+/* Whether some of n pixels of two rows are known and others are not. */
+static bool is_mixed(const int16_t *restrict upper, const int16_t *restrict lower, int n)
+{
+    uint16_t known = 0, unknown = 0;
+
+    for (int i = 0; i < n; i++) {
+        known |= (uint16_t)((upper[i] != RF_NO_BLUR) | (lower[i] != RF_NO_BLUR));
+        unknown |= (uint16_t)((upper[i] == RF_NO_BLUR) | (lower[i] == RF_NO_BLUR));
+    }
+    return known && unknown;
+}
+
+/* Gives block (x, y) of level 1 the mean chroma of the blocks around all of which is known, if
+ * there are any. */
+static void take_around(const struct yuv_step *step, int x, int y)
+{
+    const struct rf_level *const fine = &step->pyramid->level[0], *const coarse = fine + 1;
+    const struct rf_chroma_q12 smooth = step->chroma->smooth;
+    const int w = step->view->width / 2, h = step->view->height / 2;
+    const int rows = step->chroma->size.down ? 1 : 2; /* a block has so many of samples */
+    uint32_t sum[2] = {0, 0}, count = 0;
+
+    for (int i = 0; i < 9; i++) {
+        const int nx = x + i % 3 - 1, ny = y + i / 3 - 1;
+
+        if (nx < 0 || ny < 0 || nx >= w || ny >= h || known_of(fine, nx, ny) < 4)
+            continue;
+        for (int k = 0; k < rows; k++, count++)
+            for (int c = 0; c < 2; c++)
+                sum[c] += smooth.at[(rows * ny + k) * smooth.stride + 2 * nx + c];
+    }
+    for (int c = 0; c < 2 && count; c++)
+        coarse->light.channel[1 + c][y * coarse->light.stride + x] =
+            (uint16_t)((sum[c] + count / 2) / count);
+}
+
+/* Where some pixels of a block are known and others are foreground, their chroma is a mixture,
+ * which would tint what the foreground uncovers: it is replaced in a row of level 1. */
+static void replace_mixed(const struct yuv_step *step, int y)
+{
+    enum { SOME = 16 }; /* blocks that are looked at together */
+    const struct rf_level *const fine = &step->pyramid->level[0];
+    const int16_t *const upper = fine->blur.at + 2 * y * fine->blur.stride;
+    const int w = y < step->view->height / 2 ? step->view->width / 2 : 0;
+
+    for (int x0 = 0; x0 < w; x0 += SOME) {
+        const int end = rf_smaller(x0 + SOME, w);
+
+        if (!is_mixed(upper + 2 * x0, upper + fine->blur.stride + 2 * x0, 2 * (end - x0)))
+            continue;
+        for (int x = x0; x < end; x++) {
+            const int known = known_of(fine, x, y);
+
+            if (known > 0 && known < 4)
+                take_around(step, x, y);
+        }
+    }
+}
+
 /* Makes level 1 under a row of tiles: BAND of its rows are half as many there. */
 static void push_yuv_band(void *context, int band, int worker)
 {
@@ -229,6 +300,7 @@ static void push_yuv_band(void *context, int band, int worker)
                                     smooth.at + (shared ? y : 2 * y) * smooth.stride,
                                     smooth.at + (shared ? y : second) * smooth.stride,
                                     coarse->width);
+        replace_mixed(step, y);
         if (coarse->width % 2)
             blur[coarse->width] = RF_NO_BLUR;
     }

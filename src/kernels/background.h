@@ -83,8 +83,8 @@ typedef void rf_push1_fn(uint16_t *out, int16_t *out_blur, const uint16_t *upper
 
 /* split2: n means of two rows of pairs, half up, the firsts and the seconds apart.
  * join2: pairs of them again.
- * restore_known2: n pairs become `own` where either of the two pixels has the same blur in front
- * * and in the background.
+ * restore_known2: n pairs become `own` where both of the two pixels have the same blur in front
+ * and in the background.
  */
 typedef void rf_split2_fn(uint16_t *first, uint16_t *second, const uint16_t *upper,
                           const uint16_t *lower, int n);

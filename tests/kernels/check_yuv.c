@@ -487,8 +487,8 @@ static int check_keep(const struct subject *subject)
         subject->kernels.restore_known2(out, own, blur, background, n);
         for (int i = 0; i < 2 * n + 2; i++) {
             const int pair = i & ~1;
-            const bool known = i < 2 * n && (blur[pair] == background[pair] ||
-                                             blur[pair + 1] == background[pair + 1]);
+            const bool known = i < 2 * n && blur[pair] == background[pair] &&
+                               blur[pair + 1] == background[pair + 1];
             const uint16_t should = known ? own[i] : filled[i];
 
             if (out[i] != should)

@@ -165,7 +165,7 @@ static void check_same(struct refocus_renderer *renderer, const struct refocus_s
 
 static void plain_lens(void **state)
 {
-    enum { BLUR = 30 }; /* of lens and field alike: bins of a quarter pixel */
+    enum { BLUR = 30 }; /* Lens and field have bins of a quarter pixel with it. */
     static uint16_t map[W * H];
     const struct refocus_disparity picture = refocus_disparity16(map, W, H, 2 * W);
     struct picture p = picture_make(W, H, 6);

@@ -169,10 +169,48 @@ static void coloured_lamps(void **state)
     lamps_by(REFOCUS_METHOD_SWEEP, 200, (const double[3]){8.8, 2.2, 1.6});
 }
 
+/* A red figure in focus before a grey wall ends between the pixels that share samples of chroma:
+ * the wall that it hides, and the rays beside it see, is grey. */
+static void no_tint(void **state)
+{
+    enum { W = 160, H = 128, K = 14, LEFT = 41, TOP = 33, RIGHT = 101, BOTTOM = 91, WITHIN = 3 };
+    struct picture p = picture_flat(W, H, (const uint8_t[3]){60, 60, 60}, 9000);
+    struct refocus_settings settings = refocus_settings_default(1, K);
+    struct pair pair;
+
+    (void)state;
+    for (int y = TOP; y < BOTTOM; y++)
+        for (int x = LEFT; x < RIGHT; x++) {
+            memcpy(p.rgb + 3 * (y * W + x), (const uint8_t[3]){250, 90, 40}, 3);
+            p.disparity[y * W + x] = 65535;
+        }
+    pair = pair_of(&p, K);
+    for (int i = 0; i < 4; i++) {
+        struct yuv_picture in = yuv_make(yuv_formats[i], W, H, 0);
+        struct yuv_picture out = yuv_make(yuv_formats[i], W, H, 0);
+
+        yuv_from_picture(&in, &p);
+        render_yuv(&pair, &settings, &in, &out);
+        for (int at = 0; at < W * H; at++) {
+            const int x = at % W, y = at / W;
+
+            if (x > LEFT - 2 && x <= RIGHT && y > TOP - 2 && y <= BOTTOM)
+                continue;
+            for (int c = 1; c < 3; c++)
+                if (abs(*yuv_sample(&out.image, c, x, y) - 128) > WITHIN)
+                    fail_msg("format %d: chroma %d of (%d, %d) is %d", (int)yuv_formats[i], c, x, y,
+                             *yuv_sample(&out.image, c, x, y));
+        }
+        yuv_free(&in);
+        yuv_free(&out);
+    }
+    pair_free(&pair);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(grey_texture),
-                                       cmocka_unit_test(coloured_lamps)};
+                                       cmocka_unit_test(coloured_lamps), cmocka_unit_test(no_tint)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,7 +7,7 @@ void RF_VEC(rf_restore_known2)(uint16_t *restrict out, const uint16_t *restrict 
                                const int16_t *restrict background_blur, int n)
 {
     for (int x = 0; x < n; x++) {
-        const uint16_t known = (uint16_t) - ((blur[2 * x] == background_blur[2 * x]) |
+        const uint16_t known = (uint16_t) - ((blur[2 * x] == background_blur[2 * x]) &
                                              (blur[2 * x + 1] == background_blur[2 * x + 1]));
 
         out[2 * x] = (uint16_t)((own[2 * x] & known) | (out[2 * x] & ~known));
