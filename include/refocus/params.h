@@ -83,8 +83,8 @@ static inline struct refocus_highlight_params refocus_highlight_params_default(v
     return params;
 }
 
-/** Thin structures: wires, hair, stems. Of `sweep`, by renderers with `thin`; not of photos of Y, U
- *  and V. Start from refocus_thin_params_default(). */
+/** Thin structures: wires, hair, stems; and silhouettes. Of `sweep`, by renderers with `thin`.
+ * Start from refocus_thin_params_default(). */
 struct refocus_thin_params {
     uint32_t struct_size; /**< sizeof(struct refocus_thin_params) */
     uint32_t enabled;     /**< 1 = structures up to 7 pixels wide that are far before the focus are
@@ -97,8 +97,11 @@ struct refocus_thin_params {
                                that they, and thick things, cover in part stay sharp, so that their
                                edges are not in steps and a bright subject has no halo; out of focus
                                those of thick things are blurred as these are. They are looked for
-                               in the first render of a photo, which takes some frames' time. 0 =
-                               no, the default */
+                               in the first render of a photo, which takes some frames' time. Of
+                               photos of Y, U and V, which may be frames of a video, that is done
+                               with thick things alone: it takes a twentieth of a frame's time
+                               with a figure before a wall, half of it with leaves. 0 = no, the
+                               default */
 };
 
 static inline struct refocus_thin_params refocus_thin_params_default(void)

@@ -34,6 +34,7 @@ bool rf_gst_settings_have(guint id);
 
 /* Ray samples a pixel of a quality. */
 int rf_gst_quality_rays(int quality);
+bool rf_gst_quality_is_best(int quality);
 
 /* "disc", "polygon:6", "polygon:6:15", "heart", "star" or "star:7"; false: not known. */
 bool rf_gst_read_shape(const char *text, struct refocus_aperture_params *shape);

@@ -109,6 +109,15 @@ static float room_for(float blur)
     return REFOCUS_MAX_BLUR_RADIUS;
 }
 
+/* Whether half-covered pixels of silhouettes are told, which has no time but with the best quality.
+ * Frames of R, G and B would get thin structures as well, which flicker. */
+static bool has_silhouettes(const struct rf_gst_settings *settings,
+                            const struct refocus_image *photo)
+{
+    return rf_gst_quality_is_best(settings->quality) && refocus_format_is_yuv(photo->format) &&
+           !rf_gst_is_deep(photo);
+}
+
 static int fit(struct rf_gst_shot *shot, const struct rf_gst_settings *settings,
                const struct refocus_image *photo, float blur, struct refocus_reason *reason)
 {
@@ -121,11 +130,12 @@ static int fit(struct rf_gst_shot *shot, const struct rf_gst_settings *settings,
     params.papers = refocus_papers();
     params.deep = rf_gst_is_deep(photo);
     params.methods = REFOCUS_METHOD_BIT((uint32_t)settings->method);
+    params.thin = has_silhouettes(settings, photo);
     params.depth_edges = settings->place_edges ? REFOCUS_DEPTH_EDGES_STEADY : 0;
     if (shot->renderer && width <= shot->made.max_width && height <= shot->made.max_height &&
         blur <= shot->made.max_blur_radius && params.threads == shot->made.threads &&
         params.methods == shot->made.methods && params.depth_edges == shot->made.depth_edges &&
-        params.deep == shot->made.deep)
+        params.deep == shot->made.deep && params.thin == shot->made.thin)
         return REFOCUS_OK;
     refocus_renderer_destroy(&shot->renderer);
     status = refocus_renderer_create(&shot->renderer, &params);
@@ -219,6 +229,7 @@ int rf_gst_shot_take(struct rf_gst_shot *shot, const struct rf_gst_settings *set
     if (settings->place_edges)
         scene.depth_edges = REFOCUS_DEPTH_EDGES_STEADY;
     params = params_of(shot, settings, focus, blur);
+    params.thin.enabled = has_silhouettes(settings, photo);
     status = refocus_prepare_scene(shot->renderer, &scene);
     if (status == REFOCUS_OK)
         status = refocus_render_settings(shot->renderer, &params, out);

@@ -9,6 +9,7 @@
 #include "gather/frame.h"
 #include "gather/sums.h"
 #include "gather/tile_rows.h"
+#include "thin/thin.h"
 
 #include <stdalign.h>
 #include <string.h>
@@ -344,5 +345,7 @@ void rf_sweep_yuv_tile(const struct rf_frame *f, int tx, int ty, struct rf_rect 
         return;
     if (f->splats)
         rf_splat_yuv_highlights(&f->splat, &tile.plan, tx, ty, share, means.luma, means.chroma);
+    if (f->thin.mattes)
+        rf_matte_over_yuv(&f->thin, tx, ty, means.luma, means.chroma);
     rf_encode_yuv_means(f, tx, ty, rect, &means);
 }

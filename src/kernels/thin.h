@@ -15,9 +15,11 @@ struct rf_thin {
     uint8_t alpha; /* 255 = 1 */
     uint16_t near_disparity, far_disparity;
     uint16_t light[3]; /* F, Q12 */
-    uint16_t whole[3]; /* light as a pixel of N alone, Q12: alpha N and (1 - alpha) times the mean
-                          light of the background; of the caller's matte alone */
-    bool thick;        /* N is no thin structure, or is the caller's matte: it is not splatted */
+    /* By the caller's matte it is the light as a pixel of N alone, Q12: alpha N and (1 - alpha)
+     * times the mean light of the background. Of Y, U and V it is D_b and D_r of F, or those of the
+     * photo while the planes hold F. */
+    uint16_t whole[3];
+    bool thick; /* N is no thin structure, or is the caller's matte: it is not splatted */
 };
 
 /* A tile of a photo in planes, of pixel (0, 0) on, rows `stride` apart. The photo goes

@@ -87,20 +87,21 @@ static void look_item(void *context, int item, int worker)
     lay_look(f, part_of_tile(f, tx, ty));
 }
 
-/* Sets up the thin structures of a photo of R, G and B, where the renderer has memory for them. */
+/* Sets up the thin structures of a photo, where the renderer has memory for them. */
 static void set_up_thin(struct rf_frame *f)
 {
     const struct rf_settings *p = f->params;
 
-    rf_thin_set_up(&f->thin,
-                   &(struct rf_thin_settings){
-                       .on = rf_renderer_of(f)->has_thin && p->method == REFOCUS_METHOD_SWEEP &&
-                             !rf_renderer_of(f)->yuv->on && p->max_blur_radius > 0,
-                       .finds = p->thin,
-                       .splats = p->cat_eye <= 0 && p->fringe == 0 && !f->fine,
-                       .rays = p->rays,
-                       .set = &rf_renderer_of(f)->ray_sets.set[rf_renderer_of(f)->ray_sets.preset],
-                   });
+    rf_thin_set_up(
+        &f->thin,
+        &(struct rf_thin_settings){
+            .on = rf_renderer_of(f)->has_thin && p->method == REFOCUS_METHOD_SWEEP &&
+                  p->max_blur_radius > 0,
+            .finds = p->thin,
+            .splats = p->cat_eye <= 0 && p->fringe == 0 && !f->fine && !rf_renderer_of(f)->yuv->on,
+            .rays = p->rays,
+            .set = &rf_renderer_of(f)->ray_sets.set[rf_renderer_of(f)->ray_sets.preset],
+        });
 }
 
 /* Sets the rectangle of tiles that tile_item() goes through. */

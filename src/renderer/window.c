@@ -178,6 +178,11 @@ void rf_set_planes(struct rf_frame *f)
     f->thin.plan = &f->plan;
     f->thin.disparity = r->disparity;
     f->thin.light = r->light;
+    f->thin.chroma = NULL;
+    if (r->yuv->on) {
+        f->thin.light.channel[1] = f->thin.light.channel[2] = r->light.channel[0];
+        f->thin.chroma = &f->chroma;
+    }
     f->thin.smooth = r->smooth;
     f->thin.blur = r->blur;
     f->thin.cell_most = r->cells.most;

@@ -1,5 +1,4 @@
 /* matte.c: thin structures in focus are composited over their blurred background. */
-#include <assert.h>
 #include <stdlib.h>
 
 #include "thin/mixture.h"
@@ -30,7 +29,8 @@ void rf_choose_matted(const struct rf_thin_pass *t, int tx, int ty, struct rf_th
     const struct rf_thin *thin = rf_thin_of(t, tx, ty, &count);
 
     for (uint32_t i = 0; i < count; i++) {
-        if (!rf_is_matted(t, &thin[i], tx, ty))
+        /* Under the noise of video thin structures would flicker: now matted, now not. */
+        if ((t->chroma && !thin[i].thick) || !rf_is_matted(t, &thin[i], tx, ty))
             continue;
         if (!choice->mattes && !is_visible(t, tx, ty))
             return;
@@ -39,7 +39,7 @@ void rf_choose_matted(const struct rf_thin_pass *t, int tx, int ty, struct rf_th
     }
 }
 
-/* The light in the list is F, that in the planes the photo's: alpha N = C - (1 - alpha) F. */
+/* The light in the list is F, that in the planes the photo's. */
 void rf_matte_over(const struct rf_thin_pass *t, int tx, int ty,
                    uint16_t mean[3][RF_TILE * RF_TILE])
 {
@@ -55,13 +55,8 @@ void rf_matte_over(const struct rf_thin_pass *t, int tx, int ty,
 
         if (!rf_has_bit(choice->matte, i))
             continue;
-        for (int c = 0; c < 3; c++) {
-            static_assert(255 * UINT16_MAX + 127 <= INT32_MAX, "a mean times coverage");
-            const int left = 255 - thin->alpha;
-            const int light = 4 * t->light.channel[c][at] +
-                              (left * (mean[c][thin->at] - 4 * thin->light[c]) + 127) / 255;
-
-            mean[c][thin->at] = (uint16_t)(light < 0 ? 0 : light < UINT16_MAX ? light : UINT16_MAX);
-        }
+        for (int c = 0; c < 3; c++)
+            mean[c][thin->at] =
+                rf_mix(mean[c][thin->at], t->light.channel[c][at], thin->light[c], thin->alpha);
     }
 }

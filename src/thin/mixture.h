@@ -2,6 +2,9 @@
 #ifndef RF_MIXTURE_H
 #define RF_MIXTURE_H
 
+#include <assert.h>
+#include <stdlib.h>
+
 #include "thin/thin.h"
 
 /* The mixtures of a tile of the window. */
@@ -42,6 +45,19 @@ int rf_near_blur(const struct rf_thin_pass *t, const struct rf_thin *thin, int t
  * and so matted. */
 bool rf_is_splatted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty);
 bool rf_is_matted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty);
+
+/* alpha N + (1 - alpha) mean, Q14, where alpha N = C - (1 - alpha) F, both Q12; 255 = 1. */
+static inline uint16_t rf_mix(int mean, int c, int f, int alpha)
+{
+    static_assert(255 * UINT16_MAX + 127 <= INT32_MAX, "a mean times coverage");
+    const int light = 4 * c + ((255 - alpha) * (mean - 4 * f) + 127) / 255;
+
+    return (uint16_t)(light < 0 ? 0 : light < UINT16_MAX ? light : UINT16_MAX);
+}
+
+/* Puts the chroma of F into the planes for the matted mixtures of a tile, and the photo's into
+ * `whole` of the list; or back. */
+void rf_swap_chroma(const struct rf_thin_pass *t, int tx, int ty, bool back);
 
 /* Disparities farther apart than this are of two surfaces. */
 enum { RF_SURFACE_JUMP = 65535 / 32 };

@@ -272,8 +272,11 @@ static void swap_tile(const struct rf_thin_pass *t, int tx, int ty)
 static void swap_row(const struct rf_thin_pass *t, int ty)
 {
     for (int tx = 0; tx < t->view->tiles_x; tx++)
-        if (is_any(rf_thin_choice_of(t, tx, ty)))
+        if (is_any(rf_thin_choice_of(t, tx, ty))) {
             swap_tile(t, tx, ty);
+            if (t->chroma)
+                rf_swap_chroma(t, tx, ty, t->coverage->swapped[ty]);
+        }
     t->coverage->swapped[ty] = !t->coverage->swapped[ty];
 }
 

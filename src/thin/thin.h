@@ -26,6 +26,9 @@
  * far as F, they are drawn as pixels of N: the planes get C at the depth of N, where alpha is 1/8
  * or more; but not where the caller knows what is hidden.
  *
+ * Of photos of Y, U and V, which may be frames of a video, the latter alone are matted, and nothing
+ * is splatted (chroma.c).
+ *
  * F is the mean of the pixels around of the far surface that counts most, each by the inverse
  * square of its distance; N that of the near ones around by how much they differ from F. alpha is
  * the part of N - F in C - F, at least as much as keeps N between black and white. Where C tells
@@ -60,6 +63,7 @@
 #include "background/pyramid.h"
 #include "colour/transfer.h"
 #include "focus/focus.h"
+#include "image/chroma.h"
 #include "image/planes.h"
 #include "image/viewport.h"
 #include "kernels/thin.h"
@@ -137,15 +141,17 @@ struct rf_thin_pass {
     const struct rf_executor *exec;
     const struct rf_viewport *view;
     const struct rf_focus_plan *plan;
-    struct rf_disparity_q16 disparity;  /* read */
-    struct rf_light_q12 light;          /* read, and exchanged with the list */
-    struct rf_light_q12 smooth;         /* written by rf_thin_take_filled(), else read */
-    struct rf_blur_q8 blur;             /* patched */
-    const int16_t *cell_most;           /* greatest blur of each cell */
-    ptrdiff_t cell_stride;              /* stride of rows of cells; tiles/ranges.h */
-    const struct rf_bins *bins;         /* bins of each tile */
-    const struct rf_behind *behind;     /* a layer that F is known from, or NULL */
-    const struct rf_transfer *transfer; /* from its codes to light */
+    struct rf_disparity_q16 disparity;     /* read */
+    struct rf_light_q12 light;             /* read, and exchanged with the list; of Y, U and V all
+                                              three channels are luminance */
+    const struct rf_chroma_planes *chroma; /* NULL of R, G and B; its light, too, is exchanged */
+    struct rf_light_q12 smooth;            /* written by rf_thin_take_filled(), else read */
+    struct rf_blur_q8 blur;                /* patched */
+    const int16_t *cell_most;              /* greatest blur of each cell */
+    ptrdiff_t cell_stride;                 /* stride of rows of cells; tiles/ranges.h */
+    const struct rf_bins *bins;            /* bins of each tile */
+    const struct rf_behind *behind;        /* a layer that F is known from, or NULL */
+    const struct rf_transfer *transfer;    /* from its codes to light */
     struct rf_thin_list *list;
     struct rf_coverage *coverage;
     int disc_scale; /* Q8: radius of a splatted disc, as part of its blur; 0: none is splatted */
@@ -232,8 +238,11 @@ void rf_thin_take_filled(const struct rf_thin_pass *t, struct rf_background back
 /* Means of a tile in Q14 that no ray changes: the photo, and F where mixtures are separated. */
 void rf_thin_sharp_means(const struct rf_thin_pass *t, int tx, int ty, uint16_t mean[3][256]);
 
-/* Composites the matted mixtures of a tile over its means, Q14. */
+/* Composites the matted mixtures of a tile over its means, Q14; of Y, U and V those of luma, and of
+ * chroma with samples as in its planes. */
 void rf_matte_over(const struct rf_thin_pass *t, int tx, int ty, uint16_t mean[3][256]);
+void rf_matte_over_yuv(const struct rf_thin_pass *t, int tx, int ty, uint16_t luma[256],
+                       uint16_t chroma[256]);
 
 /* Whether the coverage layer has anything over a tile; composites it over the means, Q14. */
 bool rf_has_coverage(const struct rf_thin_pass *t, int tx, int ty);

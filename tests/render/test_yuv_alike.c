@@ -207,10 +207,77 @@ static void no_tint(void **state)
     pair_free(&pair);
 }
 
+/* Half-covered pixels of an antialiased red beam in focus are told by their luminance: the grey
+ * wall beside them has no halo, nor is it tinted; and a region is that part of the whole. */
+static void no_halo(void **state)
+{
+    enum { W = 160, H = 128, K = 14, LEFT = 64, TOP = 32, WIDE = 64, HIGH = 48 };
+    const uint8_t wall[3] = {40, 40, 40};
+    struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, K);
+    struct picture p = picture_flat(W, H, wall, 9000), share = picture_flat(W, H, wall, 9000);
+    struct refocus_renderer *renderer;
+
+    (void)state;
+    picture_line(&p, 60, 0, 0.4, 1, 40, 220);
+    picture_line(&share, 60, 0, 0.4, 1, 46, 220);
+    for (int at = 0; at < W * H; at++) {
+        p.rgb[3 * at + 1] = (uint8_t)(40 + (p.rgb[3 * at] - 40) / 3);
+        p.rgb[3 * at + 2] = 40;
+    }
+    limits.threads = 2;
+    limits.thin = 1;
+    assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
+    for (int i = 0; i < 4; i++) {
+        struct yuv_picture in = yuv_make(yuv_formats[i], W, H, 0);
+        struct yuv_picture out[2] = {yuv_make(yuv_formats[i], W, H, 0),
+                                     yuv_make(yuv_formats[i], W, H, 0)};
+        struct yuv_picture part = yuv_make(yuv_formats[i], WIDE, HIGH, 0);
+        const struct refocus_disparity map = picture_disparity(&p);
+        struct refocus_settings settings =
+            refocus_settings_default(p.disparity[H / 2 * W + 86] / 65535.0f, K);
+        double sum[2][3] = {{0}};
+
+        yuv_from_picture(&in, &p);
+        assert_int_equal(refocus_prepare(renderer, &in.image, &map), REFOCUS_OK);
+        for (int thin = 0; thin < 2; thin++) {
+            settings.thin.enabled = (uint32_t)thin;
+            assert_int_equal(refocus_render_settings(renderer, &settings, &out[thin].image),
+                             REFOCUS_OK);
+            for (int at = 0; at < W * H; at++)
+                for (int c = 0; c < 3 && share.rgb[3 * at] == wall[0]; c++)
+                    sum[thin][c] += abs(*yuv_sample(&out[thin].image, c, at % W, at / W) -
+                                        *yuv_sample(&in.image, c, at % W, at / W));
+        }
+        printf("format %d: Y, U, V off by %.0f %.0f %.0f, by rays %.0f %.0f %.0f\n",
+               (int)yuv_formats[i], sum[1][0], sum[1][1], sum[1][2], sum[0][0], sum[0][1],
+               sum[0][2]);
+        for (int c = 0; c < 3; c++)
+            assert_true(sum[1][c] < sum[0][c] / 3);
+        settings.render.region_x = LEFT;
+        settings.render.region_y = TOP;
+        settings.render.region_width = WIDE;
+        settings.render.region_height = HIGH;
+        assert_int_equal(refocus_prepare(renderer, &in.image, &map), REFOCUS_OK);
+        assert_int_equal(refocus_render_settings(renderer, &settings, &part.image), REFOCUS_OK);
+        for (int at = 0; at < WIDE * HIGH; at++)
+            for (int c = 0; c < 3; c++)
+                assert_int_equal(*yuv_sample(&part.image, c, at % WIDE, at / WIDE),
+                                 *yuv_sample(&out[1].image, c, LEFT + at % WIDE, TOP + at / WIDE));
+        yuv_free(&in);
+        yuv_free(&out[0]);
+        yuv_free(&out[1]);
+        yuv_free(&part);
+    }
+    refocus_renderer_destroy(&renderer);
+    picture_free(&p);
+    picture_free(&share);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(grey_texture),
-                                       cmocka_unit_test(coloured_lamps), cmocka_unit_test(no_tint)};
+                                       cmocka_unit_test(coloured_lamps), cmocka_unit_test(no_tint),
+                                       cmocka_unit_test(no_halo)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

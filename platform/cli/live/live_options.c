@@ -19,10 +19,12 @@ static const char *format_name(uint32_t index)
     return index == 0 ? "any" : refocus_frame_format_name(index);
 }
 
-/* Frames of a camera have no thin structures splatted, nor texture continued. */
+/* Frames of a camera have no thin structures splatted, nor texture continued. The best of Y, U and
+ * V have silhouettes without a halo. */
 static const char *quality_summary(uint32_t index)
 {
-    static const char *const rays[] = {"32 rays", "64 rays", "128 rays"};
+    static const char *const rays[] = {
+        "32 rays", "64 rays", "128 rays; of Y, U and V also no halo beside what is in focus"};
     return index < sizeof rays / sizeof *rays ? rays[index] : engine_quality_words[index].summary;
 }
 

@@ -25,6 +25,7 @@ static bool fit_renderer(struct live *live, int width, int height)
     params.cpu = (uint32_t)live->settings->engine.cpu;
     params.papers = refocus_papers();
     params.methods = live->engine->methods;
+    params.thin = live->settings->engine.quality == QUALITY_BEST;
     if (live->settings->depth.edges == EDGES_AUTO)
         params.depth_edges = REFOCUS_DEPTH_EDGES_STEADY;
     status = refocus_renderer_create(&live->engine->renderer, &params);
@@ -148,6 +149,8 @@ static int refocus(struct live *live, const struct live_picture *picture,
     params.render.max_blur_radius = (float)live->blur;
     engine_suit_rays(live->engine, &params);
     params.highlights.steady = STEADY_LIGHT;
+    params.thin.enabled = live->settings->engine.quality == QUALITY_BEST &&
+                          refocus_format_is_yuv(picture->image.format); /* silhouettes alone */
     params.look.grain_seed +=
         (uint32_t)(live->frames_rendered - 1); /* Grain that stands is dirt. */
     if (live_look_aim(live, &picture->image, &params) != EXIT_DONE)

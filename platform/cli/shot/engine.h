@@ -24,7 +24,7 @@ struct engine_settings {
     struct bokeh_settings bokeh;
 };
 
-enum { QUALITY_STANDARD = 1, QUALITY_AUTO = 3 };
+enum { QUALITY_STANDARD = 1, QUALITY_BEST = 2, QUALITY_AUTO = 3 };
 
 enum { HIGHLIGHTS_ESTIMATED = 0 }; /* `highlights`: no gain, which is 1 or more */
 
