@@ -8,7 +8,8 @@
 /* 255 = 1 */
 enum {
     MOST_FAR_ALPHA = 160,
-    SIDE = 32, /* a pixel that N covers less stays as it is */
+    SIDE = 32,       /* a pixel that N covers less stays as it is */
+    THIN_SIDE = 128, /* the least that a thin N covers of a pixel it is given */
 };
 
 /* Signed circle of confusion of one disparity, 1/256 pixel, as the kernel signed_blur rounds it. */
@@ -72,7 +73,7 @@ static bool is_near(const struct rf_thin_pass *t, const struct rf_thin *thin, in
 }
 
 /* A pixel that the map has far can hardly be covered by more than half: with a greater alpha, its
- * own texture was mistaken for N. */
+ * own texture may have been mistaken for N, which would show where N is in focus. */
 static bool is_mistaken(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
 {
     return thin->alpha > MOST_FAR_ALPHA && !is_near(t, thin, tx, ty);
@@ -98,6 +99,19 @@ static bool is_known(const struct rf_thin_pass *t, const struct rf_thin *thin, i
     return t->behind && rf_is_behind(t->behind, x, y, thin->near_disparity);
 }
 
+/* Whether the map has the pixel on a surface between F and N, whose light it may have. */
+static bool is_third(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
+{
+    const int x = tx * RF_TILE + thin->at % RF_TILE, y = ty * RF_TILE + thin->at / RF_TILE;
+    const int own = t->disparity.at[y * t->view->stride + x];
+
+    return own > thin->far_disparity + RF_SURFACE_JUMP &&
+           own < thin->near_disparity - RF_SURFACE_JUMP;
+}
+
+/* Maps are often a pixel inside of silhouettes: what N covers there, wholly or in part, would be a
+ * line of dots on a background in focus. Texture that is mistaken for N is one pixel beside its
+ * silhouette, where its blur hides half of what is behind. */
 void rf_choose_near(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice)
 {
     const bool given = rf_thin_run_of(t, tx, ty)->given;
@@ -108,12 +122,12 @@ void rf_choose_near(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin
         const int level = level_of(thin->at);
         int near, far;
 
-        if (!thin->thick || thin->alpha < SIDE || is_mistaken(t, thin, tx, ty))
+        if (rf_has_bit(choice->splat, i) || thin->alpha < (thin->thick ? SIDE : THIN_SIDE))
             continue;
         near = rf_near_blur(t, thin, tx, ty);
         far = rf_thin_blur(t, thin->far_disparity, tx * RF_TILE, ty * RF_TILE);
         if (abs(near) <= matte_blur(level) || far - near < far_blur(level) ||
-            (!given && is_known(t, thin, tx, ty)))
+            (!given && (is_known(t, thin, tx, ty) || is_third(t, thin, tx, ty))))
             continue;
         choice->nears = true;
         choice->near[i / 64] |= UINT64_C(1) << i % 64;

@@ -78,7 +78,7 @@ void rf_measure_deviations(const struct rf_matte_pass *pass);
 /* Gives the standard deviations of luminance around a pixel that were measured, Q12. */
 void rf_deviations_at(const struct rf_matte_pass *pass, int x, int y, int *near, int *far);
 
-/* Chooses the mixtures of a tile, of what is no thin structure, that are drawn as pixels of N:
+/* Chooses the mixtures of a tile, of those that are not splatted, that are drawn as pixels of N:
  * where N is blurred, and not as F is, and they have enough of it. */
 void rf_choose_near(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice);
 

@@ -243,6 +243,41 @@ static void halo(void **state)
     }
 }
 
+/* A beam that is blurred before a wall in focus looks nearly as with the right map if the map is a
+ * pixel too small on both sides: what is left of it is no outline. A blur of 6 pixels is too little
+ * for thin beams to be splatted. */
+static void outline(void **state)
+{
+    static const struct {
+        int width;
+        float blur;
+    } beams[] = {{5, 6}, {12, 15}, {40, 15}};
+    static uint8_t right[MOST], out[MOST], wall[3] = {170, 190, 210};
+
+    (void)state;
+    for (size_t b = 0; b < sizeof beams / sizeof *beams; b++) {
+        struct picture p = picture_flat(WIDTH, HEIGHT, wall, FAR), small;
+        struct setting s = plain;
+        double off[2] = {0, 0};
+
+        small = picture_flat(WIDTH, HEIGHT, wall, FAR);
+        picture_line(&p, 100, 0, 0.4, 1, beams[b].width, 100);
+        picture_line(&small, 100, 0, 0.4, 1, beams[b].width - 2, 100);
+        s.blur = beams[b].blur;
+        render_fresh(&p, true, &s, right);
+        memcpy(p.disparity, small.disparity, sizeof *p.disparity * WIDTH * HEIGHT);
+        for (s.thin = 0; s.thin < 2; s.thin++) {
+            render_fresh(&p, true, &s, out);
+            for (int i = 0; i < WIDTH * HEIGHT; i++)
+                off[s.thin] += abs(out[3 * i] - right[3 * i]);
+        }
+        printf("beam of %d: off by %.0f, by rays %.0f\n", beams[b].width, off[1], off[0]);
+        assert_true(off[1] < off[0] / 4);
+        picture_free(&p);
+        picture_free(&small);
+    }
+}
+
 /* A stem a little out of focus is as dense with its rims matted as without: rays of what is inside
  * do not pass through the matted pixels beside it. */
 static void dense(void **state)
@@ -465,16 +500,10 @@ static void memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wire),
-        cmocka_unit_test(matted),
-        cmocka_unit_test(halo),
-        cmocka_unit_test(strands),
-        cmocka_unit_test(dense),
-        cmocka_unit_test(elsewhere),
-        cmocka_unit_test(same_everywhere),
-        cmocka_unit_test(regions),
-        cmocka_unit_test(sequence),
-        cmocka_unit_test(memory),
+        cmocka_unit_test(wire),      cmocka_unit_test(matted),          cmocka_unit_test(halo),
+        cmocka_unit_test(outline),   cmocka_unit_test(strands),         cmocka_unit_test(dense),
+        cmocka_unit_test(elsewhere), cmocka_unit_test(same_everywhere), cmocka_unit_test(regions),
+        cmocka_unit_test(sequence),  cmocka_unit_test(memory),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
