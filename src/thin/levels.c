@@ -64,26 +64,32 @@ static int far_blur(int level)
     return 384 + 32 * level;
 }
 
-/* Whether the map gives the pixel the depth of N. */
-static bool is_near(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
+/* Whether the map has what was found on a surface between F and N, whose light it may have. */
+static bool is_third(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
+{
+    const int x = tx * RF_TILE + thin->at % RF_TILE, y = ty * RF_TILE + thin->at / RF_TILE;
+    const int own = t->disparity.at[y * t->view->stride + x];
+
+    return !rf_thin_run_of(t, tx, ty)->given && own > thin->far_disparity + RF_SURFACE_JUMP &&
+           own < thin->near_disparity - RF_SURFACE_JUMP;
+}
+
+/* Beside thin structures in focus a pixel that the map has far can hardly be covered by more than
+ * half: with a greater alpha, its own texture was mistaken for N. Beside what is thick, maps are
+ * often a pixel inside of the silhouette. */
+static bool is_mistaken(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
 {
     const int x = tx * RF_TILE + thin->at % RF_TILE, y = ty * RF_TILE + thin->at / RF_TILE;
 
-    return t->disparity.at[y * t->view->stride + x] == thin->near_disparity;
-}
-
-/* A pixel that the map has far can hardly be covered by more than half: with a greater alpha, its
- * own texture may have been mistaken for N, which would show where N is in focus. */
-static bool is_mistaken(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
-{
-    return thin->alpha > MOST_FAR_ALPHA && !is_near(t, thin, tx, ty);
+    return !thin->thick && thin->alpha > MOST_FAR_ALPHA &&
+           t->disparity.at[y * t->view->stride + x] != thin->near_disparity;
 }
 
 bool rf_is_matted(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
 {
     const int level = level_of(thin->at);
 
-    if (is_mistaken(t, thin, tx, ty))
+    if (is_mistaken(t, thin, tx, ty) || is_third(t, thin, tx, ty))
         return false;
     return abs(rf_near_blur(t, thin, tx, ty)) <= matte_blur(level) &&
            rf_thin_blur(t, thin->far_disparity, tx * RF_TILE, ty * RF_TILE) >= far_blur(level);
@@ -99,19 +105,8 @@ static bool is_known(const struct rf_thin_pass *t, const struct rf_thin *thin, i
     return t->behind && rf_is_behind(t->behind, x, y, thin->near_disparity);
 }
 
-/* Whether the map has the pixel on a surface between F and N, whose light it may have. */
-static bool is_third(const struct rf_thin_pass *t, const struct rf_thin *thin, int tx, int ty)
-{
-    const int x = tx * RF_TILE + thin->at % RF_TILE, y = ty * RF_TILE + thin->at / RF_TILE;
-    const int own = t->disparity.at[y * t->view->stride + x];
-
-    return own > thin->far_disparity + RF_SURFACE_JUMP &&
-           own < thin->near_disparity - RF_SURFACE_JUMP;
-}
-
-/* Maps are often a pixel inside of silhouettes: what N covers there, wholly or in part, would be a
- * line of dots on a background in focus. Texture that is mistaken for N is one pixel beside its
- * silhouette, where its blur hides half of what is behind. */
+/* Pixels of N that the map has far would be a line of dots on a background in focus. Texture of F
+ * that was mistaken for N lies where the blur of N hides half of what is behind. */
 void rf_choose_near(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin_choice *choice)
 {
     const bool given = rf_thin_run_of(t, tx, ty)->given;
@@ -127,7 +122,7 @@ void rf_choose_near(const struct rf_thin_pass *t, int tx, int ty, struct rf_thin
         near = rf_near_blur(t, thin, tx, ty);
         far = rf_thin_blur(t, thin->far_disparity, tx * RF_TILE, ty * RF_TILE);
         if (abs(near) <= matte_blur(level) || far - near < far_blur(level) ||
-            (!given && (is_known(t, thin, tx, ty) || is_third(t, thin, tx, ty))))
+            is_third(t, thin, tx, ty) || (!given && is_known(t, thin, tx, ty)))
             continue;
         choice->nears = true;
         choice->near[i / 64] |= UINT64_C(1) << i % 64;

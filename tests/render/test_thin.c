@@ -243,15 +243,16 @@ static void halo(void **state)
     }
 }
 
-/* A beam that is blurred before a wall in focus looks nearly as with the right map if the map is a
- * pixel too small on both sides: what is left of it is no outline. A blur of 6 pixels is too little
- * for thin beams to be splatted. */
+/* A beam that is blurred before a wall in focus, or in focus before a blurred wall, looks nearly as
+ * with the right map if the map is a pixel too small on both sides: what is left of it is no
+ * outline. A blur of 6 pixels is too little for thin beams to be splatted. */
 static void outline(void **state)
 {
     static const struct {
         int width;
+        uint16_t focus;
         float blur;
-    } beams[] = {{5, 6}, {12, 15}, {40, 15}};
+    } beams[] = {{5, FAR, 6}, {12, FAR, 15}, {40, FAR, 15}, {40, NEAR, 15}};
     static uint8_t right[MOST], out[MOST], wall[3] = {170, 190, 210};
 
     (void)state;
@@ -263,6 +264,7 @@ static void outline(void **state)
         small = picture_flat(WIDTH, HEIGHT, wall, FAR);
         picture_line(&p, 100, 0, 0.4, 1, beams[b].width, 100);
         picture_line(&small, 100, 0, 0.4, 1, beams[b].width - 2, 100);
+        s.focus = beams[b].focus / 65535.0f;
         s.blur = beams[b].blur;
         render_fresh(&p, true, &s, right);
         memcpy(p.disparity, small.disparity, sizeof *p.disparity * WIDTH * HEIGHT);
