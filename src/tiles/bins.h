@@ -17,6 +17,8 @@ struct rf_bins {
     int16_t background_blur; /* blur of the hidden background in the middle of the tile */
     uint16_t brightest;      /* an upper bound of the light of either layer, as it is summed */
     int16_t noise;           /* blurs vary so far from pixel to pixel; 0: the map is clean */
+    int16_t middle;          /* the mean of its blurs; only if `flat` */
+    bool flat;               /* the tile is one level surface, but for its noise */
     bool subtracted;         /* highlights are subtracted from its light, highlights/subtract.c */
 };
 

@@ -6,6 +6,7 @@
 
 #include "support/compare.h"
 #include "tiles/scale.h"
+#include "tiles/surfaces.h"
 
 enum {
     HALF = 128,           /* 1/256 pixel, as all of these */
@@ -30,8 +31,6 @@ static_assert(2 * RF_UNIT_RADIUS * 256 <= MOST_SPREAD && RF_UNIT_RADIUS << RF_MA
 
 /* How slabs of noise are merged. */
 enum {
-    NOISE_TIMES = 3, /* slabs of noise are so many times as wide as rf_bins has it: it overlaps by
-                        2.5 standard deviations, and nearly all of it lies within 7 */
     NOISY_SLABS = 8, /* slabs of noise alone; then they grow, up to LARGEST_RATIO */
     LARGEST_RATIO = 8,
 };
@@ -41,7 +40,8 @@ struct merging {
     int noise; /* so wide are slabs of noise at the most */
     int ratio; /* the far side of one is at most 1 + ratio times as far out of focus as the near one
                 */
-    int widest; /* blurs within the tile hit no wider slab modulo 2^16, with what it overlaps */
+    int widest;                        /* widest_slab() */
+    struct rf_level_surfaces surfaces; /* each is a slab */
 };
 
 static bool has(const uint64_t word[RF_BINS / 64], int bin)
@@ -151,6 +151,22 @@ static void add_blurred_slab(struct rf_tile_plan *plan, struct rf_bin_scale scal
     add_slab(plan, scale, (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre});
 }
 
+/* Adds the slab of a surface, which is seen in its middle: it is sharp there below half a pixel. */
+static void add_surface(struct rf_tile_plan *plan, struct rf_bin_scale scale,
+                        const struct rf_level_surface *surface)
+{
+    const int centre = abs(surface->middle) < HALF >> scale.unit ? 0 : surface->middle;
+    int low = rf_edge_of(scale, surface->first), high = rf_edge_of(scale, surface->end) - 1;
+    const int overlap = rf_larger(OVERLAP >> scale.unit, (high - low) / 8);
+
+    plan->sharp = plan->sharp && centre == 0;
+    plan->reach = rf_larger(plan->reach, abs(centre));
+    plan->least = rf_smaller(plan->least, abs(centre));
+    low = rf_larger(low - overlap, INT16_MIN);
+    high = rf_smaller(high + overlap, INT16_MAX);
+    add_slab(plan, scale, (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre});
+}
+
 /* Covers the occupied bins by slabs, nearest first. Slabs are a pixel wide, half of that where the
  * blur is small and a pixel would show, and |s| / 8 less one pixel from 16 pixels on: there rays
  * lie farther apart than half of that. Wide slabs end where those end that cover all bins from the
@@ -175,7 +191,7 @@ static int cover(const struct rf_bins_in_reach *in_reach, const struct rf_reach 
     const int unit = scale.unit, half = HALF >> unit, closed = CLOSED >> unit;
     const int focus_end = scale.focus + scale.focus_bins;
     const uint16_t *const end_of_wide = reach->slab_end[bins->most - bins->least < MOST_SPREAD];
-    int noisy = 0;
+    int noisy = 0, next = 0; /* surface */
 
     plan->slabs = 0;
     plan->reach = 0;
@@ -185,6 +201,13 @@ static int cover(const struct rf_bins_in_reach *in_reach, const struct rf_reach 
         int end, last = bin, low, high;
         bool sure = false;
 
+        while (next < merging->surfaces.count && bin >= merging->surfaces.at[next].end)
+            next++;
+        if (next < merging->surfaces.count && bin >= merging->surfaces.at[next].first) {
+            add_surface(plan, scale, &merging->surfaces.at[next]);
+            bin = merging->surfaces.at[next].end;
+            continue;
+        }
         if (bin >= scale.focus && bin < focus_end) {
             add_slab(
                 plan, scale,
@@ -197,6 +220,8 @@ static int cover(const struct rf_bins_in_reach *in_reach, const struct rf_reach 
         end = unit || abs(low) >= WIDE ? end_of_wide[bin] : end_of(scale, bin, false);
         if (merging->noise)
             end = end_of_noise(in_reach, scale, merging, bin, end);
+        if (next < merging->surfaces.count)
+            end = rf_smaller(end, merging->surfaces.at[next].first);
         for (int b = bin; b < end && b < RF_BINS; b++) {
             if (has(bins->word, b))
                 last = b;
@@ -214,20 +239,26 @@ static int cover(const struct rf_bins_in_reach *in_reach, const struct rf_reach 
     return noisy;
 }
 
+/* Blurs within the tile hit no wider slab modulo 2^16, with what it overlaps. */
+static int widest_slab(const struct rf_bins_in_reach *in_reach)
+{
+    return (UINT16_MAX + 1 - (in_reach->all.most - in_reach->all.least)) / 5 * 4 - 2 * OVERLAP;
+}
+
 /* Covers the occupied bins: where they are noise, by as few slabs as a tile may have. Others are
  * never merged for their number, which the growing width of slabs bounds: tiles beside each other
  * would differ in what occludes what. */
 static void cover_bounded(const struct rf_bins_in_reach *in_reach, const struct rf_reach *reach,
-                          struct rf_tile_plan *plan)
+                          const struct rf_level_surfaces *surfaces, struct rf_tile_plan *plan)
 {
-    const int spread = in_reach->all.most - in_reach->all.least;
-    struct merging merging = {.ratio = 1,
-                              .widest = (UINT16_MAX + 1 - spread) / 5 * 4 - 2 * OVERLAP};
     const int noise = in_reach->noisy ? (int)(in_reach->noise / in_reach->noisy) : 0;
+    struct merging merging = {.noise = rf_smaller(RF_NOISE_TIMES * noise, INT16_MAX),
+                              .ratio = 1,
+                              .widest = widest_slab(in_reach),
+                              .surfaces = *surfaces};
     int noisy;
 
     plan->noise = rf_in_pixels(noise, reach->scale.unit);
-    merging.noise = rf_smaller(NOISE_TIMES * noise, INT16_MAX);
     noisy = cover(in_reach, reach, &merging, plan);
     while (noisy > NOISY_SLABS && merging.ratio < LARGEST_RATIO) {
         merging.ratio *= 2;
@@ -288,8 +319,11 @@ void rf_plan_tile(const struct rf_viewport *view, const struct rf_bins *bins,
                   const struct rf_reach *reach, int tx, int ty, struct rf_tile_plan *plan)
 {
     const struct rf_bins_in_reach in_reach = rf_collect(view, bins, reach, tx, ty);
+    struct rf_level_surfaces surfaces;
 
-    cover_bounded(&in_reach, reach, plan);
+    rf_find_surfaces(view, bins, &in_reach, reach->scale, tx, ty, widest_slab(&in_reach),
+                     &surfaces);
+    cover_bounded(&in_reach, reach, &surfaces, plan);
     if (plan->noise > 0 && in_reach.all.most - in_reach.all.least < MOST_SPREAD)
         close_cracks(plan, reach->scale.unit);
     plan->highlight = rf_in_pixels(in_reach.all.highlight, reach->scale.unit);

@@ -140,6 +140,8 @@ static struct rf_bins bins_of_tile(struct rf_bin_scale scale, struct rf_blur_q8 
     if (last - first > 1) {
         add_cells(&bins, scale, blur, cells, tx, ty, first, last);
         bins.noise = noise_of_tile(&bins, scale, cells, tx, ty);
+        if (bins.noise)
+            rf_find_flat(&bins, scale, blur.at + RF_TILE * (ty * blur.stride + tx), blur.stride);
     }
     return bins;
 }

@@ -92,6 +92,11 @@ void rf_slab_ends(struct rf_bin_scale scale, bool wide, uint16_t end[RF_BINS]);
 void rf_bin_tiles(const struct rf_viewport *view, struct rf_bin_scale scale, struct rf_blur_q8 blur,
                   const struct rf_cells *cells, struct rf_bins *bins, int ty);
 
+/* Sets `flat` and `middle` of the bins of a noisy tile, whose first blur is at `s`: whether it is
+ * level but for the noise, tiles/surfaces.h. */
+void rf_find_flat(struct rf_bins *bins, struct rf_bin_scale scale, const int16_t *s,
+                  ptrdiff_t stride);
+
 /* Adds a blur to the bins of the tile that pixel (x, y) is in. */
 void rf_add_bin(const struct rf_viewport *view, struct rf_bins *bins, struct rf_bin_scale scale,
                 int x, int y, int16_t blur);

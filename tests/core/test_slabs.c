@@ -19,7 +19,7 @@ struct set {
     int count;
 };
 
-static uint32_t noise(uint32_t *seed)
+static uint32_t noise_bits(uint32_t *seed)
 {
     *seed = *seed * 1664525 + 1013904223;
     return *seed >> 8;
@@ -84,13 +84,15 @@ static void expect_same(float largest, uint32_t seed)
 
     for (int i = 0; i < BLURS; i++)
         for (int k = 0; k < 2; k++) {
-            set[k].blur[i] = (int16_t)((int)(noise(&seed) % (uint32_t)(2 * range + 1)) - range);
+            set[k].blur[i] =
+                (int16_t)((int)(noise_bits(&seed) % (uint32_t)(2 * range + 1)) - range);
             if (i < 2)
                 set[k].blur[i] = set[0].blur[i];
         }
     /* the second one beside the first, 16 pixels out of focus and more, on either side of it */
-    set[0].blur[0] = (int16_t)((16 * 256 + (int)(noise(&seed) % (uint32_t)(range - 20 * 256))) *
-                               (noise(&seed) % 2 ? 1 : -1));
+    set[0].blur[0] =
+        (int16_t)((16 * 256 + (int)(noise_bits(&seed) % (uint32_t)(range - 20 * 256))) *
+                  (noise_bits(&seed) % 2 ? 1 : -1));
     set[0].blur[1] = (int16_t)(set[0].blur[0] + (set[0].blur[0] > 0 ? 512 : -512));
     set[1].blur[0] = set[0].blur[0];
     set[1].blur[1] = set[0].blur[1];
@@ -213,11 +215,70 @@ static void noise_is_merged(void **state)
     assert_int_equal(plan.slabs, 2);
 }
 
+/* The plan of the first of two tiles side by side whose noise of `noise` pixels is around a blur
+ * each. */
+static void plan_level(const int16_t middle[2], int noise, struct rf_tile_plan *plan)
+{
+    enum { WIDTH = 2 * RF_TILE, CELLS = WIDTH / RF_CELL };
+    static struct rf_reach reach;
+    const float largest = 30;
+    const struct rf_bin_scale scale = rf_bin_scale_of(largest, 0);
+    const struct rf_viewport view = {.width = WIDTH,
+                                     .height = RF_TILE,
+                                     .photo_width = WIDTH,
+                                     .photo_height = RF_TILE,
+                                     .tiles_x = 2,
+                                     .tiles_y = 1,
+                                     .pad = (int)largest + 2};
+    int16_t blur[RF_TILE][WIDTH], least[CELLS * RF_TILE / RF_CELL], most[CELLS * RF_TILE / RF_CELL];
+    const struct rf_cells cells = {least, most, CELLS};
+    struct rf_bins bins[2];
+    uint32_t seed = 1;
+
+    for (size_t i = 0; i < sizeof least / sizeof *least; i++) {
+        least[i] = INT16_MAX;
+        most[i] = INT16_MIN;
+    }
+    for (int y = 0; y < RF_TILE; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const int off =
+                (int)(noise_bits(&seed) % (uint32_t)(2 * noise * 256 + 1)) - noise * 256;
+
+            blur[y][x] = (int16_t)(middle[x / RF_TILE] + off);
+            rf_add_to_cell(&cells, x, y, blur[y][x]);
+        }
+    rf_bin_tiles(&view, scale, (struct rf_blur_q8){blur[0], WIDTH, 0}, &cells, bins, 0);
+    rf_reach_init(&reach, scale, largest, view.pad, false);
+    rf_plan_tile(&view, bins, &reach, 0, 0, plan);
+}
+
+/* A level surface with noise is one slab, and sharp in the focus; two that meet are two slabs. */
+static void level_surfaces(void **state)
+{
+    static const int16_t sharp[2] = {20, -20}, blurred[2] = {6 * 256, 6 * 256};
+    static const int16_t apart[2] = {0, 8 * 256};
+    struct rf_tile_plan plan;
+
+    (void)state;
+    plan_level(sharp, 3, &plan);
+    assert_int_equal(plan.slabs, 1);
+    assert_int_equal(plan.slab[0].centre, 0);
+    assert_true(plan.sharp);
+    plan_level(blurred, 3, &plan);
+    assert_int_equal(plan.slabs, 1);
+    assert_in_range(plan.slab[0].centre, 6 * 256 - 80, 6 * 256 + 80);
+    assert_false(plan.sharp);
+    plan_level(apart, 3, &plan);
+    assert_int_equal(plan.slabs, 2);
+    assert_int_equal(plan.slab[0].centre, 0);
+    assert_in_range(plan.slab[1].centre, 8 * 256 - 80, 8 * 256 + 80);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_slabs),
-                                       cmocka_unit_test(crowded_tiles), cmocka_unit_test(few_slabs),
-                                       cmocka_unit_test(noise_is_merged)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(same_slabs), cmocka_unit_test(crowded_tiles), cmocka_unit_test(few_slabs),
+        cmocka_unit_test(noise_is_merged), cmocka_unit_test(level_surfaces)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 /* twin_slabs.c: which blurs reach a tile, and slabs over them, in double precision. See
  * src/tiles/tiles.h. */
-#include "twin_slabs.h"
+#include "twin_surfaces.h"
 
 enum { BINS = TWIN_BINS, FOCUS_BIN = 127 };
 static const double overlap = 0.125;
@@ -12,6 +12,8 @@ struct bins {
     bool has[BINS], sure[BINS];
     double least, most, noise;
     int noisy;
+    bool level; /* a tile is, with this mean: */
+    double middle;
 };
 
 /* Returns the width of a bin, by the largest blur and what rounding may add to it; 0: they are a
@@ -41,7 +43,7 @@ static int pixels_of(int place)
     return (place - 16 * octave) << octave;
 }
 
-static int bin_of(double width, double s)
+int twin_bin_of(double width, double s)
 {
     const int p = (int)floor(s + 0.5);
 
@@ -61,7 +63,7 @@ static double edge_of(double width, int bin)
 
 static void note(struct bins *bins, double width, double s)
 {
-    bins->has[bin_of(width, s)] = true;
+    bins->has[twin_bin_of(width, s)] = true;
     bins->least = fmin(bins->least, s);
     bins->most = fmax(bins->most, s);
 }
@@ -86,8 +88,8 @@ static double overlap_of_cells(const struct twin *t, const struct bins *bins, do
         low = fmax(low, least);
         high = fmin(high, most);
     }
-    first = bin_of(width, low);
-    last = bin_of(width, high);
+    first = twin_bin_of(width, low);
+    last = twin_bin_of(width, high);
     low = floor(256 * low + 0.5) / 256;
     high = floor(256 * high + 0.5) / 256;
     for (int bin = first; bin <= last; bin++)
@@ -127,6 +129,7 @@ static struct bins bins_of_tile(const struct twin *t, double width, int tx, int 
     note_tile(t, &bins, width, t->map_blur, tx, ty); /* silhouettes as they were, too */
     bins.noise = noise_of_tile(t, &bins, width, tx, ty);
     bins.noisy = bins.noise > 0;
+    bins.level = twin_is_level(t, tx, ty, bins.noise, bins.most - bins.least, &bins.middle);
     note_tile(t, &bins, width, t->blur, tx, ty);
     return bins;
 }
@@ -134,7 +137,7 @@ static struct bins bins_of_tile(const struct twin *t, double width, int tx, int 
 /* Leave out the bins that lie below a blur of s pixels as a whole. */
 static void drop_short(struct bins *bins, double width, double s)
 {
-    const int first = bin_of(width, -s) + 1, end = bin_of(width, s);
+    const int first = twin_bin_of(width, -s) + 1, end = twin_bin_of(width, s);
     const double low = edge_of(width, first), high = edge_of(width, end);
 
     for (int i = first > 0 ? first : 0; i < end && i < BINS; i++)
@@ -256,7 +259,7 @@ static struct twin_slab slab_over(const struct bins *bins, double width, int bin
 static int end_of_units(int bin)
 {
     const double low = edge_of(0, bin), until = low + fabs(low) / 8 - 1;
-    int end = bin_of(0, until);
+    int end = twin_bin_of(0, until);
 
     if (2 * until > edge_of(0, end) + edge_of(0, end + 1))
         end++;
@@ -284,6 +287,7 @@ static int end_of(int bin, double width)
 /* How slabs are merged; see src/tiles/slabs.c. */
 struct merging {
     double noise, ratio;
+    struct twin_surfaces surfaces;
 };
 
 /* Where a slab ends that begins with that bin and would end with `end`, if what follows is noise:
@@ -294,7 +298,7 @@ static int end_of_noise(const struct bins *bins, double width, const struct merg
 {
     const double low = edge_of(width, bin), ratio = merging->ratio;
     const double farthest = low < 0 ? -low / (1 + ratio) * ratio : low * ratio;
-    int until = bin_of(width, low + fmin(merging->noise, farthest)), gap = 0;
+    int until = twin_bin_of(width, low + fmin(merging->noise, farthest)), gap = 0;
 
     if (bin < FOCUS_BIN && until > FOCUS_BIN)
         until = FOCUS_BIN;
@@ -306,14 +310,27 @@ static int end_of_noise(const struct bins *bins, double width, const struct merg
     return until > end ? until : end;
 }
 
+/* The slab of a surface, seen in its middle; ends are whole 1/256 of a unit. */
+static struct twin_slab slab_of_surface(const struct twin_surface *surface, double width,
+                                        double unit)
+{
+    const double low = edge_of(width, surface->first);
+    const double high = edge_of(width, surface->end) - unit / 256;
+    const double wide = fmax(overlap, (high - low) / 8);
+    const double centre = fabs(surface->middle) < 0.5 ? 0 : surface->middle;
+
+    return (struct twin_slab){low - wide, high + wide, centre, centre, centre};
+}
+
 /* Slabs a pixel wide from the near side on, half as wide below 3 pixels of blur, an eighth of the
  * blur less a pixel from 16 on, where they end as those do that cover all bins; one for all that is
  * in focus. */
-static struct twin_plan cover(const struct bins *bins, double width, const struct merging *merging,
-                              int *noisy)
+static struct twin_plan cover(const struct bins *bins, double width, double unit,
+                              const struct merging *merging, int *noisy)
 {
     const int pixel = width > 0 ? (int)(1 / width) : 1;
     struct twin_plan plan = {.sharp = true};
+    int next = 0;
 
     *noisy = 0;
     for (int bin = 0; bin < BINS;) {
@@ -324,6 +341,16 @@ static struct twin_plan cover(const struct bins *bins, double width, const struc
 
         if (!bins->has[bin]) {
             bin++;
+            continue;
+        }
+        while (next < merging->surfaces.count && bin >= merging->surfaces.at[next].end)
+            next++;
+        if (next < merging->surfaces.count && bin >= merging->surfaces.at[next].first) {
+            slab = slab_of_surface(&merging->surfaces.at[next], width, unit);
+            plan.sharp = plan.sharp && fabs(slab.centre) < 0.5;
+            plan.reach = fmax(plan.reach, fabs(slab.centre));
+            plan.slab[plan.slabs++] = slab;
+            bin = merging->surfaces.at[next].end;
             continue;
         }
         if (bin >= FOCUS_BIN && bin < FOCUS_BIN + pixel) {
@@ -338,6 +365,8 @@ static struct twin_plan cover(const struct bins *bins, double width, const struc
             end = end_of(bin, width);
         if (merging->noise > 0)
             end = end_of_noise(bins, width, merging, bin, end);
+        if (next < merging->surfaces.count && end > merging->surfaces.at[next].first)
+            end = merging->surfaces.at[next].first;
         for (int i = bin; i < end && i < BINS; i++) {
             last = bins->has[i] ? i : last;
             sure = sure || bins->sure[i];
@@ -383,21 +412,47 @@ static struct twin_plan with_closed_cracks(const struct twin_plan *open, double 
 }
 
 /* Slabs of noise get wider until there are at most 8 of them. */
-static struct twin_plan bounded_plan(const struct bins *bins, double width, double unit)
+static struct twin_plan bounded_plan(const struct bins *bins, const struct twin_surfaces *surfaces,
+                                     double width, double unit)
 {
     /* in whole 1/256 pixels, as the end of a slab may lie on an edge of a bin */
     const double noise = bins->noisy ? floor(256 * bins->noise / bins->noisy) / 256 : 0;
-    struct merging merging = {3 * noise, 1};
+    struct merging merging = {3 * noise, 1, *surfaces};
     int noisy;
-    struct twin_plan plan = cover(bins, width, &merging, &noisy);
+    struct twin_plan plan;
+
+    twin_settle_surfaces(
+        &merging.surfaces,
+        &(struct twin_reach){bins->has, bins->sure, width,
+                             (256 * unit - (bins->most - bins->least)) * 4 / 5 - unit / 4});
+    plan = cover(bins, width, unit, &merging, &noisy);
 
     while (noisy > 8 && merging.ratio < 8) {
         merging.ratio *= 2;
-        plan = cover(bins, width, &merging, &noisy);
+        plan = cover(bins, width, unit, &merging, &noisy);
     }
     return noise > 0 && bins->most - bins->least < 236 * unit
                ? with_closed_cracks(&plan, noise, unit)
                : plan;
+}
+
+/* The surfaces of a tile and of those around it. */
+static struct twin_surfaces surfaces_at(const struct bins *tiles, int across, int down, int tx,
+                                        int ty)
+{
+    struct twin_surfaces surfaces = {.count = 0};
+
+    for (int y = ty - 1; y <= ty + 1; y++)
+        for (int x = tx - 1; x <= tx + 1; x++) {
+            const bool inside = x >= 0 && x < across && y >= 0 && y < down;
+            const struct bins *const tile = &tiles[inside ? y * across + x : 0];
+
+            if (inside && tile->level)
+                twin_insert_surface(&surfaces, &(struct twin_surface){.middle = tile->middle,
+                                                                      .noise = tile->noise,
+                                                                      .own = x == tx && y == ty});
+        }
+    return surfaces;
 }
 
 struct twin_plan *twin_plans(const struct twin *t, int across, int down)
@@ -413,8 +468,10 @@ struct twin_plan *twin_plans(const struct twin *t, int across, int down)
         const struct bins reach =
             t->unit > 1 ? reach_from_blocks(tiles, across, down, i % across, i / across)
                         : reach_of_tile(t, tiles, across, down, width, i % across, i / across);
+        const struct twin_surfaces surfaces =
+            surfaces_at(tiles, across, down, i % across, i / across);
 
-        plans[i] = bounded_plan(&reach, width, t->unit);
+        plans[i] = bounded_plan(&reach, &surfaces, width, t->unit);
     }
     free(tiles);
     return plans;

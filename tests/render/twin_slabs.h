@@ -18,6 +18,9 @@ struct twin_plan {
     bool sharp;
 };
 
+/* The bin of a blur, of bins of a width; 0: as of large units. */
+int twin_bin_of(double width, double s);
+
 /* The plans of all tiles, row by row; to be freed. */
 struct twin_plan *twin_plans(const struct twin *t, int across, int down);
 
