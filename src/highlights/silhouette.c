@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "kernels/kernels.h"
+#include "support/compare.h"
 #include "support/places.h"
 
 enum {
@@ -205,26 +206,6 @@ static bool has_other(const struct rf_silhouette_window *w, int x, int y, ptrdif
     return false;
 }
 
-/* Whether what is much farther beside a pixel of the run is noise of the map, which is all around:
- * that is off the lines through its neighbours by 1.3 standard deviations in the mean, and the
- * least of nine pixels is hardly ever four times as far below one of them. */
-static bool is_noise(const struct run *run, int at)
-{
-    enum { INNER = SIDE - 2 };
-    const int16_t own = run->disparity[AROUND][at + AROUND];
-    int16_t least = own;
-    int noisy = 0, off = 0;
-
-    for (int i = 1; i <= INNER; i++) {
-        noisy += run->noisy[at + i];
-        off += run->off[at + i];
-    }
-    for (int j = AROUND - 1; j <= AROUND + 1; j++)
-        for (int i = AROUND - 1; i <= AROUND + 1; i++)
-            least = min16(least, run->disparity[j][at + i]);
-    return noisy >= NOISY && own - least <= 4 * 4 * off / (INNER * INNER);
-}
-
 /* Adds the silhouette around a bright pixel beside something much farther: the pixels of which no
  * other bright pixel comes first. */
 static void find_around(const struct rf_silhouette_window *w, const struct run *run, int x, int y,
@@ -234,8 +215,6 @@ static void find_around(const struct rf_silhouette_window *w, const struct run *
     const struct rf_rect in = rf_around(w->view, x, y, 1);
     uint16_t background;
 
-    if (is_noise(run, x - run->x0))
-        return;
     if (belongs_to_background(w, run, x, y, &background)) {
         if (!has_other(w, x, y, n)) /* else it is a silhouette itself */
             add(w, list, x, y, background);
@@ -331,30 +310,86 @@ static void count_noise(struct run *run)
         add_noise(run, quarter[j - 1], quarter[j], quarter[j + 1]);
 }
 
-/* Copies a run and what is around it. */
-static void copy_run(const struct rf_silhouette_window *w, int x0, int y, struct run *run)
+/* Pixels of the run beside which what is much farther is noise of the map, a bit each. Noise is all
+ * around them: it is off the lines through its neighbours by 1.3 standard deviations in the mean,
+ * and the least of nine pixels is hardly ever four times as far below one of them. Where it is
+ * a quarter of all disparities or more, nothing stands out of it. */
+static uint32_t noise_of(const struct run *run)
 {
-    const int from = x0 < AROUND ? 0 : x0 - AROUND;
-    const int end = x0 + RUN + AROUND < w->view->width ? x0 + RUN + AROUND : w->view->width;
-    const int first = from - (x0 - AROUND);
+    enum { INNER = SIDE - 2, PIXELS = INNER * INNER };
+    int32_t noisy[RUN] = {0}, off[RUN] = {0};
+    int16_t least[RUN];
+    uint32_t bits = 0;
+
+    for (int j = 1; j <= INNER; j++)
+        for (int i = 0; i < RUN; i++) {
+            noisy[i] += run->noisy[i + j];
+            off[i] += run->off[i + j];
+        }
+    for (int i = 0; i < RUN; i++)
+        least[i] = INT16_MAX;
+    for (int j = AROUND - 1; j <= AROUND + 1; j++) {
+        const int16_t *const d = run->disparity[j] + AROUND;
+
+        for (int i = 0; i < RUN; i++)
+            least[i] = min16(least[i], min16(d[i], min16(d[i - 1], d[i + 1])));
+    }
+    for (int i = 0; i < RUN; i++) {
+        const int below = run->disparity[AROUND][AROUND + i] - least[i];
+        const int is_noise = (noisy[i] >= NOISY) & ((PIXELS * below <= 4 * 4 * off[i]) |
+                                                    (2 * off[i] > PIXELS * MOST_OFF));
+
+        bits |= (uint32_t)is_noise << i;
+    }
+    return bits;
+}
+
+/* The part of a run that lies in the window is its rows y0 to y1 - 1 and, from its column `first`
+ * on, columns `from` to `end` - 1 of the window. */
+struct part {
+    int y0, y1, from, end, first;
+};
+
+static struct part part_of(const struct rf_silhouette_window *w, int x0, int y)
+{
+    const int from = rf_larger(x0 - AROUND, 0);
+
+    return (struct part){rf_larger(AROUND - y, 0), rf_smaller(w->view->height - y + AROUND, SIDE),
+                         from, rf_smaller(x0 + RUN + AROUND, w->view->width), from - (x0 - AROUND)};
+}
+
+/* Copies disparities of a run and around it. */
+static void copy_disparity(const struct rf_silhouette_window *w, int x0, int y, struct run *run)
+{
+    const struct part part = part_of(w, x0, y);
 
     run->x0 = x0;
-    for (int j = 0; j < SIDE; j++) {
-        const int row = y + j - AROUND;
-        const ptrdiff_t at = row * w->light.stride + from;
-        const uint16_t *const r = w->light.channel[0] + at, *const g = w->light.channel[1] + at;
-        const uint16_t *const b = w->light.channel[2] + at, *const d = w->disparity.at + at;
+    if (part.y1 - part.y0 < SIDE || part.end - part.from < RUN + 2 * AROUND)
+        memset(run->disparity, 0, sizeof run->disparity);
+    for (int j = part.y0; j < part.y1; j++) {
+        const uint16_t *const d = w->disparity.at + (y + j - AROUND) * w->light.stride + part.from;
 
-        for (int i = 0; i < COLUMNS; i++) {
+        for (int i = 0; i < part.end - part.from; i++)
+            run->disparity[j][part.first + i] = signed16(d[i]);
+    }
+}
+
+/* Copies the light of a run and around it, which is DARK outside of the window. */
+static void copy_light(const struct rf_silhouette_window *w, int y, struct run *run)
+{
+    const struct part part = part_of(w, run->x0, y);
+
+    for (int j = 0; j < SIDE; j++)
+        for (int i = 0; i < COLUMNS; i++)
             run->light[j][i] = DARK;
-            run->disparity[j][i] = 0;
-        }
-        if (row < 0 || row >= w->view->height)
-            continue;
-        for (int i = 0; i < end - from; i++) {
-            run->light[j][first + i] = max16(max16((int16_t)r[i], (int16_t)g[i]), (int16_t)b[i]);
-            run->disparity[j][first + i] = signed16(d[i]);
-        }
+    for (int j = part.y0; j < part.y1; j++) {
+        const ptrdiff_t at = (y + j - AROUND) * w->light.stride + part.from;
+        const uint16_t *const r = w->light.channel[0] + at, *const g = w->light.channel[1] + at;
+        const uint16_t *const b = w->light.channel[2] + at;
+
+        for (int i = 0; i < part.end - part.from; i++)
+            run->light[j][part.first + i] =
+                max16(max16((int16_t)r[i], (int16_t)g[i]), (int16_t)b[i]);
     }
 }
 
@@ -381,8 +416,11 @@ void rf_find_silhouettes(const struct rf_executor *exec, const struct rf_silhoue
                 continue;
             if (rf_cancelled(exec))
                 return;
-            copy_run(w, x0, y, &run);
+            copy_disparity(w, x0, y, &run);
             count_noise(&run);
+            bits &= ~noise_of(&run);
+            if (bits)
+                copy_light(w, y, &run);
             for (; bits; bits &= bits - 1)
                 find_around(w, &run, x0 + __builtin_ctz(bits), y, silhouettes);
         }
