@@ -24,7 +24,9 @@
  * Pixels beside thick things that the map gives to the background are mixtures, too: the light of a
  * bright subject would be a halo on a dark wall. They are matted in focus. Out of focus, but not as
  * far as F, they are drawn as pixels of N: the planes get C at the depth of N, where alpha is 1/8
- * or more; but not where the caller knows what is hidden.
+ * or more, and so are those of thin structures that are not splatted, where it is a half or more;
+ * but not where the caller knows what is hidden. What the map has on a third surface, between F and
+ * N, is left as it is.
  *
  * Of photos of Y, U and V, which may be frames of a video, the latter alone are matted, and nothing
  * is splatted (chroma.c).
