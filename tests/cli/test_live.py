@@ -269,6 +269,22 @@ class Pictures(Live):
                 self.assertEqual(content('live-0.ppm'), content(quality + '.ppm'), given)
         self.assertNotEqual(content('auto.ppm'), content('standard.ppm'))
 
+    def test_best_frames_of_yuv_have_no_halo(self):
+        """A bright figure in focus, half of whose last column is the dark wall's."""
+        row, near = b'\x28' * 23 + b'\x80' + b'\xdc' * 16 + b'\x80' + b'\x28' * 23, 24
+        with open('frame.nv12', 'wb') as frame:
+            frame.write(row * 48 + b'\x80' * (64 * 24))
+        with open('figure.pgm', 'wb') as depth:
+            depth.write(b'P5\n64 48\n255\n' + (b'\x20' * near + b'\xe0' * 16 + b'\x20' * 24) * 48)
+        for quality in ('standard', '--rays', '128'), ('best',):
+            self.report('--camera', 'raw:frame.nv12,NV12,64x48,30', '--depth', 'figure.pgm',
+                        '--focus', '0.878', '--blur', '12', '--quality', *quality, '--frames', '1',
+                        '--out', f'raw:{quality[0]}.nv12,own', common=[])
+        rays, best = content('standard.nv12'), content('best.nv12')
+        for x in range(16, 22):  # beside the figure
+            self.assertGreater(rays[24 * 64 + x], 0x2a)
+            self.assertLess(best[24 * 64 + x], 0x2a)
+
     def test_the_report_is_described(self):
         with open(os.path.join(ROOT, 'platform/README.md'), encoding='utf-8') as file:
             described = file.read().split('### The report\n')[1].split('###')[0]
