@@ -27,12 +27,20 @@ struct work {
     float of_code[256];
 };
 
+/* Bytes of a pixel of light; 0: it is of another format. */
+static int bytes_of(const struct refocus_image *light)
+{
+    return light->format == REFOCUS_FORMAT_RGB_HALF    ? 6
+           : light->format == REFOCUS_FORMAT_RGB_FLOAT ? 12
+                                                       : 0;
+}
+
 bool rf_gain_can_make(const struct rf_rows *base, const struct refocus_image *light)
 {
-    return base->format == REFOCUS_FORMAT_RGB8 && light->format == REFOCUS_FORMAT_RGB_HALF &&
-           light->plane[0] && light->width >= 1 && light->width <= REFOCUS_MAX_SIDE &&
-           light->height >= 1 && light->height <= REFOCUS_MAX_SIDE &&
-           rf_good_rows(light->stride[0], 6 * (int64_t)light->width, light->height);
+    return base->format == REFOCUS_FORMAT_RGB8 && bytes_of(light) > 0 && light->plane[0] &&
+           light->width >= 1 && light->width <= REFOCUS_MAX_SIDE && light->height >= 1 &&
+           light->height <= REFOCUS_MAX_SIDE &&
+           rf_good_rows(light->stride[0], bytes_of(light) * (int64_t)light->width, light->height);
 }
 
 /* The block of a pixel, as gain_apply.c counts them. */
@@ -56,17 +64,21 @@ static void add_base(struct work *work, int y)
 
 static void add_light(struct work *work, int y)
 {
-    const uint8_t *const halves = work->light->plane[0] + y * work->light->stride[0];
+    const uint8_t *const row = work->light->plane[0] + y * work->light->stride[0];
+    const bool halves = work->light->format == REFOCUS_FORMAT_RGB_HALF;
 
     for (int x = 0; x < work->light->width; x++) {
         const int block = block_at(x, work->light->width, work->width);
         uint16_t half[3];
+        float light[3];
 
-        memcpy(half, halves + 6 * (ptrdiff_t)x, sizeof half);
-        for (int c = 0; c < 3; c++) {
-            /* negative light, and no number at all, are none */
-            work->sums[block][1][c] += half[c] <= RF_HALF_MOST ? (double)rf_half_value(half[c]) : 0;
-        }
+        memcpy(light, row + (ptrdiff_t)x * (int)sizeof light, halves ? 0 : sizeof light);
+        memcpy(half, row + (ptrdiff_t)x * (int)sizeof half, sizeof half);
+        for (int c = 0; c < 3 && halves; c++)
+            light[c] = half[c] <= RF_HALF_MOST ? rf_half_value(half[c]) : 0;
+        /* negative light, and no number at all, are none */
+        for (int c = 0; c < 3; c++)
+            work->sums[block][1][c] += light[c] > 0 ? fmin((double)light[c], 65504) : 0;
         work->counts[block][1]++;
     }
 }

@@ -365,6 +365,27 @@ static void original_of_heic(void **state)
 }
 #endif
 
+/* Floats become the gain map that halves of the same light become. */
+static void floats(void **state)
+{
+    struct scene *const scene = make_scene();
+    const struct bytes halves = write_scene(scene, NULL);
+    float *const light = malloc(3 * W * H * sizeof *light);
+    struct bytes own;
+
+    (void)state;
+    for (int i = 0; i < 3 * W * H; i++)
+        light[i] = rf_half_value(scene->halves[i]);
+    scene->light = refocus_image_packed(REFOCUS_FORMAT_RGB_FLOAT, light, W, H, 12 * W);
+    own = write_scene(scene, NULL);
+    assert_int_equal(own.size, halves.size);
+    assert_memory_equal(own.data, halves.data, halves.size);
+    free(own.data);
+    free(halves.data);
+    free(light);
+    free(scene);
+}
+
 static void refused(void **state)
 {
     struct scene *const scene = make_scene();
@@ -392,7 +413,7 @@ static void refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(refused),
+        cmocka_unit_test(refused),          cmocka_unit_test(floats),
 #ifdef RF_HAVE_PNG
         cmocka_unit_test(original_of_heic), cmocka_unit_test(channels_that_differ),
 #endif
