@@ -75,13 +75,15 @@ def aperture_rows(refocus, folder, work):
 
 def row(refocus, folder, what, frames, work, *options):
     """Scores of exact depth with the pinhole's photo, and of what the stack gives."""
-    depth, photo = work / 'depth.png', work / 'photo.png'
-    run(refocus, 'depth', '--focal-stack', *frames, '-o', depth, '--photo', photo, *options)
+    depth, photo, light = work / 'depth.png', work / 'photo.png', work / 'light.pfm'
+    for made in photo, light:
+        run(refocus, 'depth', '--focal-stack', *frames, '-o', depth, '--photo', made, *options)
     pinhole, exact = folder / 'allfocus.png', folder / 'disparity.png'
     jpeg = work / 'pinhole.jpg'
     run(refocus, 'render', pinhole, '--depth', exact, '--blur', 0, '--jpeg-quality', 89, '-o', jpeg)
     scores = [score(refocus, folder, p, d) for p, d in
-              ((pinhole, exact), (jpeg, exact), (pinhole, depth), (photo, exact), (photo, depth))]
+              ((pinhole, exact), (jpeg, exact), (pinhole, depth), (photo, exact), (photo, depth),
+               (light, depth))]
     line = [folder.name, what, *('%.2f' % s for s in scores)]
     print(*line, file=sys.stderr, flush=True)
     return line
@@ -149,7 +151,7 @@ def main():
 
 
 HEAD = ('scene', 'stack', 'PSNR, both exact', 'PSNR, pinhole as JPEG', 'PSNR, depth of the stack',
-        'PSNR, photo of the stack', 'PSNR, both of the stack')
+        'PSNR, photo of the stack', 'PSNR, both of the stack', 'PSNR, both, with light')
 APERTURES_HEAD = ('scene', 'in focus', 'PSNR, exact depth', 'PSNR, depth of the pair', 'blur found',
                   'blur of the whole range')
 PHOTO_HEAD = ('scene', 'stack', 'photo', 'PSNR', 'PSNR, luminance', 'PSNR, everywhere')
@@ -158,7 +160,8 @@ TEXT = '''# Depth and photo of a focus stack
 Written by `tests/stack_scores.py BUILD`. Nine frames, their focus even in disparity from 0 to 1, K = 8,
 720x540, go through `refocus depth --focal-stack`; its depth (`--depth-edges as-given`) and its photo, or
 exact depth and the pinhole's photo in place of either, are refocused at K = 20 and scored against
-path-traced references: PSNR in dB, the mean over the focus distances. *Pinhole as JPEG* has exact
+path-traced references: PSNR in dB, the mean over the focus distances. *With light* the photo is a PFM, which
+has what is above white, as the gain map of a JPEG has; all others have 8 bits. *Pinhole as JPEG* has exact
 depth, and a photo that lost as much as a frame of the path-traced stacks: a JPEG with colour of half
 the size (quality 89; 90 and up keep all colour). Scenes: %s.
 

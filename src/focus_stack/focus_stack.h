@@ -32,6 +32,7 @@ enum {
     RF_STACK_CLIPPED = 1 << 15, /* all of the pixels that a tap stands for */
 };
 
+struct rf_deep;
 struct rf_transfer;
 
 /* The photo in focus everywhere, R, G and B, 8 bits. */
@@ -102,6 +103,7 @@ struct refocus_stack {
     uint16_t *depth_row; /* one row of the photo for each worker */
     uint8_t *sure_row;
     struct rf_transfer *transfer;
+    double radius;  /* K of the whole range in pixels; 0: no blur explains the frames */
     uint32_t noise; /* squared sharpness of noise, in quarters of a squared code */
     int models;
     int16_t share[RF_STACK_MODELS][RF_STACK_FEW]
@@ -223,6 +225,11 @@ uint16_t rf_stack_disparity(const struct refocus_stack *stack, int depth);
 void rf_stack_decontaminate(struct refocus_stack *stack, const struct rf_stack_photo *photo);
 /* Makes what is clipped white again. */
 void rf_stack_whiten(struct refocus_stack *stack, const struct rf_stack_photo *photo);
+/* Memory for what follows, beside the stack's own. */
+uint64_t rf_stack_light_bytes(struct refocus_stack *stack);
+/* Writes the light of the photo, with what it lacks where it is clipped. */
+void rf_stack_find_light(struct refocus_stack *stack, const struct rf_stack_photo *photo,
+                         struct rf_deep *out, void *work);
 /* How much is clipped, of RF_STACK_CLIPPED, of the pixels that a tap stands for at each sample, and
  * the largest disparity of these (0: none is). */
 struct rf_stack_clipped {

@@ -8,6 +8,7 @@
 
 #include "colour/transfer.h"
 #include "focus_stack/focus_stack.h"
+#include "image/deep.h"
 #include "image/format.h"
 #include "image/read.h"
 #include "support/arena.h"
@@ -196,7 +197,8 @@ int refocus_stack_add(struct refocus_stack *s, const struct refocus_image *given
     status = rf_read_image(NULL, "frame", &image, given);
     if (status)
         return status;
-    if (image.width != s->width || image.height != s->height ||
+    if (image.width != s->width || image.height != s->height || image.white > 0 ||
+        (image.transfer != REFOCUS_TRANSFER_DEFAULT && image.transfer != REFOCUS_TRANSFER_LINEAR) ||
         refocus_format_is_yuv(image.format) || !position_fits(s, position))
         return REFOCUS_ERR_ARGUMENT;
     if (s->count == s->most || s->finished)
@@ -283,7 +285,8 @@ static void write_row(void *context, int y, int worker)
     }
 }
 
-static void write_rows(struct refocus_stack *s, struct refocus_stack_result *r)
+static void write_rows(struct refocus_stack *s, struct refocus_stack_result *r,
+                       struct rf_deep *light, void *work)
 {
     const struct rf_stack_photo photo = {r->photo, r->photo_stride};
     struct rows rows = {.stack = s, .result = r};
@@ -293,6 +296,8 @@ static void write_rows(struct refocus_stack *s, struct refocus_stack_result *r)
         rf_stack_decontaminate(s, &photo);
         rf_stack_whiten(s, &photo);
     }
+    if (work)
+        rf_stack_find_light(s, &photo, light, work);
     r->measured = (float)((double)rows.measured / ((double)s->width * s->height));
 }
 
@@ -350,7 +355,8 @@ static void find_depth(struct refocus_stack *s, struct refocus_stack_result *own
     own->blur = 0;
 }
 
-static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
+static void finish(struct refocus_stack *s, struct refocus_stack_result *own, struct rf_deep *light,
+                   void *work)
 {
     s->finished = true;
     if (s->kind == REFOCUS_STACK_FOCUS)
@@ -362,7 +368,7 @@ static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
     memset(own->order, 0, sizeof own->order);
     for (int k = 0; k < s->count; k++)
         own->order[k] = (uint8_t)s->frame[k].added;
-    write_rows(s, own);
+    write_rows(s, own, light, work);
     own->moving = (float)((double)s->moving / ((double)s->columns * s->rows));
     own->matched = (uint32_t)s->matched;
     own->exposure = (float)s->exposure;
@@ -372,10 +378,36 @@ static void finish(struct refocus_stack *s, struct refocus_stack_result *own)
                                                                   s->width, s->height));
 }
 
+/* Light is of its own memory: floats of R, G and B, or halves, linear. */
+static int begin_light(struct refocus_stack *s, const struct refocus_stack_result *r,
+                       struct rf_deep *light, void **work)
+{
+    struct refocus_image image;
+    uint64_t bytes;
+    int status;
+
+    if (!r->light)
+        return REFOCUS_OK;
+    status = rf_read_any_image(NULL, "light", &image, r->light);
+    if (status)
+        return status;
+    if (!r->photo || s->kind != REFOCUS_STACK_FOCUS || image.width != s->width ||
+        image.height != s->height || image.white > 0 ||
+        (image.transfer != REFOCUS_TRANSFER_DEFAULT && image.transfer != REFOCUS_TRANSFER_LINEAR) ||
+        (image.format != REFOCUS_FORMAT_RGB_HALF && image.format != REFOCUS_FORMAT_RGB_FLOAT))
+        return REFOCUS_ERR_ARGUMENT;
+    rf_deep_begin(light, &image, false);
+    bytes = rf_stack_light_bytes(s);
+    *work = bytes <= PTRDIFF_MAX ? malloc((size_t)bytes) : NULL;
+    return *work ? REFOCUS_OK : REFOCUS_ERR_MEMORY;
+}
+
 int refocus_stack_finish(struct refocus_stack *s, struct refocus_stack_result *result)
 {
     const size_t first = REFOCUS_SIZE_TO(struct refocus_stack_result, moved);
     struct refocus_stack_result own;
+    struct rf_deep light = {.on = false};
+    void *work = NULL;
     struct rf_pool pool;
     int status;
 
@@ -388,11 +420,17 @@ int refocus_stack_finish(struct refocus_stack *s, struct refocus_stack_result *r
         return REFOCUS_ERR_ARGUMENT;
     if (s->count < REFOCUS_STACK_LEAST_FRAMES || s->finished || reference_of(s) < 0)
         return REFOCUS_ERR_STATE;
-    status = rf_pool_start(&pool, s->threads, NULL, NULL);
+    status = begin_light(s, &own, &light, &work);
     if (status)
         return status;
+    status = rf_pool_start(&pool, s->threads, NULL, NULL);
+    if (status) {
+        free(work);
+        return status;
+    }
     s->pool = &pool;
-    finish(s, &own);
+    finish(s, &own, &light, work);
     rf_pool_end(&pool);
+    free(work);
     return refocus_struct_write(result, first, &own, sizeof own);
 }

@@ -34,6 +34,42 @@ class DepthOfAStack(FocusStack):
         self.succeeds(*self.command, '-o', 'c.ppm', '--view', 'confidence')
         os.remove('c.ppm')
 
+    def test_light_above_white(self):
+        """A lamp of 6 times white: blurred frames tell of it; without it no gain map is written."""
+        width, height, middle = 192, 96, 48
+
+        def frame(name, radius, lamp):
+            disc = [(u, v) for u in range(-4, 5) for v in range(-4, 5)
+                    if u * u + v * v <= radius * radius]
+
+            def light(x, y):
+                inside = abs(x - 2 * middle) < 4 and abs(y - middle) < 4
+                return lamp if inside else (noise(x, y) / 255 * 0.6 + 0.1) ** 2.2
+            lights = [[light(x, y) for x in range(-4, width + 4)] for y in range(-4, height + 4)]
+
+            def code(x, y):
+                mean = sum(lights[y + v + 4][x + u + 4] for u, v in disc) / len(disc)
+                coded = 12.92 * mean if mean < 0.0031308 else 1.055 * mean ** (1 / 2.4) - 0.055
+                return (min(255, int(255 * coded + 0.5)),) * 3
+            pictures.ppm(name, width, height, code)
+
+        names = [f'lamp-{k}.ppm' for k in range(FRAMES)]
+        for lamp in 6, 0.5:
+            for k, name in enumerate(names):
+                frame(name, 2 * k, lamp)
+            self.succeeds('depth', '--focal-stack', *names, '--align', 'none', '--reference', '1',
+                          '--order', 'given', '-o', 'd.pgm', '--photo', 'light.pfm')
+            _, _, light = pictures.read_pfm('light.pfm')
+            self.assertLess(abs(light[3 * (middle * width + 2 * middle)] / lamp - 1), 0.2)
+            if HAS_JPEG and HAS_PNG and HAS_XMP:
+                self.succeeds('depth', '--focal-stack', *names, '--align', 'none', '--reference',
+                              '1', '--order', 'given', '-o', 'lamp.jpg')
+                said = ' '.join(self.reports('info', 'lamp.jpg')['evidence'])
+                self.assertEqual('gain map' in said, lamp > 1)
+                os.remove('lamp.jpg')
+        for name in names + ['light.pfm', 'd.pgm']:
+            os.remove(name)
+
     def test_edges_show_which_end_is_far(self):
         width, height = 96, 40
         left, right = 36, 60  # of a bright bar

@@ -4,6 +4,7 @@
  * This program is linked with --wrap=malloc and so on. */
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -238,8 +239,12 @@ static int filter(void)
     return status;
 }
 
-static int make_of_kind(uint32_t kind)
+static int make_of_kind(uint32_t kind, bool with_light)
 {
+    static float light[3 * W * H];
+    static uint8_t made_photo[3 * W * H];
+    const struct refocus_image into =
+        refocus_image_packed(REFOCUS_FORMAT_RGB_FLOAT, light, W, H, 12 * W);
     struct refocus_stack_params params = refocus_stack_params_default(W, H, 3);
     struct refocus_stack_result result = refocus_stack_result_default();
     struct refocus_stack *made = (struct refocus_stack *)out;
@@ -251,13 +256,17 @@ static int make_of_kind(uint32_t kind)
     assert_int_equal(made == NULL, status != REFOCUS_OK);
     result.disparity = out;
     result.disparity_stride = 2 * W;
+    result.photo = with_light ? made_photo : NULL;
+    result.photo_stride = 3 * W;
+    result.light = with_light ? &into : NULL;
     for (int i = 0; i < 3 && status == REFOCUS_OK; i++) {
         const long before = failing.calls;
 
         status = refocus_stack_add(made, &image, i + 1);
         if (status == REFOCUS_OK && i == 2)
             status = refocus_stack_finish(made, &result);
-        assert_int_equal(failing.calls, before); /* all memory is taken at creation */
+        /* All memory is taken at creation, but for that of light. */
+        assert_int_equal(failing.calls, before + (with_light && i == 2));
     }
     refocus_stack_destroy(&made);
     assert_null(made);
@@ -266,12 +275,17 @@ static int make_of_kind(uint32_t kind)
 
 static int make_of_stack(void)
 {
-    return make_of_kind(REFOCUS_STACK_FOCUS);
+    return make_of_kind(REFOCUS_STACK_FOCUS, false);
+}
+
+static int make_of_light(void)
+{
+    return make_of_kind(REFOCUS_STACK_FOCUS, true);
 }
 
 static int make_of_apertures(void)
 {
-    return make_of_kind(REFOCUS_STACK_APERTURE_NEAREST);
+    return make_of_kind(REFOCUS_STACK_APERTURE_NEAREST, false);
 }
 
 static int is_untouched(void)
@@ -367,6 +381,7 @@ static void failing_stack(void **state)
 {
     (void)state;
     fail_each(make_of_stack, 2, 1);
+    fail_each(make_of_light, 3, 1);
     fail_each(make_of_apertures, 2, 1);
 }
 

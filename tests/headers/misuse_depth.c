@@ -392,6 +392,19 @@ static void stack_stride(ptrdiff_t stride)
     REFUSED(refocus_stack_finish, stack, &result);
 }
 
+/* The light of a result, which has a photo. */
+static void stack_light(const struct refocus_image *light)
+{
+    static uint8_t rgb[3 * W * 16];
+    struct refocus_stack_result result = refocus_stack_result_default();
+
+    result.photo = light ? rgb : NULL;
+    result.photo_stride = 3 * W;
+    result.light = light;
+    if (light)
+        REFUSED(refocus_stack_finish, stack, &result);
+}
+
 static void stacking(void)
 {
     const struct misuse bad[] = {BAD(refocus_stack_params, struct_size, 0),
@@ -437,6 +450,8 @@ static void stacking(void)
     ANSWERS(REFOCUS_OK, refocus_stack_add, stack, &photo, 2);
     REFUSED(refocus_stack_finish, stack, NULL);
     misuse_strides(stack_stride, 2 * W);
+    misuse_images(stack_light);
+    stack_light(&photo);
     stack_stride(2 * W + 1);
     result.reserved = 1;
     REFUSED(refocus_stack_finish, stack, &result);

@@ -206,6 +206,11 @@ int depth_run(int argc, char **argv, const char *called)
     if (status != OPTIONS_PARSED)
         return status;
     settings.stack.called = called;
+    if (settings.stack.photo &&
+        output_deep_format(settings.stack.photo) == REFOCUS_FORMAT_RGB_FLOAT)
+        settings.stack.light = REFOCUS_FORMAT_RGB_FLOAT;
+    else if (output_is_jpeg(settings.stack.photo) || output_is_jpeg(settings.output))
+        settings.stack.light = REFOCUS_FORMAT_RGB_HALF;
     status = check(&settings, files, argc, argv);
     if (status != EXIT_DONE)
         return status;

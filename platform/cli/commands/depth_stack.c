@@ -32,7 +32,8 @@ const struct option stack_options[] = {
      .needs = "--focal-stack"},
     {OPTION(OPTION_TEXT, "--photo", "FILE", struct stack_settings, photo),
      .help = "write the photo that is in focus everywhere as well: " OUTPUT_PICTURES
-             "; a .jpg as OUT is that photo with the depth inside",
+             "; a .jpg as OUT is that photo with the depth inside. Light above white that blurred "
+             "frames tell of is in a .exr and .pfm, and the gain map of a .jpg",
      .needs = "--focal-stack"},
     {.help = NULL},
 };
@@ -252,8 +253,34 @@ static void tell_apertures(struct refocus_photo_info *info, const struct stack_f
              (double)result->blur);
 }
 
+/* Makes room for the light of the photo, in the format of the file that gets it. */
+static bool begin_light(struct input *input, uint32_t format)
+{
+    const struct refocus_image *image = input->photo->image;
+    const ptrdiff_t line = (ptrdiff_t)image->width * refocus_format_bytes(format);
+    uint8_t *pixels = malloc((size_t)image->height * (size_t)line);
+
+    input->stacked = refocus_image_packed(format, pixels, image->width, image->height, line);
+    return pixels != NULL;
+}
+
+/* Whether there is light that 8 bits do not hold: a sixteenth above white in a pixel. */
+static bool exceeds(const struct refocus_image *light)
+{
+    enum { ONE_SIXTEENTH_MORE = 0x3c40 }; /* a half */
+    const size_t samples = 3 * (size_t)light->width * (size_t)light->height;
+    const uint16_t *halves = (const uint16_t *)(const void *)light->plane[0];
+
+    if (light->format != REFOCUS_FORMAT_RGB_HALF)
+        return true;
+    for (size_t i = 0; i < samples; i++)
+        if (halves[i] > ONE_SIXTEENTH_MORE)
+            return true;
+    return false;
+}
+
 static int finish(struct input *input, struct refocus_stack *stack,
-                  const struct stack_frames *frames, int order)
+                  const struct stack_frames *frames, const struct stack_settings *how)
 {
     struct refocus_stack_result result = refocus_stack_result_default();
     const struct refocus_image *image = input->photo->image;
@@ -262,7 +289,8 @@ static int finish(struct input *input, struct refocus_stack *stack,
 
     input->disparity = malloc(pixels * sizeof *input->disparity);
     input->confidence = malloc(pixels);
-    if (!input->disparity || !input->confidence)
+    if (!input->disparity || !input->confidence ||
+        (how->light && frames->kind == REFOCUS_STACK_FOCUS && !begin_light(input, how->light)))
         return report_failure(EXIT_FAILED, input->photo_name, "not enough memory");
     result.photo = image->plane[0];
     result.photo_stride = image->stride[0];
@@ -270,16 +298,20 @@ static int finish(struct input *input, struct refocus_stack *stack,
     result.disparity_stride = 2 * (ptrdiff_t)image->width;
     result.confidence = input->confidence;
     result.confidence_stride = image->width;
+    if (input->stacked.plane[0])
+        result.light = &input->stacked;
     report_progress("comparing", 0.6);
     if (refocus_stack_finish(stack, &result))
         return report_failure(EXIT_FAILED, input->photo_name, "the stack cannot be finished");
+    input->has_stacked = result.light && exceeds(result.light);
+    result.light = NULL;
     input->stack = result;
     input->photo_name = name_of(frames, result.reference - 1);
     status = frames->kind == REFOCUS_STACK_FOCUS ? stack_judge(&result, input->photo_name)
                                                  : judge_apertures(&result, input->photo_name);
     if (status != EXIT_DONE)
         return status;
-    if (isnan(frames->position[0]) && order == REFOCUS_STACK_ORDER_FOUND &&
+    if (isnan(frames->position[0]) && how->order == REFOCUS_STACK_ORDER_FOUND &&
         frames->kind == REFOCUS_STACK_FOCUS)
         tell_order(&result, input->photo_name, frames->count);
     for (size_t i = 0; i < pixels; i++)
@@ -304,7 +336,7 @@ static int finish(struct input *input, struct refocus_stack *stack,
     }
     if (frames->of_files)
         add_evidence(&input->made_info, "EXIF: the subject distances of the frames");
-    if (isnan(frames->position[0]) && order == REFOCUS_STACK_ORDER_EITHER)
+    if (isnan(frames->position[0]) && how->order == REFOCUS_STACK_ORDER_EITHER)
         tell_direction(&input->made_info, input->photo_name, &result);
     return EXIT_DONE;
 }
@@ -362,7 +394,7 @@ int input_read_stack(struct input *input, const char *const *files,
     set_range(input, &frames, settings);
     status = add_all(stack, &frames, input);
     if (status == EXIT_DONE)
-        status = finish(input, stack, &frames, how->order);
+        status = finish(input, stack, &frames, how);
     if (status == EXIT_DONE)
         status = stack_frames_settle(&frames, input);
     refocus_stack_destroy(&stack);
@@ -373,8 +405,13 @@ int input_read_stack(struct input *input, const char *const *files,
 
 int stacked_write_photo(const struct input *input, const char *path)
 {
-    const struct refocus_write_options keeps = output_keeps(input->photo);
+    const struct refocus_image *const light = input->has_stacked ? &input->stacked : NULL;
+    struct refocus_write_options keeps = output_keeps(input->photo);
 
+    if (light && output_deep_format(path) == REFOCUS_FORMAT_RGB_FLOAT)
+        return output_write_image(path, light, &keeps);
+    if (output_is_jpeg(path))
+        keeps.light = light;
     return output_write_image(path, input->photo->image, &keeps);
 }
 

@@ -16,11 +16,12 @@ struct stack_settings {
     int order;             /* enum refocus_stack_order */
     int in_focus;          /* enum in_focus */
     const char *photo;     /* receives the photo as well, or NULL */
+    uint32_t light;        /* format in which a file gets the light of the photo, or 0: none does */
     const char *called;    /* name of all frames in reports and errors; NULL: their files */
 };
 #define STACK_SETTINGS_NONE                                                                        \
     {                                                                                              \
-        false, NULL, NAN, 0, REFOCUS_STACK_ORDER_EITHER, IN_FOCUS_AUTO, NULL, NULL                 \
+        false, NULL, NAN, 0, REFOCUS_STACK_ORDER_EITHER, IN_FOCUS_AUTO, NULL, 0, NULL              \
     }
 
 /* The options of struct stack_settings. */

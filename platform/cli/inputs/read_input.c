@@ -336,6 +336,7 @@ void input_free(struct input *input)
     free(input->confidence);
     free(input->matte_samples);
     free(input->made_samples);
+    free(input->stacked.plane[0]);
     refocus_light_destroy(&input->light);
     refocus_photo_free(&input->side);
     refocus_photo_free(&input->photo);
