@@ -20,6 +20,9 @@
  * others. Sums are first smoothed along each clipped surface, the less the later the round is
  * (normalised convolution, as in smooth.c), as its middle reaches no cell that is not clipped.
  *
+ * Two frames leave x as 0: wherever depth is wrong, some light explains the one in which it is
+ * blurred.
+ *
  * A cell is a square of pixels, at most CELLS of them along the longer side. R, G, B and a fourth
  * value that fills vectors lie together. Floats are added up in one order, whatever the number of
  * threads is: each worker has rows of its own to write.
@@ -37,6 +40,7 @@ enum {
     LANES = RF_LIGHT_LANES,
     CELLS = 480, /* RF_LIGHT_MOST is a fortieth, the largest K of decontaminate.c */
     ROUNDS = 4,
+    BRIGHT = 230,       /* a channel may be white from here on, beside one that is clipped */
     LENGTH = 16,        /* cells over which the first round hands 1 / e on */
     RESIDUAL = 1 << 14, /* stands for light of 1; differences are from -1 to 1 */
     CLIPPED = 1,        /* bit of a residual: the frame is clipped there */
@@ -69,6 +73,13 @@ static void lay_out(struct rf_lights *l, struct rf_arena *arena)
 
 /* ----- cells ----- */
 
+/* Whether light of a channel may be above what the photo has: it is clipped, or another channel is,
+ * and JPEG and demosaicing may have taken it from this one, in what is white. */
+static bool lacks_light(const uint8_t *rgb, int c)
+{
+    return rgb[c] >= RF_STACK_WHITE || (rgb[c] >= BRIGHT && rf_stack_is_clipped(rgb));
+}
+
 /* Means over the pixels of a row of cells: light of the photo and what of it is clipped. */
 static void load_row(void *context, int y, int worker)
 {
@@ -83,13 +94,14 @@ static void load_row(void *context, int y, int worker)
         int sum[LANES] = {0}, clipped[LANES] = {0}, pixels = 0;
 
         for (int j = y * l->by; j < (y + 1) * l->by && j < s->height; j++)
-            for (int i = x * l->by; i < (x + 1) * l->by && i < s->width; i++, pixels++)
-                for (int c = 0; c < 3; c++) {
-                    const uint8_t code = l->photo->rgb[j * l->photo->stride + 3 * i + c];
+            for (int i = x * l->by; i < (x + 1) * l->by && i < s->width; i++, pixels++) {
+                const uint8_t *rgb = l->photo->rgb + j * l->photo->stride + 3 * (ptrdiff_t)i;
 
-                    sum[c] += s->transfer->to_light[code];
-                    clipped[c] += code >= RF_STACK_WHITE;
+                for (int c = 0; c < 3; c++) {
+                    sum[c] += s->transfer->to_light[rgb[c]];
+                    clipped[c] += lacks_light(rgb, c);
                 }
+            }
         l->near[at] = clipped[0] || clipped[1] || clipped[2] ? RF_LIGHT_WHITE : 0;
         l->disparity[at] =
             s->moved[(size_t)(v / s->reduced) * (size_t)s->columns + (size_t)(u / s->reduced)];
@@ -265,7 +277,7 @@ static void write_row(void *context, int y, int worker)
         for (int c = 0; c < 3; c++) {
             float light = (float)s->transfer->to_light[in[c]] / RF_LIGHT_MAX;
 
-            if (in[c] >= RF_STACK_WHITE && l->radius > 0)
+            if (l->radius > 0 && lacks_light(in, c))
                 light += l->excess[LANES * rf_light_cell(l, x / l->by, y / l->by) + (size_t)c];
             rf_deep_store(l->out, out + c * l->out->bytes, light);
         }
@@ -299,7 +311,7 @@ void rf_stack_find_light(struct refocus_stack *s, const struct rf_stack_photo *p
     begin(&l, s);
     rf_arena_begin(&arena, work);
     lay_out(&l, &arena);
-    l.radius /= l.by;
+    l.radius = s->count > 2 ? l.radius / l.by : 0;
     if (l.radius > 0) {
         rf_light_make_discs(&l);
         rf_pool_run(s->pool, load_row, &l, l.rows);
