@@ -310,38 +310,38 @@ static void count_noise(struct run *run)
         add_noise(run, quarter[j - 1], quarter[j], quarter[j + 1]);
 }
 
-/* Pixels of the run beside which what is much farther is noise of the map, a bit each. Noise is all
- * around them: it is off the lines through its neighbours by 1.3 standard deviations in the mean,
- * and the least of nine pixels is hardly ever four times as far below one of them. Where it is
- * a quarter of all disparities or more, nothing stands out of it. */
-static uint32_t noise_of(const struct run *run)
+/* Whether what is much farther beside a pixel of the run is noise of the map, which is all around:
+ * that is off the lines through its neighbours by 1.3 standard deviations in the mean, and the
+ * least of nine pixels is hardly ever four times as far below one of them. Where it is a quarter of
+ * all disparities or more, nothing stands out of it. */
+static bool is_noise(const struct run *run, int at)
 {
     enum { INNER = SIDE - 2, PIXELS = INNER * INNER };
-    int32_t noisy[RUN] = {0}, off[RUN] = {0};
-    int16_t least[RUN];
-    uint32_t bits = 0;
+    const int16_t own = run->disparity[AROUND][at + AROUND];
+    int16_t least = own;
+    int noisy = 0, off = 0;
 
-    for (int j = 1; j <= INNER; j++)
-        for (int i = 0; i < RUN; i++) {
-            noisy[i] += run->noisy[i + j];
-            off[i] += run->off[i + j];
-        }
-    for (int i = 0; i < RUN; i++)
-        least[i] = INT16_MAX;
-    for (int j = AROUND - 1; j <= AROUND + 1; j++) {
-        const int16_t *const d = run->disparity[j] + AROUND;
-
-        for (int i = 0; i < RUN; i++)
-            least[i] = min16(least[i], min16(d[i], min16(d[i - 1], d[i + 1])));
+    for (int i = 1; i <= INNER; i++) {
+        noisy += run->noisy[at + i];
+        off += run->off[at + i];
     }
-    for (int i = 0; i < RUN; i++) {
-        const int below = run->disparity[AROUND][AROUND + i] - least[i];
-        const int is_noise = (noisy[i] >= NOISY) & ((PIXELS * below <= 4 * 4 * off[i]) |
-                                                    (2 * off[i] > PIXELS * MOST_OFF));
+    if (noisy < NOISY)
+        return false;
+    for (int j = AROUND - 1; j <= AROUND + 1; j++)
+        for (int i = AROUND - 1; i <= AROUND + 1; i++)
+            least = min16(least, run->disparity[j][at + i]);
+    return 2 * off > PIXELS * MOST_OFF || own - least <= 4 * 4 * off / PIXELS;
+}
 
-        bits |= (uint32_t)is_noise << i;
-    }
-    return bits;
+/* The pixels of a run that are not noise, of those given, a bit each. */
+static uint32_t without_noise(const struct run *run, uint32_t pixels)
+{
+    uint32_t left = pixels;
+
+    for (; pixels; pixels &= pixels - 1)
+        if (is_noise(run, __builtin_ctz(pixels)))
+            left &= ~(pixels & -pixels);
+    return left;
 }
 
 /* The part of a run that lies in the window is its rows y0 to y1 - 1 and, from its column `first`
@@ -418,7 +418,7 @@ void rf_find_silhouettes(const struct rf_executor *exec, const struct rf_silhoue
                 return;
             copy_disparity(w, x0, y, &run);
             count_noise(&run);
-            bits &= ~noise_of(&run);
+            bits = without_noise(&run, bits);
             if (bits)
                 copy_light(w, y, &run);
             for (; bits; bits &= bits - 1)
