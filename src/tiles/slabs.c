@@ -14,6 +14,7 @@ enum {
     CLOSED = 2 * OVERLAP, /* so that the slab of what is sharp overlaps them as much in all */
     CRACKED = 2 * 256,    /* up to this blur cracks between slabs are closed */
     MOST_NOISY = 8 * 256, /* by this, at the most, noise widens the slab that closes a crack */
+    CLOSABLE = 12 * 256,  /* two slabs that are wider together are surfaces of much noise */
     WIDE = 16 * 256,      /* where slabs begin to be wider than a pixel */
     MOST_SPREAD = 60416,  /* blurs within it hit no slab of up to 20 pixels modulo 2^16 */
 };
@@ -22,7 +23,7 @@ enum {
  * them before it is widened by an eighth on each side. */
 enum { LARGEST = RF_PLAIN_RADIUS * 256, WIDEST = (2 * (LARGEST + HALF) - WIDE) / WIDE };
 static_assert(WIDEST * 256 * 5 / 4 <= 20 * 256, "no slab is wider than 20 pixels");
-static_assert(2 * (256 + 2 * OVERLAP) + MOST_NOISY <= 20 * 256, "nor is one of two of a pixel");
+static_assert(CLOSABLE + MOST_NOISY <= 20 * 256, "nor is one of two");
 static_assert(MOST_SPREAD + 20 * 256 <= UINT16_MAX + 1, "told apart modulo 2^16");
 
 static_assert(2 * RF_UNIT_RADIUS * 256 <= MOST_SPREAD && RF_UNIT_RADIUS << RF_MAX_UNIT < 1024 &&
@@ -273,7 +274,8 @@ static bool has_crack(const struct rf_tile_plan *plan, int k, int unit)
     const struct rf_slab *const slab = &plan->slab[k], *const before = slab - 1;
 
     return k > 0 && k < plan->slabs - 1 && abs(slab->centre) <= CRACKED >> unit &&
-           slab->low <= before->low + before->width;
+           slab->low <= before->low + before->width &&
+           slab->low + slab->width - before->low <= CLOSABLE;
 }
 
 /* The blurs of slab k and of the one before it, seen in the middle between them. Noise takes a

@@ -401,7 +401,8 @@ static struct twin_plan with_closed_cracks(const struct twin_plan *open, double 
         struct twin_slab both = *slab;
 
         plan.slab[plan.slabs++] = *slab;
-        if (k == 0 || k == open->slabs - 1 || fabs(slab->centre) > 2 || slab->low >= slab[-1].high)
+        if (k == 0 || k == open->slabs - 1 || fabs(slab->centre) > 2 ||
+            slab->low >= slab[-1].high || slab->high - slab[-1].low > 12 * unit)
             continue;
         both.centre = ceil(256 / unit * slab[-1].high) - 1 + 256 / unit * slab->low;
         both.centre = floor(both.centre / 2) * unit / 256;
