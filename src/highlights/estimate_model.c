@@ -10,7 +10,7 @@
  * light the skirt has to each clipped area (X_k), how bright the photo is as a whole and around,
  * and what the clipped pixels look like. Its constants were fitted to captures of high dynamic
  * range seen through a model of a lens, noise and tone curve, by the squared error of blurred
- * pictures.
+ * pictures. Those scales are left out whose weight came out so near to 0 that no score tells.
  *
  * By day most of what is clipped is paper, sky and skin, which have lost little. What the model
  * adds is limited by how dark the surroundings are: with t = (0.30 - U_4) / 0.24 from 0 to 1,
@@ -27,55 +27,41 @@
 #include "support/compare.h"
 #include "support/log2.h"
 
-enum { FEATURES = 25, BLOCK = 32 /* cells at once, side by side for vectors */ };
+enum { BLOCK = 32 /* cells at once, side by side for vectors */ };
 #define MOST_STOPS    4.0 /* a gain of 16 */
 #define DAY_STOPS     0.75
 #define NIGHT_STOPS   5.5
 #define LEAST_CLIPPED 0.005f /* the least part of a cell that is clipped, for an estimate */
 #define ALL_LARGE     0.9f   /* where this part of what is around is clipped, nothing is added */
 
-static const struct {
+/* A feature is log2 of a mean of the grid at a scale: C_k, U_k, X_k. The others are means
+ * themselves: log2 of luminance, of the photo and of what is around, and the looks of the clipped
+ * pixels, which are least channel to greatest, saturation of the skirt, and the part of them whose
+ * least channel is at the end of the scale. */
+enum kind { CLIPPED, UNCLIPPED, SKIRT, PHOTO, AROUND, GREY, SATURATION, WHITE };
+
+static const struct feature {
+    enum kind kind;
+    int scale;
     float weight, mean, deviation;
-} model[FEATURES] = {
-    /* C_0 to C_6 */
-    {0.0975f, -0.2951f, 0.5592f},
-    {0.1847f, -0.4261f, 0.6497f},
-    {0.0669f, -0.6625f, 0.8433f},
-    {0.0423f, -1.0266f, 1.1324f},
-    {-0.1096f, -1.4976f, 1.4065f},
-    {-0.0082f, -2.1055f, 1.6137f},
-    {-0.2105f, -2.8504f, 1.7129f},
-    /* U_0 to U_6 */
-    {-0.0247f, -2.3545f, 2.6701f},
-    {0.0242f, -1.9531f, 2.3142f},
-    {-0.1842f, -1.6687f, 1.8699f},
-    {0.0053f, -1.5735f, 1.4688f},
-    {-0.0041f, -1.6212f, 1.1544f},
-    {0.1224f, -1.8089f, 1.0033f},
-    {-0.5093f, -2.0958f, 0.9478f},
-    /* X_0 to X_4 */
-    {-0.1575f, -4.3748f, 1.0592f},
-    {0.0344f, -4.0105f, 1.2694f},
-    {0.283f, -3.5996f, 1.4463f},
-    {0.0782f, -3.1214f, 1.599f},
-    {0.0055f, -2.6245f, 1.7546f},
-    /* mean log2 of luminance: of the photo, of what is around */
-    {-0.2155f, -3.1844f, 1.1148f},
-    {0.5419f, -2.0037f, 1.2966f},
-    /* looks of the clipped pixels: least channel to greatest; saturation of the skirt; parts of
-     * them whose greatest channel, and whose least one, are at the end of the scale */
-    {0.7777f, 0.817f, 0.2175f},
-    {0.9995f, 0.193f, 0.2286f},
-    {-0.0432f, 0.7986f, 0.2547f},
-    {0.3535f, 0.4209f, 0.398f},
+} model[] = {
+    {CLIPPED, 0, 0.0975f, -0.2951f, 0.5592f},    {CLIPPED, 1, 0.1847f, -0.4261f, 0.6497f},
+    {CLIPPED, 2, 0.0669f, -0.6625f, 0.8433f},    {CLIPPED, 3, 0.0423f, -1.0266f, 1.1324f},
+    {CLIPPED, 4, -0.1096f, -1.4976f, 1.4065f},   {CLIPPED, 6, -0.2105f, -2.8504f, 1.7129f},
+    {UNCLIPPED, 2, -0.1842f, -1.6687f, 1.8699f}, {UNCLIPPED, 5, 0.1224f, -1.8089f, 1.0033f},
+    {UNCLIPPED, 6, -0.5093f, -2.0958f, 0.9478f}, {SKIRT, 0, -0.1575f, -4.3748f, 1.0592f},
+    {SKIRT, 1, 0.0344f, -4.0105f, 1.2694f},      {SKIRT, 2, 0.283f, -3.5996f, 1.4463f},
+    {SKIRT, 3, 0.0782f, -3.1214f, 1.599f},       {PHOTO, 0, -0.2155f, -3.1844f, 1.1148f},
+    {AROUND, 0, 0.5419f, -2.0037f, 1.2966f},     {GREY, 1, 0.7777f, 0.817f, 0.2175f},
+    {SATURATION, 1, 0.9995f, 0.193f, 0.2286f},   {WHITE, 1, 0.3535f, 0.4209f, 0.398f},
 };
 static const float constant = 0.4431f;
 
 /* Means of the grid at the middles of the cells. */
 struct means {
     float clipped[RF_GRID_SCALES][BLOCK], unclipped[RF_GRID_SCALES][BLOCK];
-    float log[BLOCK];
-    float grey[BLOCK], saturation[BLOCK], plateau[BLOCK], white[BLOCK];
+    float photo[BLOCK], around[BLOCK]; /* log2 of luminance */
+    float grey[BLOCK], saturation[BLOCK], white[BLOCK];
 };
 
 static double within(double v, double least, double most)
@@ -107,7 +93,6 @@ static void read_looks(const struct rf_light_grid *grid, const struct rf_grid_pl
 
     means->grey[i] = rf_grid_at(grid, RF_GRID_GREY, place) / clipped;
     means->saturation[i] = saturation(grid, place);
-    means->plateau[i] = rf_grid_at(grid, RF_GRID_PLATEAU, place) / clipped;
     means->white[i] = rf_grid_at(grid, RF_GRID_WHITE, place) / clipped;
 }
 
@@ -115,7 +100,8 @@ static void read_means(const struct rf_light_grid *grid, const struct rf_grid_ro
                        const int *x, int count, struct means *means)
 {
     for (int i = 0; i < count; i++) {
-        means->log[i] = -9;
+        means->photo[i] = (float)grid->mean_log;
+        means->around[i] = -9;
         for (int k = 0; k < RF_GRID_SCALES; k++) {
             const struct rf_grid_place place = rf_grid_place_in(&row[k], x[i]);
 
@@ -125,62 +111,76 @@ static void read_means(const struct rf_light_grid *grid, const struct rf_grid_ro
             if (k == 1)
                 read_looks(grid, &place, means, i);
             if (k >= 5)
-                means->log[i] += 0.5f * rf_grid_at(grid, RF_GRID_LOG, &place);
+                means->around[i] += 0.5f * rf_grid_at(grid, RF_GRID_LOG, &place);
         }
         means->unclipped[0][i] = means->unclipped[1][i]; /* Scale 0 has no such mean. */
     }
 }
 
-/* Adds a feature of the cells to their sums. */
-static void add_feature(int feature, const float *value, int count, float sum[BLOCK])
+/* How bright the skirt around the cells is at a scale, by how much of it is clipped. */
+static void skirts(const struct means *means, int scale, int count, float *value)
 {
-    const float weight = model[feature].weight, mean = model[feature].mean;
-    const float each = 1 / model[feature].deviation;
+    const float *const c = means->clipped[scale];
 
     for (int i = 0; i < count; i++) {
-        const float v = (value[i] - mean) * each;
+        const float skirt = means->unclipped[scale][i] - means->unclipped[scale + 2][i];
 
-        sum[i] += weight * (v < -3 ? -3 : v > 3 ? 3 : v);
+        value[i] = (skirt > 0 ? skirt : 0) * (1 - c[i]) / (c[i] + 0.004f);
     }
 }
 
-static void add_log(int feature, const float *value, float offset, int count, float sum[BLOCK])
+static void logs(const float *value, float offset, int count, float *log)
 {
-    float log[BLOCK];
-
     for (int i = 0; i < count; i++)
         log[i] = rf_log2f(value[i] + offset);
-    add_feature(feature, log, count, sum);
 }
 
-static void add_features(const struct means *means, double mean_log, int count, float sum[BLOCK])
+/* Returns the values of a feature of the cells; `room` may hold them. */
+static const float *values_of(const struct feature *feature, const struct means *means, int count,
+                              float room[BLOCK])
 {
-    float v[BLOCK];
+    switch (feature->kind) {
+    case CLIPPED:
+        logs(means->clipped[feature->scale], 0.004f, count, room);
+        return room;
+    case UNCLIPPED:
+        logs(means->unclipped[feature->scale], 0.01f, count, room);
+        return room;
+    case SKIRT:
+        skirts(means, feature->scale, count, room);
+        logs(room, 0.03f, count, room);
+        return room;
+    case PHOTO:
+        return means->photo;
+    case AROUND:
+        return means->around;
+    case GREY:
+        return means->grey;
+    case SATURATION:
+        return means->saturation;
+    case WHITE:
+        break;
+    }
+    return means->white;
+}
 
-    for (int i = 0; i < count; i++) {
+static void add_features(const struct means *means, int count, float sum[BLOCK])
+{
+    float room[BLOCK];
+
+    for (int i = 0; i < count; i++)
         sum[i] = constant;
-        v[i] = (float)mean_log;
-    }
-    for (int k = 0; k < RF_GRID_SCALES; k++) {
-        add_log(k, means->clipped[k], 0.004f, count, sum);
-        add_log(7 + k, means->unclipped[k], 0.01f, count, sum);
-    }
-    add_feature(19, v, count, sum);
-    for (int k = 0; k < 5; k++) {
-        const float *const c = means->clipped[k];
+    for (size_t f = 0; f < sizeof model / sizeof *model; f++) {
+        const float *const value = values_of(&model[f], means, count, room);
+        const float weight = model[f].weight, mean = model[f].mean;
+        const float each = 1 / model[f].deviation;
 
         for (int i = 0; i < count; i++) {
-            const float skirt = means->unclipped[k][i] - means->unclipped[k + 2][i];
+            const float v = (value[i] - mean) * each;
 
-            v[i] = (skirt > 0 ? skirt : 0) * (1 - c[i]) / (c[i] + 0.004f);
+            sum[i] += weight * (v < -3 ? -3 : v > 3 ? 3 : v);
         }
-        add_log(14 + k, v, 0.03f, count, sum);
     }
-    add_feature(20, means->log, count, sum);
-    add_feature(21, means->grey, count, sum);
-    add_feature(22, means->saturation, count, sum);
-    add_feature(23, means->plateau, count, sum);
-    add_feature(24, means->white, count, sum);
 }
 
 static double softplus(double z)
@@ -222,7 +222,7 @@ static void estimate_block(const struct rf_light_grid *grid, const struct rf_gri
     float sum[BLOCK];
 
     read_means(grid, row, x, count, &means);
-    add_features(&means, grid->mean_log, count, sum);
+    add_features(&means, count, sum);
     for (int i = 0; i < count; i++)
         lost[x[i]] = (float)lost_of(&means, i, sum[i], fixed);
 }
