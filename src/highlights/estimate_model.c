@@ -10,7 +10,7 @@
  * light the skirt has to each clipped area (X_k), how bright the photo is as a whole and around,
  * and what the clipped pixels look like. Its constants were fitted to captures of high dynamic
  * range seen through a model of a lens, noise and tone curve, by the squared error of blurred
- * pictures. Those scales are left out whose weight came out so near to 0 that no score tells.
+ * pictures.
  *
  * By day most of what is clipped is paper, sky and skin, which have lost little. What the model
  * adds is limited by how dark the surroundings are: with t = (0.30 - U_4) / 0.24 from 0 to 1,
@@ -36,24 +36,28 @@ enum { BLOCK = 32 /* cells at once, side by side for vectors */ };
 
 /* A feature is log2 of a mean of the grid at a scale: C_k, U_k, X_k. The others are means
  * themselves: log2 of luminance, of the photo and of what is around, and the looks of the clipped
- * pixels, which are least channel to greatest, saturation of the skirt, and the part of them whose
- * least channel is at the end of the scale. */
-enum kind { CLIPPED, UNCLIPPED, SKIRT, PHOTO, AROUND, GREY, SATURATION, WHITE };
+ * pixels, which are least channel to greatest, saturation of the skirt, and the parts of them whose
+ * greatest channel, and whose least one, are at the end of the scale. */
+enum kind { CLIPPED, UNCLIPPED, SKIRT, PHOTO, AROUND, GREY, SATURATION, PLATEAU, WHITE };
 
 static const struct feature {
     enum kind kind;
     int scale;
     float weight, mean, deviation;
 } model[] = {
-    {CLIPPED, 0, 0.0975f, -0.2951f, 0.5592f},    {CLIPPED, 1, 0.1847f, -0.4261f, 0.6497f},
-    {CLIPPED, 2, 0.0669f, -0.6625f, 0.8433f},    {CLIPPED, 3, 0.0423f, -1.0266f, 1.1324f},
-    {CLIPPED, 4, -0.1096f, -1.4976f, 1.4065f},   {CLIPPED, 6, -0.2105f, -2.8504f, 1.7129f},
-    {UNCLIPPED, 2, -0.1842f, -1.6687f, 1.8699f}, {UNCLIPPED, 5, 0.1224f, -1.8089f, 1.0033f},
-    {UNCLIPPED, 6, -0.5093f, -2.0958f, 0.9478f}, {SKIRT, 0, -0.1575f, -4.3748f, 1.0592f},
-    {SKIRT, 1, 0.0344f, -4.0105f, 1.2694f},      {SKIRT, 2, 0.283f, -3.5996f, 1.4463f},
-    {SKIRT, 3, 0.0782f, -3.1214f, 1.599f},       {PHOTO, 0, -0.2155f, -3.1844f, 1.1148f},
-    {AROUND, 0, 0.5419f, -2.0037f, 1.2966f},     {GREY, 1, 0.7777f, 0.817f, 0.2175f},
-    {SATURATION, 1, 0.9995f, 0.193f, 0.2286f},   {WHITE, 1, 0.3535f, 0.4209f, 0.398f},
+    {CLIPPED, 0, 0.0975f, -0.2951f, 0.5592f},   {CLIPPED, 1, 0.1847f, -0.4261f, 0.6497f},
+    {CLIPPED, 2, 0.0669f, -0.6625f, 0.8433f},   {CLIPPED, 3, 0.0423f, -1.0266f, 1.1324f},
+    {CLIPPED, 4, -0.1096f, -1.4976f, 1.4065f},  {CLIPPED, 5, -0.0082f, -2.1055f, 1.6137f},
+    {CLIPPED, 6, -0.2105f, -2.8504f, 1.7129f},  {UNCLIPPED, 0, -0.0247f, -2.3545f, 2.6701f},
+    {UNCLIPPED, 1, 0.0242f, -1.9531f, 2.3142f}, {UNCLIPPED, 2, -0.1842f, -1.6687f, 1.8699f},
+    {UNCLIPPED, 3, 0.0053f, -1.5735f, 1.4688f}, {UNCLIPPED, 4, -0.0041f, -1.6212f, 1.1544f},
+    {UNCLIPPED, 5, 0.1224f, -1.8089f, 1.0033f}, {UNCLIPPED, 6, -0.5093f, -2.0958f, 0.9478f},
+    {SKIRT, 0, -0.1575f, -4.3748f, 1.0592f},    {SKIRT, 1, 0.0344f, -4.0105f, 1.2694f},
+    {SKIRT, 2, 0.283f, -3.5996f, 1.4463f},      {SKIRT, 3, 0.0782f, -3.1214f, 1.599f},
+    {SKIRT, 4, 0.0055f, -2.6245f, 1.7546f},     {PHOTO, 0, -0.2155f, -3.1844f, 1.1148f},
+    {AROUND, 0, 0.5419f, -2.0037f, 1.2966f},    {GREY, 1, 0.7777f, 0.817f, 0.2175f},
+    {SATURATION, 1, 0.9995f, 0.193f, 0.2286f},  {PLATEAU, 1, -0.0432f, 0.7986f, 0.2547f},
+    {WHITE, 1, 0.3535f, 0.4209f, 0.398f},
 };
 static const float constant = 0.4431f;
 
@@ -61,7 +65,7 @@ static const float constant = 0.4431f;
 struct means {
     float clipped[RF_GRID_SCALES][BLOCK], unclipped[RF_GRID_SCALES][BLOCK];
     float photo[BLOCK], around[BLOCK]; /* log2 of luminance */
-    float grey[BLOCK], saturation[BLOCK], white[BLOCK];
+    float grey[BLOCK], saturation[BLOCK], plateau[BLOCK], white[BLOCK];
 };
 
 static double within(double v, double least, double most)
@@ -93,6 +97,7 @@ static void read_looks(const struct rf_light_grid *grid, const struct rf_grid_pl
 
     means->grey[i] = rf_grid_at(grid, RF_GRID_GREY, place) / clipped;
     means->saturation[i] = saturation(grid, place);
+    means->plateau[i] = rf_grid_at(grid, RF_GRID_PLATEAU, place) / clipped;
     means->white[i] = rf_grid_at(grid, RF_GRID_WHITE, place) / clipped;
 }
 
@@ -158,6 +163,8 @@ static const float *values_of(const struct feature *feature, const struct means 
         return means->grey;
     case SATURATION:
         return means->saturation;
+    case PLATEAU:
+        return means->plateau;
     case WHITE:
         break;
     }

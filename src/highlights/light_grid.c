@@ -11,8 +11,8 @@ static const struct {
     int first, last;
 } scales[RF_GRID_MEASURES] = {
     [RF_GRID_CLIPPED] = {0, 6}, [RF_GRID_UNCLIPPED] = {1, 6}, [RF_GRID_LOG] = {1, 6},
-    [RF_GRID_GREY] = {1, 1},    [RF_GRID_WHITE] = {1, 1},     [RF_GRID_RED] = {1, 4},
-    [RF_GRID_GREEN] = {1, 4},   [RF_GRID_BLUE] = {1, 4},
+    [RF_GRID_GREY] = {1, 1},    [RF_GRID_PLATEAU] = {1, 1},   [RF_GRID_WHITE] = {1, 1},
+    [RF_GRID_RED] = {1, 4},     [RF_GRID_GREEN] = {1, 4},     [RF_GRID_BLUE] = {1, 4},
 };
 
 static void lay_out(struct rf_light_grid *grid, struct rf_arena *arena)
@@ -94,6 +94,7 @@ static void set_tables(struct rf_light_grid *grid, const struct rf_transfer *lin
 
         t->linear[i] = own == linear ? (uint16_t)i : linear->to_light[code];
         t->soft[i] = (uint16_t)((v * v * (768 - 2 * v) + (1 << 15)) >> 16);
+        t->plateau[i] = (uint16_t)part(code, 250, 255);
         t->white[i] = (uint16_t)part(code, 246, 255);
         t->log[i] = (uint16_t)floor((rf_log2(i / 4095.0 + 0.003) + 9) * 256 + 0.5);
         if (t->soft[i] == 0)
@@ -162,7 +163,7 @@ static void add_clipped(const struct rf_light_grid *grid, int x, int y, int n, i
 
     for (int i = 0, cx = rf_grid_cell(x, grid->photo->width, grid->width); i < n; cx++) {
         const int end = rf_smaller(t->first[cx + 1] - x, n);
-        int soft = 0, grey = 0, white = 0;
+        int soft = 0, grey = 0, plateau = 0, white = 0;
 
         for (; i < end; i++) {
             int colour[3], most, lowest, own;
@@ -175,12 +176,14 @@ static void add_clipped(const struct rf_light_grid *grid, int x, int y, int n, i
             lowest = least(colour);
             soft += own;
             grey += lowest == most ? 16 * own : 16 * own * t->linear[lowest] / t->linear[most];
+            plateau += t->plateau[most];
             white += t->white[lowest];
         }
         if (soft == 0)
             continue;
         add(grid, RF_GRID_CLIPPED, cx, cy, soft);
         add(grid, RF_GRID_GREY, cx, cy, grey);
+        add(grid, RF_GRID_PLATEAU, cx, cy, plateau);
         add(grid, RF_GRID_WHITE, cx, cy, white);
     }
 }
@@ -249,6 +252,7 @@ static void measure_rows(void *context, int item, int worker)
     divide(grid, RF_GRID_UNCLIPPED, item, 4095, true);
     divide(grid, RF_GRID_LOG, item, 256, true);
     divide(grid, RF_GRID_GREY, item, 4096, false);
+    divide(grid, RF_GRID_PLATEAU, item, 256, false);
     divide(grid, RF_GRID_WHITE, item, 256, false);
     for (int i = RF_GRID_RED; i < RF_GRID_MEASURES; i++)
         divide(grid, (unsigned)i, item, 4095, true);

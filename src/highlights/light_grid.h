@@ -30,6 +30,7 @@ enum rf_grid_measure {
     RF_GRID_UNCLIPPED, /* (1 - s) Y, Y luminance */
     RF_GRID_LOG,       /* log2(Y + 0.003), clipped or not */
     RF_GRID_GREY,      /* s min(R, G, B) / max(R, G, B) */
+    RF_GRID_PLATEAU,   /* place of the greatest code between 250 and 255: 0 to 1 */
     RF_GRID_WHITE,     /* place of the least code between 246 and 255: 0 to 1 */
     RF_GRID_RED,       /* (1 - s) R, G, B */
     RF_GRID_GREEN,
@@ -45,12 +46,12 @@ struct rf_grid_plane {
 
 /* Tables by Q12 light in the blend of the photo's planes. */
 struct rf_grid_tables {
-    uint16_t linear[RF_CODES_OF_LIGHT]; /* linear light, Q12 */
-    uint16_t soft[RF_CODES_OF_LIGHT];   /* s of a greatest channel, Q8 */
-    uint16_t white[RF_CODES_OF_LIGHT];  /* by the least, Q8 */
-    uint16_t log[RF_CODES_OF_LIGHT];    /* by linear light: (log2(light + 0.003) + 9), Q8 */
-    int clipped;                        /* s is 0 of light up to this one */
-    int first[RF_GRID_SIDE + 1];        /* the first pixel of each column of cells, and the end */
+    uint16_t linear[RF_CODES_OF_LIGHT];                            /* linear light, Q12 */
+    uint16_t soft[RF_CODES_OF_LIGHT];                              /* s of a greatest channel, Q8 */
+    uint16_t plateau[RF_CODES_OF_LIGHT], white[RF_CODES_OF_LIGHT]; /* Q8 */
+    uint16_t log[RF_CODES_OF_LIGHT]; /* by linear light: (log2(light + 0.003) + 9), Q8 */
+    int clipped;                     /* s is 0 of light up to this one */
+    int first[RF_GRID_SIDE + 1];     /* the first pixel of each column of cells, and the end */
 };
 
 struct rf_light_grid {
