@@ -158,8 +158,8 @@ class Stack(FocusStack):
         """Frames go on as the middle one was taken, refocused by the depth of the stack."""
         look = ('--blur', '3', '--rays', '4', '--focus', '0')
         self.succeeds(*self.command[:-2], '-o', 'd.pgm', '--positions', '0.5,1.5,2.5')
-        self.succeeds('render', '1.ppm', '--depth', 'd.pgm', '--depth-edges', 'as-given', *look,
-                      '-o', 'r.ppm')
+        self.succeeds('render', '1.ppm', '--depth', 'd.pgm', '--depth-edges', 'as-given',
+                      '--no-thin', *look, '-o', 'r.ppm')
         report = self.reports(*self.live(*look, '--fast', '--frames', '2', '--frames-policy',
                                          'every', '--out', 'l-%d.ppm', more=';lens-speed 0.25'))
         self.assertEqual((report['stacks'], report['lens_dioptres']), (1, 1.5))

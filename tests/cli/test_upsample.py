@@ -132,7 +132,8 @@ class Upsample(Case):
         self.assertNotEqual(focus[0], focus[2])
 
     def test_file_of_settings(self):
-        command = ('render', 'edged.ppm', '--depth', 'small.pgm', *LENS, '-o', 'out.ppm')
+        command = ('render', 'edged.ppm', '--depth', 'small.pgm', '--depth-edges', 'as-given', *LENS,
+                   '-o', 'out.ppm')
         self.succeeds(*command, '--upsample', 'bilinear', '--save-settings', 's.json')
         first = pictures.read_bytes('out.ppm')
         self.succeeds(*command, '--settings', 's.json')
