@@ -96,11 +96,12 @@ static bool is_dense(const struct rf_bins *bins, struct rf_bin_scale scale, int 
 /* The noise of a tile: how far the blurs of all four cells of a block of 2 x 2 overlap, in the
  * second of the tile's four blocks. Cells of a slope lie beside each other, and those on either
  * side of an edge apart, but noise makes them all alike: by about 2.5 standard deviations if it is
- * Gaussian. */
+ * Gaussian. Where an edge cuts two or three of the blocks, one that it leaves whole tells. */
 static int16_t noise_of_tile(const struct rf_bins *bins, struct rf_bin_scale scale,
                              const struct rf_cells *cells, int tx, int ty)
 {
-    int largest = 0, second = 0;
+    int largest = 0, second = 0, block = 0, cut = 0;
+    int overlap[EACH];
 
     static_assert(EACH == 4, "a tile has four blocks of 2 x 2 cells");
     for (int y = ty * EACH; y < (ty + 1) * EACH; y += 2)
@@ -110,12 +111,15 @@ static int16_t noise_of_tile(const struct rf_bins *bins, struct rf_bin_scale sca
             const int low = rf_larger(rf_larger(a[0], a[1]), rf_larger(b[0], b[1]));
             const int high = rf_smaller(rf_smaller(c[0], c[1]), rf_smaller(d[0], d[1]));
 
+            overlap[block++] = high - low;
             if (high - low <= LEAST_NOISE >> scale.unit || !is_dense(bins, scale, low, high))
                 continue;
             second = rf_larger(second, rf_smaller(largest, high - low));
             largest = rf_larger(largest, high - low);
         }
-    return (int16_t)rf_smaller(second, INT16_MAX);
+    for (int k = 0; k < EACH; k++)
+        cut += overlap[k] < -largest;
+    return (int16_t)rf_smaller(cut >= 2 ? largest : second, INT16_MAX);
 }
 
 static struct rf_bins bins_of_tile(struct rf_bin_scale scale, struct rf_blur_q8 blur,

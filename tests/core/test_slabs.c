@@ -216,8 +216,8 @@ static void noise_is_merged(void **state)
 }
 
 /* The plan of the first of two tiles side by side whose noise of `noise` pixels is around a blur
- * each. */
-static void plan_level(const int16_t middle[2], int noise, struct rf_tile_plan *plan)
+ * each. In the second one the surface of the first goes on above and for so many pixels. */
+static void plan_corner(const int16_t middle[2], int noise, int corner, struct rf_tile_plan *plan)
 {
     enum { WIDTH = 2 * RF_TILE, CELLS = WIDTH / RF_CELL };
     static struct rf_reach reach;
@@ -244,12 +244,17 @@ static void plan_level(const int16_t middle[2], int noise, struct rf_tile_plan *
             const int off =
                 (int)(noise_bits(&seed) % (uint32_t)(2 * noise * 256 + 1)) - noise * 256;
 
-            blur[y][x] = (int16_t)(middle[x / RF_TILE] + off);
+            blur[y][x] = (int16_t)(middle[x >= RF_TILE + corner && y >= corner] + off);
             rf_add_to_cell(&cells, x, y, blur[y][x]);
         }
     rf_bin_tiles(&view, scale, (struct rf_blur_q8){blur[0], WIDTH, 0}, &cells, bins, 0);
     rf_reach_init(&reach, scale, largest, view.pad, false);
     rf_plan_tile(&view, bins, &reach, 0, 0, plan);
+}
+
+static void plan_level(const int16_t middle[2], int noise, struct rf_tile_plan *plan)
+{
+    plan_corner(middle, noise, 0, plan);
 }
 
 /* A level surface with noise is one slab, and sharp in the focus; two that meet are two slabs. */
@@ -274,11 +279,25 @@ static void level_surfaces(void **state)
     assert_in_range(plan.slab[1].centre, 8 * 256 - 80, 8 * 256 + 80);
 }
 
+/* So it is beside a tile whose blocks are cut by a silhouette, but for one. */
+static void silhouettes_are_noisy(void **state)
+{
+    static const int16_t apart[2] = {0, 20 * 256};
+    struct rf_tile_plan plan;
+
+    (void)state;
+    plan_corner(apart, 3, RF_CELL, &plan);
+    assert_int_equal(plan.slab[0].centre, 0);
+    assert_true(plan.slab[0].low <= -3 * 256);
+    assert_int_equal(plan.slabs, 2);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_slabs), cmocka_unit_test(crowded_tiles), cmocka_unit_test(few_slabs),
-        cmocka_unit_test(noise_is_merged), cmocka_unit_test(level_surfaces)};
+        cmocka_unit_test(same_slabs),     cmocka_unit_test(crowded_tiles),
+        cmocka_unit_test(few_slabs),      cmocka_unit_test(noise_is_merged),
+        cmocka_unit_test(level_surfaces), cmocka_unit_test(silhouettes_are_noisy)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

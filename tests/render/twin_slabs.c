@@ -68,7 +68,8 @@ static void note(struct bins *bins, double width, double s)
     bins->most = fmax(bins->most, s);
 }
 
-/* How far the blurs of all four cells of a block overlap, where every second bin of that occurs. */
+/* How far the blurs of all four cells of a block overlap, where every second bin of that occurs;
+ * negative where they lie apart. */
 static double overlap_of_cells(const struct twin *t, const struct bins *bins, double width, int x,
                                int y)
 {
@@ -94,24 +95,29 @@ static double overlap_of_cells(const struct twin *t, const struct bins *bins, do
     high = floor(256 * high + 0.5) / 256;
     for (int bin = first; bin <= last; bin++)
         found += bins->has[bin];
+    if (high < low)
+        return high - low;
     return high - low > 0.25 && 2 * found > last - first ? high - low : 0;
 }
 
-/* The noise of a tile, by the second of its four blocks of cells; see src/tiles/tiles.c. */
+/* The noise of a tile, by the second of its four blocks of cells, or by the one that edges leave
+ * whole; see src/tiles/tiles.c. */
 static double noise_of_tile(const struct twin *t, const struct bins *bins, double width, int tx,
                             int ty)
 {
-    double largest = 0, second = 0;
+    double noise[4], largest = 0, second = 0;
+    int cut = 0;
 
     for (int i = 0; i < 4; i++) {
-        const double noise =
-            overlap_of_cells(t, bins, width, tx * TWIN_TILE + i % 2 * 2 * TWIN_CELL,
-                             ty * TWIN_TILE + i / 2 * 2 * TWIN_CELL);
+        noise[i] = overlap_of_cells(t, bins, width, tx * TWIN_TILE + i % 2 * 2 * TWIN_CELL,
+                                    ty * TWIN_TILE + i / 2 * 2 * TWIN_CELL);
 
-        second = fmax(second, fmin(largest, noise));
-        largest = fmax(largest, noise);
+        second = fmax(second, fmin(largest, noise[i]));
+        largest = fmax(largest, noise[i]);
     }
-    return second;
+    for (int i = 0; i < 4; i++)
+        cut += noise[i] < -largest;
+    return cut >= 2 ? largest : second;
 }
 
 static void note_tile(const struct twin *t, struct bins *bins, double width, const double *blur,
