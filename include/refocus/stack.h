@@ -273,11 +273,12 @@ REFOCUS_API int refocus_stack_add(struct refocus_stack *stack, const struct refo
  * photo is L + x, with L its codes undone by sRGB and x >= 0 what it lacks where a code is 250 or
  * more, or 230 and another channel 250: the x by which L + x, each pixel spread over its circle of
  * confusion, predicts the frames best, of pixels as of squares that are 1/480 of the longer side at
- * least. It is found by four rounds of simultaneous iterative reconstruction (SIRT, Gilbert 1972),
- * in which frames that are clipped tell that light is not below white, and which become finer, so
- * that the middle of a large surface takes what is found around it. Where no blur radius explains
- * the frames, and of two frames, x is 0. For light the call takes 115 bytes a square, and 8 for
- * each frame, which it gives back: with nine frames at most 43 MB.
+ * least, where what is hidden or beyond the border is as bright as L beside it. It is found by four
+ * rounds of simultaneous iterative reconstruction (SIRT, Gilbert 1972), in which frames that are
+ * clipped tell that light is not below white, and which become finer, so that the middle of a large
+ * surface takes what is found around it. Where no blur radius explains the frames, and of two
+ * frames, x is 0. For light the call takes 115 bytes a square, and 8 for each frame, which it gives
+ * back: with nine frames at most 43 MB.
  *
  * A stack is finished once: what aligns its frames overwrites them.
  *

@@ -7,8 +7,9 @@
  *     F_k = A_k (L + x)
  *
  * where A_k spreads each cell over its circle of confusion in that frame, r = K |d - d_k|, but not
- * over what is nearer. x >= 0 is found by rounds of simultaneous iterative reconstruction (SIRT,
- * Gilbert 1972),
+ * over what is nearer. A_k L is divided by A_k 1: what is hidden or beyond the border is taken to
+ * be as bright as what is seen beside it; x is not, as there need not be a lamp as well. x >= 0 is
+ * found by rounds of simultaneous iterative reconstruction (SIRT, Gilbert 1972),
  *
  *     x += (sum of B_k M_k (F_k - A_k (L + x))) / (n + LITTLE),  n = sum of B_k M_k A_k c
  *
@@ -38,6 +39,7 @@
 
 enum {
     LANES = RF_LIGHT_LANES,
+    WHOLE = 3,   /* the value beside R, G and B of L is 1, which becomes A_k 1 */
     CELLS = 480, /* RF_LIGHT_MOST is a fortieth, the largest K of decontaminate.c */
     ROUNDS = 4,
     BRIGHT = 230,       /* a channel may be white from here on, beside one that is clipped */
@@ -47,8 +49,9 @@ enum {
     UNUSED = INT16_MIN, /* the frame does not show it */
 };
 
-#define LITTLE 0.01F /* keeps n from being 0 */
-#define SURELY 0.05F /* smaller differences of what is clipped tell nothing */
+#define LITTLE      0.01F /* keeps n from being 0 */
+#define LEAST_WHOLE 0.25F /* A_k 1 in a corner; where it is less, most is hidden */
+#define SURELY      0.05F /* smaller differences of what is clipped tell nothing */
 
 static int cells_by(const struct refocus_stack *s)
 {
@@ -110,15 +113,17 @@ static void load_row(void *context, int y, int worker)
             l->clipped[LANES * at + c] = (float)clipped[c] / (float)pixels;
             l->excess[LANES * at + c] = l->norm[LANES * at + c] = 0;
         }
+        l->light[LANES * at + WHOLE] = 1;
     }
 }
 
-/* The residual of a frame at a cell: how far its mean light, RESIDUAL for 1, is above what is
- * spread there, as an even number, or CLIPPED more where it may be farther. */
+/* The residual of a frame at a cell: how far its mean light, RESIDUAL for 1, is above the mean of
+ * what is spread there, as an even number, or CLIPPED more where it may be farther. */
 static void find_residual(const struct rf_lights *l, int x, int y, int16_t out[LANES])
 {
     const struct refocus_stack *s = l->stack;
     const float *spread = l->spread + LANES * rf_light_cell(l, x, y);
+    const float whole = fmaxf(spread[WHOLE], LEAST_WHOLE);
     bool clipped[3] = {false};
     int sum[3] = {0}, pixels = 0;
 
@@ -137,7 +142,7 @@ static void find_residual(const struct rf_lights *l, int x, int y, int16_t out[L
         }
     for (int c = 0; c < 3; c++) {
         const float light = (float)sum[c] / (float)(pixels * RF_LIGHT_MAX);
-        const int more = (int)((light - spread[c]) * RESIDUAL / 2);
+        const int more = (int)((light - spread[c] / whole) * RESIDUAL / 2);
 
         out[c] = (int16_t)(2 * (rf_stack_clamp(more + RESIDUAL / 2, RESIDUAL) - RESIDUAL / 2) +
                            (clipped[c] ? CLIPPED : 0));

@@ -10,7 +10,9 @@
 #include <math.h>
 #include <refocus/stack.h>
 
-enum { W = 320, H = 160, FRAMES = 5, K = 6, SIDE = 6, COUNT = 3 };
+enum { W = 320, H = 160, FRAMES = 5, K = 6, SIDE = 6, COUNT = 3, WALL = 16 };
+
+#define WALL_LIGHT 1.05f
 
 /* Highlights, of R, G and B above white and of one channel that is not. */
 static const float lamps[COUNT][3] = {{3, 3, 3}, {8, 4, 0.5f}, {12, 6, 2}};
@@ -35,7 +37,7 @@ static int left_of(int lamp)
     return 60 + 80 * lamp;
 }
 
-/* Texture that all lies farthest away. */
+/* Texture that all lies farthest away, and a wall above that is just clipped. */
 static void draw(void)
 {
     uint32_t seed = 3;
@@ -44,7 +46,8 @@ static void draw(void)
         for (int x = 0; x < W; x++) {
             seed = seed * 1664525 + 1013904223;
             for (int c = 0; c < 3; c++)
-                scene[y][x][c] = (float)decoded((seed >> 24) / 255.0 * 0.6 + 0.1);
+                scene[y][x][c] =
+                    y < WALL ? WALL_LIGHT : (float)decoded((seed >> 24) / 255.0 * 0.6 + 0.1);
         }
     for (int i = 0; i < COUNT; i++)
         for (int y = 0; y < SIDE; y++)
@@ -147,6 +150,20 @@ static void light_is_found(void **state)
             }
 }
 
+/* The border, beyond which nothing is seen, is no brighter than what is beside it. */
+static void borders_are_no_lamps(void **state)
+{
+    float most = 0;
+
+    (void)state;
+    for (int y = 0; y < WALL; y++)
+        for (int x = 0; x < W; x++)
+            for (int c = 0; c < 3; c++)
+                most = fmaxf(most, light[y][x][c]);
+    print_message("%.3f of %.3f\n", (double)most, (double)WALL_LIGHT);
+    assert_true(most < 1.25f * WALL_LIGHT);
+}
+
 /* Any number of threads gives the same bits; halves are those rounded; the photo needs no light. */
 static void is_the_same(void **state)
 {
@@ -205,6 +222,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(light_is_found),
+        cmocka_unit_test(borders_are_no_lamps),
         cmocka_unit_test(is_the_same),
         cmocka_unit_test(wrong_images_are_refused),
     };
