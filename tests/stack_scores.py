@@ -207,6 +207,9 @@ Since these were counted, edges beside what is clipped vote no more, and what li
 opposite of edges and outweighs them: one of nine frames of a tabletop that has 1.9 times the light, or somebody small who
 walks by, votes -.06 to -.19. Of 35 other stacks, drawn and of cameras, four have too few edges left, and one whose
 edges voted .01 votes -.02.
+Edges of which fewer than one in eight was measured on both sides tell nothing: of 31 drawn stacks and such of cameras,
+each with 2, 3, 4 and all of its frames in the order, 9 of 124 were turned wrongly and are 4, no other one changed; 110 are
+right. The share was chosen by these: it is .05 and less in the five, .17 and more in others but four pairs, right by rows.
 Three frames of an engraved surface through a macro lens, the farthest first, are turned by it against edges that vote
 .03 (rows: -.49), so that the command says where what lies lower alone turns a stack that this is doubtful.
 

@@ -15,7 +15,9 @@
  * for the frame that is later in the order of focus to be focused nearer. Texture of either side
  * adds to one or the other, and cancels in the mean of many edges. Votes weigh with the frames that
  * lie between, and a third of them is left where depth on one side was not measured: the edge may
- * be a drawing on the other.
+ * be a drawing on the other. Where hardly any edge was measured on both sides, all may be drawings
+ * that a few frames tell nothing of, such as the squares of a checkerboard: edges then tell
+ * nothing.
  *
  * An order and its reverse get the same votes but for their sign, as long as depth is looked at
  * before nearer surfaces get their silhouettes back (silhouettes.c). It is smooth where it was not
@@ -44,6 +46,7 @@ enum {
     ONE = 256,        /* the vote of a step that one of both frames has alone */
     UNSURE = 128,     /* the weight of depth that was not measured, beside 255 more */
     LEAST_EDGES = 60, /* fewer tell nothing */
+    MOST_DRAWN = 8,   /* nor do they where more than this times those are that were measured */
     CLIPPED = 250,    /* codes from here on */
 };
 static const double SURE = 0.05, LOWER = 0.2;
@@ -58,7 +61,7 @@ struct track {
 
 struct sums {
     int64_t votes, weights;
-    int32_t edges;
+    int32_t edges, measured;
 };
 
 static int depth_at(const struct track *t, int i)
@@ -161,6 +164,7 @@ static void count_vote(const struct track *t, int i, struct sums *sums)
     sums->votes += (k - l) * weight * vote;
     sums->weights += abs(k - l) * weight;
     sums->edges++;
+    sums->measured += weight >= MEAN * (UNSURE + RF_STACK_MEASURED);
 }
 
 static void go_along(const struct track *t, struct sums *sums)
@@ -175,13 +179,15 @@ static void go_along(const struct track *t, struct sums *sums)
 /* The mean of the votes. */
 static double of_edges(const struct refocus_stack *s)
 {
-    struct sums sums = {0, 0, 0};
+    struct sums sums = {0};
 
     for (int y = 0; y < s->rows; y++)
         go_along(&(struct track){s, y, s->columns, false, (ptrdiff_t)y * s->columns, 1}, &sums);
     for (int x = 0; x < s->columns; x++)
         go_along(&(struct track){s, x, s->rows, true, x, s->columns}, &sums);
-    return sums.edges < LEAST_EDGES ? 0 : (double)sums.votes / ((double)ONE * (double)sums.weights);
+    if (sums.edges < LEAST_EDGES || sums.edges > MOST_DRAWN * sums.measured)
+        return 0;
+    return (double)sums.votes / ((double)ONE * (double)sums.weights);
 }
 
 /* The correlation of depth and row. Rows count from the middle, in halves: their sum is 0, and that
