@@ -60,14 +60,15 @@ static int next_bin(const struct rf_bins *bins, int bin)
 }
 
 /* Where blurs differ by less than 2^15, a range of any width is told from what lies outside modulo
- * 2^16; else one slab is as much as can be. */
+ * 2^16; else one slab is as much as can be. A range begins where the former slab does. */
 static void add_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, struct rf_slab slab)
 {
     const int k = plan->slabs++;
+    const struct rf_slab *const before = &plan->slab[k ? k - 1 : 0];
 
     plan->slab[k] = slab;
-    plan->joined[k] =
-        k > 0 && scale.joins && slab.low <= plan->slab[k - 1].low + plan->slab[k - 1].width + 1;
+    plan->joined[k] = k > 0 && scale.joins && slab.low >= before->low &&
+                      slab.low <= before->low + before->width + 1;
 }
 
 /* Where a slab that begins with that bin ends, about as wide as one of blurs without a unit. */
@@ -152,7 +153,9 @@ static void add_blurred_slab(struct rf_tile_plan *plan, struct rf_bin_scale scal
     add_slab(plan, scale, (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre});
 }
 
-/* Adds the slab of a surface, which is seen in its middle: it is sharp there below half a pixel. */
+/* Adds the slab of a surface, which is seen in its middle: it is sharp there below half a pixel. It
+ * reaches into what is nearer by half of its noise at least: where two surfaces meet, a ray passes
+ * the nearer one at pixels whose noise is of the other. */
 static void add_surface(struct rf_tile_plan *plan, struct rf_bin_scale scale,
                         const struct rf_level_surface *surface)
 {
@@ -163,7 +166,7 @@ static void add_surface(struct rf_tile_plan *plan, struct rf_bin_scale scale,
     plan->sharp = plan->sharp && centre == 0;
     plan->reach = rf_larger(plan->reach, abs(centre));
     plan->least = rf_smaller(plan->least, abs(centre));
-    low = rf_larger(low - overlap, INT16_MIN);
+    low = rf_larger(low - rf_larger(overlap, surface->noise / 2), INT16_MIN);
     high = rf_smaller(high + overlap, INT16_MAX);
     add_slab(plan, scale, (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre});
 }

@@ -89,6 +89,7 @@ static void set_bins(struct rf_level_surface *surface, struct rf_bin_scale scale
     const int nearer = bin_of(scale, middle - 5 * noise / 2);
     const int farther = bin_of(scale, middle + 5 * noise / 2);
 
+    surface->noise = noise;
     surface->first =
         has_any(occupied, nearer, near) ? bin_of(scale, middle - 3 * noise / 2) + 1 : near + 1;
     surface->end = has_any(occupied, far, farther) ? bin_of(scale, middle + 3 * noise / 2) : far;

@@ -316,7 +316,8 @@ static int end_of_noise(const struct bins *bins, double width, const struct merg
     return until > end ? until : end;
 }
 
-/* The slab of a surface, seen in its middle; ends are whole 1/256 of a unit. */
+/* The slab of a surface, seen in its middle, which reaches into what is nearer by half of its noise
+ * at least; ends are whole 1/256 of a unit. */
 static struct twin_slab slab_of_surface(const struct twin_surface *surface, double width,
                                         double unit)
 {
@@ -325,7 +326,8 @@ static struct twin_slab slab_of_surface(const struct twin_surface *surface, doub
     const double wide = fmax(overlap, (high - low) / 8);
     const double centre = fabs(surface->middle) < 0.5 ? 0 : surface->middle;
 
-    return (struct twin_slab){low - wide, high + wide, centre, centre, centre};
+    return (struct twin_slab){low - fmax(wide, surface->noise / 2), high + wide, centre, centre,
+                              centre};
 }
 
 /* Slabs a pixel wide from the near side on, half as wide below 3 pixels of blur, an eighth of the

@@ -86,6 +86,7 @@ static void set_bins(struct twin_surface *surface, const struct twin_reach *reac
     const int near = clamped_bin(reach->width, middle - 2 * noise);
     const int far = clamped_bin(reach->width, middle + 2 * noise);
 
+    surface->noise = noise;
     surface->first = near + 1;
     surface->end = far;
     if (has_any(reach->has, clamped_bin(reach->width, middle - 5 * noise / 2), near))
