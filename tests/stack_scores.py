@@ -75,7 +75,7 @@ def aperture_rows(refocus, folder, work):
 
 def row(refocus, folder, what, frames, work, *options):
     """Scores of exact depth with the pinhole's photo, and of what the stack gives."""
-    depth, photo, light = work / 'depth.png', work / 'photo.png', work / 'light.pfm'
+    depth, photo, light = work / 'depth.png', work / 'photo.png', work / 'light.jpg'
     for made in photo, light:
         run(refocus, 'depth', '--focal-stack', *frames, '-o', depth, '--photo', made, *options)
     pinhole, exact = folder / 'allfocus.png', folder / 'disparity.png'
@@ -160,10 +160,10 @@ TEXT = '''# Depth and photo of a focus stack
 Written by `tests/stack_scores.py BUILD`. Nine frames, their focus even in disparity from 0 to 1, K = 8,
 720x540, go through `refocus depth --focal-stack`; its depth (`--depth-edges as-given`) and its photo, or
 exact depth and the pinhole's photo in place of either, are refocused at K = 20 and scored against
-path-traced references: PSNR in dB, the mean over the focus distances. *With light* the photo is a PFM, which
-has what is above white, as the gain map of a JPEG has; all others have 8 bits. *Pinhole as JPEG* has exact
-depth, and a photo that lost as much as a frame of the path-traced stacks: a JPEG with colour of half
-the size (quality 89; 90 and up keep all colour). Scenes: %s.
+path-traced references: PSNR in dB, the mean over the focus distances. *With light* the photo is a JPEG, whose
+gain map has what is above white; all others have 8 bits. *Pinhole as JPEG* has exact depth, and a photo that
+lost as much as a frame of the path-traced stacks: a JPEG with colour of half the size (quality 89; 90 and up
+keep all colour). Scenes: %s.
 
 Path-traced stacks (`$REFOCUS_CAMERA_SCENES`) have noise of a sensor and JPEG 4:2:0 at quality 95;
 *breathing* ones grow by 3 %% from the first frame to the last, and the result is in the geometry of the
