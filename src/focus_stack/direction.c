@@ -46,7 +46,7 @@ enum {
     ONE = 256,        /* the vote of a step that one of both frames has alone */
     UNSURE = 128,     /* the weight of depth that was not measured, beside 255 more */
     LEAST_EDGES = 60, /* fewer tell nothing */
-    MOST_DRAWN = 8,   /* nor do they where more than this times those are that were measured */
+    MOST_DRAWN = 8,   /* more than so many edges for one that was measured tell nothing */
     CLIPPED = 250,    /* codes from here on */
 };
 static const double SURE = 0.05, LOWER = 0.2;

@@ -15,9 +15,9 @@ enum {
 
 /* Marks of cells; twice as much stands for the same along rows alone. */
 enum {
-    RF_LIGHT_WHITE = 1,   /* clipped, in part at the least */
-    RF_LIGHT_NEAR = 4,    /* some of that may be spread over it: frames are looked at */
-    RF_LIGHT_SOURCE = 16, /* it may be spread over one of these */
+    RF_LIGHT_WHITE = 1,   /* The cell is clipped, in part at the least. */
+    RF_LIGHT_NEAR = 4,    /* A white cell may be spread over it: frames are looked at there. */
+    RF_LIGHT_SOURCE = 16, /* It may be spread over one that is near. */
 };
 
 /* A disc: weights from -reach to reach, which add up to 1. */
