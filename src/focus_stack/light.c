@@ -320,8 +320,8 @@ void rf_stack_find_light(struct refocus_stack *s, const struct rf_stack_photo *p
     if (l.radius > 0) {
         rf_light_make_discs(&l);
         rf_pool_run(s->pool, load_row, &l, l.rows);
-        rf_light_mark_around(&l, RF_LIGHT_WHITE, RF_LIGHT_NEAR / 2);
-        rf_light_mark_around(&l, RF_LIGHT_NEAR, RF_LIGHT_SOURCE / 2);
+        rf_light_mark_around(&l, RF_LIGHT_WHITE, RF_LIGHT_NEAR);
+        rf_light_mark_around(&l, RF_LIGHT_NEAR, RF_LIGHT_SOURCE);
         find_residuals(&l);
         find_excess(&l);
     }

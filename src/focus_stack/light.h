@@ -13,7 +13,8 @@ enum {
     RF_LIGHT_BAND = 16, /* rows of cells that a worker takes at a time */
 };
 
-/* Marks of cells; twice as much stands for the same along rows alone. */
+/* Marks of cells. Half of a mark is set while rf_light_mark_around() has looked along rows alone.
+ */
 enum {
     RF_LIGHT_WHITE = 1,   /* The cell is clipped, in part at the least. */
     RF_LIGHT_NEAR = 4,    /* A white cell may be spread over it: frames are looked at there. */
@@ -31,7 +32,9 @@ struct rf_lights {
     const struct refocus_stack *stack;
     const struct rf_stack_photo *photo;
     struct rf_deep *out;
-    int by, columns, rows, frame;
+    int by;                     /* pixels of a cell, across and down */
+    int columns, rows;          /* cells */
+    int frame;                  /* the frame that is looked at */
     int sources;                /* cells with these marks are spread */
     float kept;                 /* this share is handed on to the next cell */
     double radius;              /* K, in parts of a cell */
@@ -43,8 +46,8 @@ struct rf_lights {
     float *spread; /* A_k of L or of c x, and what frame k has more; `change`, smooth along rows */
     float *ones;   /* A_k of c; `norm`, smooth along rows */
     float *change; /* the sum beside it */
-    const float *from; /* it is spread into `to` */
-    float *to;
+    const float *from;   /* rf_light_spread() spreads this at present */
+    float *to;           /* rf_light_spread() adds it up here */
     int16_t *residual;   /* F_k - A_k L, RF_LIGHT_LANES a cell, frame by frame */
     uint16_t *disparity; /* the middle of a cell has it */
     uint8_t *near;       /* marks of a cell */
@@ -57,7 +60,7 @@ static inline size_t rf_light_cell(const struct rf_lights *l, int x, int y)
 
 /* Makes the discs of all radii. */
 void rf_light_make_discs(struct rf_lights *l);
-/* A cell gets this where one that has `of` is within reach; of it, along rows, twice as much. */
+/* Cells get `mark` where one that has `of` is within the largest circle of confusion. */
 void rf_light_mark_around(const struct rf_lights *l, int of, int mark);
 /* Spreads what is `from` as the frame does, from cells with these marks: A_k. */
 void rf_light_spread(struct rf_lights *l, int sources, const float *from, float *to);

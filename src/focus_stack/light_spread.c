@@ -49,7 +49,7 @@ static struct range range_of(int middle, int reach, int begin, int end)
                           middle + reach >= end ? end - 1 : middle + reach};
 }
 
-/* A cell gets this where one that has `of` is within reach, along rows and then columns. */
+/* Along rows half of the mark is set, then along columns all of it. */
 void rf_light_mark_around(const struct rf_lights *l, int of, int mark)
 {
     const int reach = (int)ceil(l->radius) + 1;
@@ -57,7 +57,7 @@ void rf_light_mark_around(const struct rf_lights *l, int of, int mark)
     for (int way = 0; way < 2; way++) {
         const size_t apart = way ? (size_t)l->columns : 1, line = way ? 1 : (size_t)l->columns;
         const int lines = way ? l->columns : l->rows, count = way ? l->rows : l->columns;
-        const int from = way ? mark : of;
+        const int from = way ? mark / 2 : of, set = way ? mark : mark / 2;
 
         for (int i = 0; i < lines; i++) {
             uint8_t *at = l->near + (size_t)i * line;
@@ -68,7 +68,7 @@ void rf_light_mark_around(const struct rf_lights *l, int of, int mark)
             for (int k = 0; k < count; k++) {
                 if (k + reach < count && at[(size_t)(k + reach) * apart] & from)
                     last = k + 2 * reach;
-                at[(size_t)k * apart] |= (uint8_t)(k <= last ? mark << way : 0);
+                at[(size_t)k * apart] |= (uint8_t)(k <= last ? set : 0);
             }
         }
     }
