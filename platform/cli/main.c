@@ -1,5 +1,7 @@
 /* main.c: the command `refocus` finds its subcommand and runs it. */
+#include <fcntl.h>
 #include <stddef.h>
+#include <unistd.h>
 #include "commands/commands.h"
 #include "commands/words.h"
 #include "line/interrupt.h"
@@ -32,6 +34,16 @@ __attribute__((noinline)) static void grow_stack(void)
         byte[NEEDED - 1 - i] = 0;
 }
 
+/* A parent may leave standard files closed. The next file that is opened would take their place,
+ * and messages would be written into it. What is opened here can only be used the other way round,
+ * so that what needs the real one is still told EBADF. */
+static void fill_standard_files(void)
+{
+    for (int file = STDIN_FILENO; file <= STDERR_FILENO; file++)
+        if (fcntl(file, F_GETFD) < 0)
+            (void)!open("/dev/null", file == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
 int main(int argc, char **argv)
 {
     const struct command *command;
@@ -39,6 +51,7 @@ int main(int argc, char **argv)
     int status;
 
     grow_stack();
+    fill_standard_files();
     if (argc < 2)
         return report_failure(EXIT_WRONG, "subcommand",
                               "none is given; 'refocus --help' lists them");

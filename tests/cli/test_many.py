@@ -144,6 +144,7 @@ class Many(Case):
         for status, line, arguments in (
                 (2, '-o: there is no folder nix for 3 photos; make it, or give a name with {name}',
                  ('-o', 'nix')),
+                (2, '-o: there is no folder nix/; make it', ('-o', 'nix/')),
                 (2, '-o: {zz} is not known; give {name}, {ext}, {n} or an option such as {blur}; '
                  '{{ is a brace', ('-o', 'out/{zz}.ppm')),
                 (2, '-o: {nane} is not known; did you mean {name}? {{ is a brace',
@@ -168,6 +169,8 @@ class Many(Case):
                  ('-o', 'out', '--jobs', '0'))):
             self.fails(status, line, *self.many(*arguments))
             self.assertEqual(self.written(), [])
+        self.fails(2, '-o: there is no folder nix/; make it', *self.many('-o', 'nix/',
+                                                                         photos=['a.ppm']))
 
     def test_settings(self):
         self.renders(3, 0, '-o', 'out', '--save-settings', 'out/look.json', '--rays', '9')

@@ -5,6 +5,7 @@ import os
 import resource
 import signal
 import subprocess
+import time
 import unittest
 
 import pictures
@@ -194,6 +195,34 @@ class Standard(Case):
             self.assertEqual(error.count('\n'), 1)
         self.assertFalse(os.path.exists('x.ppm'))
 
+    def test_a_folder_of_that_name(self):
+        """- stays standard input and output."""
+        data = pictures.read_bytes('photo.ppm')
+        wanted = self.piped(data, '-', *BLUR, '-o', '-')
+        os.mkdir('-')
+        self.addCleanup(os.rmdir, '-')
+        self.assertEqual(self.piped(data, '-', *BLUR, '-o', '-'), wanted)
+
+    def test_closed_files(self):
+        """Where a parent has closed standard files nothing else is opened in their place: messages
+        would be written into it, and live would take commands from it."""
+        def close():
+            for file in range(3):
+                os.close(file)
+
+        live = subprocess.Popen([REFOCUS, 'live', '--camera', 'replay::size 64x48;fps 100',
+                                 '--depth', 'depth.pgm', '--out', 'raw:frames.yuv'],
+                                preexec_fn=close)
+        try:
+            while not (os.path.exists('frames.yuv') and os.path.getsize('frames.yuv')):
+                self.assertIsNone(live.poll())
+                time.sleep(0.01)
+            self.assertEqual([os.readlink('/proc/%d/fd/%d' % (live.pid, file))
+                              for file in range(3)], 3 * ['/dev/null'])
+        finally:
+            live.terminate()
+            live.wait()
+
     def test_sizes(self):
         full = self.rows()
         for size, width, height in (('50%', 24, 16), ('20', 20, 13), ('20x5', 8, 5),
@@ -210,7 +239,8 @@ class Standard(Case):
         os.remove('out.ppm')
         for size in ('0', '0x5', '5x0', '0%', '101%', '65536', '5x', 'x5', '', '5 %', '-5', '1e2',
                      '5%%', '.%', '1.2.3%', '20px', '99999999999'):
-            line = ("--resize: '%s' cannot be used; give a width W, WxH, or N%% up to 100%%" % size
+            line = ("--resize: '%s' cannot be used; give a width W, WxH, up to 65535, or "
+                    "N%% up to 100%%" % size
                     if size else '--resize: is empty; give SIZE')
             self.fails(2, line, *self.render('--resize=' + size))
 

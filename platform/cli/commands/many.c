@@ -7,15 +7,24 @@
 #include <sys/stat.h>
 #include <refocus/platform/file.h>
 #include "commands/many.h"
+#include "inputs/standard_input.h"
 #include "line/report.h"
 #include "outputs/outputs.h"
 #include "outputs/pattern.h"
 
+/* "-" is standard input or output, even where a folder has that name. */
 static bool is_folder(const char *path)
 {
     struct stat about;
 
-    return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
+    return !standard_is(path) && stat(path, &about) == 0 && S_ISDIR(about.st_mode);
+}
+
+static bool ends_as_folder(const char *path)
+{
+    const size_t length = strlen(path);
+
+    return length > 0 && path[length - 1] == '/';
 }
 
 /* The pattern that "-o FOLDER" stands for. */
@@ -82,6 +91,8 @@ int many_name(struct many *many, const struct command *command, const void *sett
         folder = pattern_in(output);
         if (!folder)
             return report_failure(EXIT_FAILED, output, "not enough memory");
+    } else if (output && ends_as_folder(output) && !pattern_is(output)) {
+        return report_failure(EXIT_WRONG, "-o", "there is no folder %s; make it", output);
     } else if (output && values.count > 1 && !pattern_is(output)) {
         return report_failure(EXIT_WRONG, "-o",
                               "there is no folder %s for %d photos; make it, or give a name with "

@@ -54,8 +54,9 @@ int result_check(const struct result_settings *settings, const char *output, boo
                               output);
     if (settings->resize && !resize_parse(settings->resize, &size))
         return report_failure(EXIT_WRONG, "--resize",
-                              "'%s' cannot be used; give a width W, WxH, or N%% up to 100%%",
-                              settings->resize);
+                              "'%s' cannot be used; give a width W, WxH, up to %d, or N%% up to "
+                              "100%%",
+                              settings->resize, REFOCUS_MAX_SIDE);
     if (alone && !isnan(settings->quality) && !is_lossy(output))
         return report_failure(EXIT_WRONG, "--jpeg-quality",
                               "it changes nothing of %s, which is no JPEG or HEIC; leave it out",
