@@ -62,6 +62,19 @@ class Settings(Case):
         os.remove('a.json')
         os.remove('b.json')
 
+    def test_what_render_saves_other_commands_take(self):
+        for more in (), ('--bokeh', 'swirl', '--raw-preview'), ('--quality', 'best', '--fill', 'smooth'):
+            self.picture('--depth', 'depth.pgm', *more, '--save-settings', 'a.json')
+            with open('a.json') as file:
+                self.assertEqual(json.load(file).get('raw-preview'), True if '--raw-preview' in more
+                                 else None)
+            self.succeeds('sheet', 'photo.ppm', '--settings', 'a.json', '-o', 'out.ppm')
+            self.succeeds('pull', 'photo.ppm', '--settings', 'a.json', '-o', 'out.y4m', '--seconds',
+                          '0.05')
+            view = self.run_it('view', 'photo.ppm', '--settings', 'a.json', '--seconds', '0.1',
+                               env={**os.environ, 'SDL_VIDEODRIVER': 'none'})
+            self.assertNotIn('a.json', view.stderr)
+
     def test_errors_name_file_and_setting(self):
         def fails(line, text):
             with open('s.json', 'w') as file:

@@ -58,7 +58,7 @@ const struct option upsample_options[] = {
 
 const struct option light_options[] = {
     {OPTION(OPTION_CHOICE, "--gain-map", "HOW", struct depth_settings, gain_map),
-     .words = gain_map_words,
+     .words = gain_map_words, .rare = true,
      .help = "the gain map of a photo (Ultra HDR, ISO 21496-1, Apple); default use"},
     {OPTION(OPTION_FLAG, "--no-dither", NULL, struct depth_settings, no_dither),
      .help = "photos of more than 8 bits, or with a gain map: 8 bits of the result are rounded"},

@@ -10,7 +10,6 @@ const struct option limit_options[] = {
      .least = 1, .greatest = 4294836225.0, /* REFOCUS_MAX_SIDE squared */
      .help = "refuse those with more pixels; default 201326592, 16384 x 12288"},
     {OPTION(OPTION_FLAG, "--raw-preview", NULL, struct limit_settings, raw_preview),
-     .elsewhere = true,
      .help =
          "of a camera raw its preview, the JPEG in it, instead of the photo that libraw develops"},
     {OPTION(OPTION_INTEGER, "--max-memory", "MIB", struct limit_settings, mebibytes),

@@ -6,7 +6,8 @@
 
 const struct option transfer_options[] = {
     {OPTION(OPTION_CHOICE, "--transfer", "CURVE", struct depth_settings, transfer),
-     .words = transfer_words, .help = "how a photo of more than 8 bits stores light; default auto"},
+     .words = transfer_words, .rare = true,
+     .help = "how a photo of more than 8 bits stores light; default auto"},
     {OPTION(OPTION_NUMBER, "--white", "LIGHT", struct depth_settings, white), .least = 1 / 65536.0,
      .greatest = 65536,
      .help = "light of such a photo that is shown as white, cd/m2 with pq; what is brighter keeps "

@@ -49,6 +49,8 @@ struct option {
     const char *help;
     bool elsewhere; /* the option is about this run, not about the picture: not in files of
                        settings */
+    bool rare;      /* commands that take files of settings from this one lack this OPTION_CHOICE:
+                       its first word, which is its default, is not written into them */
     /* OPTION_TEXT that names a file with values of other options, which is read before the rest of
      * the command line, or NULL. Returns OPTIONS_PARSED or an exit code. */
     int (*load)(const struct command *command, const char *file, void *settings);

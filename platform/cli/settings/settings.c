@@ -226,8 +226,8 @@ static json_t *member_of(const struct option *option, const void *settings, int 
     case OPTION_FLAG:
         return *(const bool *)at ? json_true() : NULL;
     case OPTION_CHOICE:
-        if (*(const int *)at == 0 && strcmp(options_word(option, 0), "none") == 0)
-            return NULL; /* says nothing, and not every command has it */
+        if (option->rare && *(const int *)at == 0)
+            return NULL;
         json = json_string(options_word(option, (uint32_t) * (const int *)at));
         break;
     case OPTION_TEXT:
