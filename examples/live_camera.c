@@ -99,7 +99,7 @@ int main(int argc, char **argv)
 
     if (argc < 5) {
         fprintf(stderr, "usage: live_camera CAMERA DEPTH_CAMERA SINK FRAMES [NAME=VALUE...]\n");
-        return 0;
+        return 2;
     }
     check(refocus_source_open(&camera, argv[1], &reason));
     check(refocus_source_start(camera, NULL, &mode, &reason));

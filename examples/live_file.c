@@ -36,7 +36,7 @@ int main(int argc, char **argv)
 
     if (argc != 4) {
         fprintf(stderr, "usage: live_file IN.y4m DEPTH.png OUT.y4m\n");
-        return 0;
+        return 2;
     }
     config.flags = REFOCUS_SOURCE_FAST;
     snprintf(name, sizeof name, "y4m:%s", argv[1]);

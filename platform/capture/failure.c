@@ -34,7 +34,8 @@ int rf_capture_fail_errno(struct refocus_reason *reason, int error, const char *
     case ENXIO:
     case ENODEV:
         return rf_capture_fail(reason, REFOCUS_ERR_GONE,
-                               "%s: it is not there; plug it in or give another name", what);
+                               "%s: it is not there; give another name, or plug the camera in",
+                               what);
     case EBUSY:
         return rf_capture_fail(reason, REFOCUS_ERR_BUSY,
                                "%s: used by another program; end that one first", what);

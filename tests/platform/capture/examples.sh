@@ -12,5 +12,11 @@ printf 'P5\n2 1\n255\n\000\377' >depth.pgm
 [ "$(wc -c <in.y4m)" = "$(wc -c <out.y4m)" ]
 [ "$(grep -a -c FRAME out.y4m)" = 4 ]
 ! cmp -s in.y4m out.y4m
+for program in "$camera" "$file"; do
+    status=0
+    "$program" none 2>usage.txt || status=$?
+    [ "$status" = 2 ]
+    grep -q '^usage: live_' usage.txt
+done
 ! "$file" none.y4m depth.pgm none-out.y4m 2>error.txt
 [ "$(wc -l <error.txt)" = 1 ]
