@@ -391,6 +391,12 @@ class Errors(Case):
             self.refused(ValueError, '255', refocus.Aperture, numpy.ones(shape, numpy.uint8))
         self.refused(refocus.ArgumentError, 'focus', refocus.render, self.photo, self.disparity,
                      blur=3)
+        for x, y in (-1, 0), (0, -1), (WIDTH, 0), (0, HEIGHT):
+            self.refused(refocus.ArgumentError, f'focus_at is {x}, {y}, may be 0, 0 to ',
+                         refocus.render, self.photo, self.disparity, blur=3, focus_at=(x, y))
+        for wrong in (1,), (1, 2, 3), 1:
+            self.refused((TypeError, ValueError), 'unpack', refocus.render, self.photo,
+                         self.disparity, blur=3, focus_at=wrong)
         self.refused(refocus.ArgumentError, 'near_m', refocus.render, self.photo, self.disparity,
                      focus=1, f_number=2)
         self.refused(refocus.ArgumentError, 'unit', refocus.depth_to_disparity, self.disparity,

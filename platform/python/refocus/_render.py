@@ -290,6 +290,11 @@ def render(photo: Image | Buffer, depth: Buffer, *,
     said = fields.pop('focus_disparity', None)
     if sum(given is not None for given in (focus, said, focus_at, focus_distance)) != 1:
         raise ArgumentError('give one of focus, focus_at and focus_distance')
+    if focus_at is not None:
+        x, y = focus_at
+        if not (0 <= x < image.width and 0 <= y < image.height):
+            raise ArgumentError(f'focus_at is {x}, {y}, may be 0, 0 to '
+                                f'{image.width - 1}, {image.height - 1}')
     if (blur is None) == (f_number is None):
         raise ArgumentError('give blur or f_number')
     if f_number is not None:
