@@ -38,7 +38,7 @@ class Usage(Case):
     def test_help_lists_every_option(self):
         options = {
             'render': self.PAPERS + self.CONTROLS +
-                      '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order '
+                      '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order --strokes '
                       '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --focus --focus-at --focus-rectangle '
                       '--focus-distance --blur --f-number --focal-length --sensor-width '
                       '--method --rays --iterations --quality --aperture --blend --sigma '
@@ -51,14 +51,14 @@ class Usage(Case):
             'stack': '-o --output --photo --keep --camera --steps --range --average --settle --size '
                      '--dry-run --json -h --help --help-all',
             'sheet': self.PAPERS + self.CONTROLS +
-                     '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order '
+                     '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order --strokes '
                      '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --kind --focuses --blurs --f-numbers --apertures --sigmas '
                      '--cell-width --region --focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --f-number --focal-length --sensor-width --method --rays --iterations '
                      '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin --fill '
                      '--threads --cpu --json --config --preset --settings --save-settings -h --help --help-all',
             'pull': self.PAPERS + self.CONTROLS +
-                    '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order '
+                    '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order --strokes '
                     '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
                     '--wiggle '
                     '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
@@ -66,8 +66,8 @@ class Usage(Case):
                     '--sigma --highlights --mirror --background --no-thin --fill --threads --cpu --json '
                     '--config --preset --settings --save-settings -h --help --help-all',
             'view': self.PAPERS + self.CONTROLS +
-                    '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order '
-                    '--upsample --depth-edges --orient-depth --matte --strokes --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
+                    '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order --strokes '
+                    '--upsample --depth-edges --orient-depth --matte --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality '
                     '--aperture --blend --sigma --highlights --mirror --background --no-thin --fill --threads '
                     '--cpu --json --config --preset --settings --size --fullscreen --seconds --page --font --dpi -h --help --help-all',

@@ -245,6 +245,36 @@ class DepthAndInfo(Case):
                                 'disparity': 0.5})
         self.succeeds('depth', 'plain.ppm', '--strokes', 's.json', '-o', 'd.pfm')
 
+    def test_strokes_in_one_step(self):
+        """The bytes of the two steps, and what is saved makes them again."""
+        self.strokes('s.json', {'kind': 'all', 'gradient': [[0, 0, 0], [0, H - 1, 1]]},
+                     {'kind': 'brush', 'radius': 5, 'points': [[9, 9]], 'disparity': 1})
+        pictures.pgm('small.pgm', W // 2, H // 2, lambda x, y: 200 if x >= W // 4 else 40)
+        lens = ('--focus', '1', '--blur', '6')
+
+        def rendered(*more):
+            self.succeeds('render', 'photo.ppm', *more, *lens, '-o', 'out.ppm')
+            data = pictures.read_bytes('out.ppm')
+            os.remove('out.ppm')
+            return data
+
+        for base in (), ('--depth', 'depth.pgm'), ('--depth', 'small.pgm'):
+            self.succeeds('depth', 'photo.ppm', *base, '--strokes', 's.json', '-o', 'map.png')
+            wanted = rendered('--depth', 'map.png')
+            self.assertEqual(rendered(*base, '--strokes', 's.json', '--save-settings', 'a.json'),
+                             wanted)
+            self.assertEqual(rendered('--settings', 'a.json'), wanted)
+        self.assertEqual(rendered('--strokes', 's.json', '--low-memory'),
+                         rendered('--strokes', 's.json', '--no-thin', '--matte', 'none'))
+        self.succeeds('sheet', 'photo.ppm', '--strokes', 's.json', '-o', 'out.ppm')
+        for depth, status, line in (('s.json', 2, '--strokes: it is for one photo; give that alone'),
+                                    ('no.json', 1, None)):
+            photos = ('photo.ppm', 'plain.ppm') if line else ('photo.ppm',)
+            self.fails(status, line or re.compile('^refocus: no.json: cannot open it: '), 'render',
+                       *photos, '--strokes', depth, *lens, '-o', '{name}-out.ppm')
+        self.fails(2, re.compile('^refocus: s.json: it is an input too and would be lost'), 'render',
+                   'photo.ppm', '--strokes', 's.json', '-o', 'x.ppm', '--save-settings', 's.json')
+
     def test_depth_of_bad_strokes(self):
         command = ('depth', 'photo.ppm', '-o', 'new.png', '--strokes')
         self.strokes('s.json', width=640)

@@ -205,8 +205,9 @@ static int run_batch(struct batch *batch, const char *const *files)
         status = many_check(&batch->many);
     if (status != EXIT_DONE)
         return status;
-    if (batch->many.count > 1 && settings->shot.depth.right)
-        return report_failure(EXIT_WRONG, "--stereo", "it is for one photo; give that alone");
+    if (batch->many.count > 1 && (settings->shot.depth.right || settings->shot.depth.strokes))
+        return report_failure(EXIT_WRONG, settings->shot.depth.right ? "--stereo" : "--strokes",
+                              "it is for one photo; give that alone");
     if (batch->many.count > 1)
         return make_all(batch);
     *settings = settings_of(batch, 0);

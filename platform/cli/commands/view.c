@@ -16,7 +16,7 @@
 
 struct settings {
     struct shot_settings shot;
-    const char *output, *strokes, *font;
+    const char *output, *font;
     double size[2], dpi, seconds;
     bool fullscreen, page;
 };
@@ -32,10 +32,6 @@ static const struct option options[] = {
                   "names of it. Default: the photo's name with -refocused.jpg, here"),
     {.kind = OPTION_HEADING, .help = "Depth"},
     GROUP(shot_depth_options, struct settings, shot),
-    {OPTION(OPTION_TEXT, "--strokes", "FILE.json", struct settings, strokes),
-     .brief = "depth by strokes over a photo",
-     .help = "depth by strokes, over that of the photo or over nothing; the page saves them",
-     .elsewhere = true},
     GROUP(shot_lens_options, struct settings, shot),
     GROUP(shot_method_options, struct settings, shot),
     {.kind = OPTION_HEADING, .help = "Running"},
@@ -311,13 +307,11 @@ static int read_input(struct viewing *v, const char *photo)
     input->most_blur = REFOCUS_PLAIN_BLUR_RADIUS; /* keys change the method */
     if (status != EXIT_DONE)
         return status;
-    if (!input->disparity && !v->settings.strokes)
+    if (!input->disparity && !depth->strokes)
         return report_failure(EXIT_FAILED, photo,
                               "it carries no depth; give a depth map to --depth or MODEL.onnx to "
                               "--estimate, or paint it: 'refocus view --page PHOTO'");
-    if (!input->disparity)
-        painted_begin(input, depth);
-    return v->settings.strokes ? painted_apply(input, v->settings.strokes) : EXIT_DONE;
+    return painted_over(input, depth);
 }
 
 static int open_photo(struct viewing *v, const char *photo)
@@ -347,11 +341,10 @@ static int open_photo(struct viewing *v, const char *photo)
 
 static int check(struct settings *settings, const char *photo)
 {
-    const char *inputs[SHOT_INPUTS + 2];
+    const char *inputs[SHOT_INPUTS + 1];
     int count = shot_inputs(&settings->shot, photo, inputs);
     int status = shot_check(&settings->shot, false);
 
-    inputs[count++] = settings->strokes;
     inputs[count++] = settings->font;
     settings->shot.depth.full = settings->shot.depth.optional = true;
     if (status == EXIT_DONE)

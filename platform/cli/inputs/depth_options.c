@@ -33,6 +33,9 @@ const struct option depth_ways_options[] = {
     STEREO_FILE_OPTION(struct depth_settings, stereo, NULL),
     {MATCH_OPTION(struct depth_settings, stereo, NULL), .needs = "--stereo,--stereo-file"},
     {PAIR_ORDER_OPTION(struct depth_settings, stereo), .needs = "--stereo,--stereo-file"},
+    {OPTION(OPTION_TEXT, "--strokes", "FILE.json", struct depth_settings, strokes),
+     .help = "depth by strokes, over the other depth that there is, or over nothing; the page of "
+             "refocus serve saves them"},
     {.help = NULL},
 };
 

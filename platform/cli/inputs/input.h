@@ -42,6 +42,7 @@ struct depth_settings {
                              of upsample_words */
     struct limit_settings limits;
     const char *model, *right; /* depth is made by a network, or of this and the photo; or NULL */
+    const char *strokes;       /* a file of strokes that are painted over it, or NULL */
     struct network_settings network;
     struct stereo_settings stereo;
     /* Makes the depth of a photo that was read, where it is not read itself; or NULL. An exit code,

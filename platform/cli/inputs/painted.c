@@ -89,3 +89,12 @@ int painted_apply(struct input *input, const char *file)
     refocus_strokes_destroy(&strokes);
     return status;
 }
+
+int painted_over(struct input *input, const struct depth_settings *settings)
+{
+    if (!settings->strokes)
+        return EXIT_DONE;
+    if (!input->disparity)
+        painted_begin(input, settings);
+    return painted_apply(input, settings->strokes);
+}

@@ -12,5 +12,7 @@ void painted_begin(struct input *input, const struct depth_settings *settings);
 /* Paint the strokes of a file over the disparities, which have the photo's size, or over nothing
  * when there are none yet. */
 int painted_apply(struct input *input, const char *file);
+/* Paint the strokes of the settings, if any, after input_read(), which may have found no depth. */
+int painted_over(struct input *input, const struct depth_settings *settings);
 
 #endif

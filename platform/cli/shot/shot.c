@@ -4,6 +4,7 @@
 #include "inputs/depth_options.h"
 #include "inputs/made.h"
 #include "inputs/matte.h"
+#include "inputs/painted.h"
 #include "line/interrupt.h"
 #include "line/report.h"
 #include "shot/shot.h"
@@ -78,6 +79,8 @@ int shot_check(struct shot_settings *settings, bool own_focus)
 
     if (input_depth_is_made(&settings->depth))
         settings->depth.make = made_depth;
+    if (settings->depth.strokes)
+        settings->depth.full = settings->depth.optional = true;
     settings->engine.bokeh.f_number = settings->lens.f_number;
     if (status == EXIT_DONE)
         status = input_check_lens(&settings->lens);
@@ -107,6 +110,7 @@ int shot_inputs(const struct shot_settings *settings, const char *photo,
     inputs[count++] = settings->config;
     inputs[count++] = settings->depth.model;
     inputs[count++] = settings->depth.right;
+    inputs[count++] = settings->depth.strokes;
     return count;
 }
 
@@ -122,6 +126,8 @@ static int read_files(struct shot *shot, const char *photo, const struct shot_se
         depth.deep = DEEP_NONE;
     depth.light &= engine_draws_light(&shot->engine.params) && !in_strips;
     status = input_read(&shot->input, photo, &depth);
+    if (status == EXIT_DONE)
+        status = painted_over(&shot->input, &depth);
     shot->input.most_blur = engine_most_blur(&settings->engine);
     return status == EXIT_DONE
                ? behind_read(&shot->behind, &settings->behind, &settings->depth, &shot->input)

@@ -44,7 +44,7 @@ int shot_check(struct shot_settings *settings, bool own_focus);
 
 /* The files that a picture is made of, some of which may be NULL, and their number: for
  * checks that none of them is written over. */
-enum { SHOT_INPUTS = 13 };
+enum { SHOT_INPUTS = 14 };
 int shot_inputs(const struct shot_settings *settings, const char *photo,
                 const char *inputs[SHOT_INPUTS]);
 
