@@ -241,7 +241,9 @@ static void points_lie_in_the_picture(void **state)
         bool quit = false;
 
         assert_false(live_focus_command(&focus, wrong[i], &quit, why, sizeof why));
-        assert_non_null(strstr(why, "is no number as it takes them"));
+        assert_non_null(strstr(why, "cannot be used; give "));
+        assert_true((strstr(why, "0 to 3600 seconds") != NULL) ==
+                    (strncmp(wrong[i], "pull", 4) == 0));
     }
     pthread_mutex_destroy(&focus.lock);
 }

@@ -301,7 +301,8 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest, 
 {
     const bool point = strcmp(word, "focus-at") == 0 || strcmp(word, "pull-at") == 0;
     const bool rectangle = strcmp(word, "focus-rectangle") == 0;
-    double values[4] = {0, 0, 0, 0}, seconds = strncmp(word, "pull", 4) == 0 ? 1 : 0;
+    const bool pulls = strncmp(word, "pull", 4) == 0;
+    double values[4] = {0, 0, 0, 0}, seconds = pulls;
     struct live_target target = {.known = !point, .point = {NAN, NAN}};
 
     if (strcmp(word, "blur") != 0 && strcmp(word, "focus") != 0 && strcmp(word, "pull") != 0 &&
@@ -312,10 +313,11 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest, 
         return false;
     }
     if (!parse_values(rest, rectangle ? 4 : point ? 2 : 1, values, &seconds)) {
-        snprintf(why, size, "'%.60s' is no number as it takes them; give %s", rest,
+        snprintf(why, size, "'%.60s' cannot be used; give %s%s", rest,
                  rectangle ? "X,Y,W,H"
-                 : point   ? "X,Y or X,Y SECONDS"
-                           : "one number, and seconds behind it");
+                 : point   ? "X,Y"
+                           : "a number",
+                 pulls ? ", and behind a blank 0 to 3600 seconds" : "");
         return false;
     }
     if (strcmp(word, "blur") == 0) {
