@@ -50,7 +50,7 @@ def options(arguments):
     kernels = 'enabled' if platform.machine().lower() in KERNELS else 'disabled'
     return ['--prefix=/usr', '-Dbuildtype=release',
             *(f'-D{name}=disabled' for name in features if name not in FILES),
-            f'-Dsimd={kernels}', '-Dpython=enabled', '-Ddefault_library=static',
+            f'-Dsimd={kernels}', '-Dpython=enabled', '-Dwheel=true',
             '-Dexamples=false', *arguments]
 
 
