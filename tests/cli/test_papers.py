@@ -34,7 +34,8 @@ class Papers(Case):
     def test_refused(self):
         for why, *options in (
                 ("--star: '1' cannot be used; give 0 for none, or 2 to 16 spikes", '--star', '1'),
-                ("--middle-ratio: '1' cannot be used; give a number above 1", '--middle-ratio',
+                ("--middle-ratio: '1' cannot be used; give a number above 1, at most 1000",
+                 '--middle-ratio',
                  '1', '--method', 'interpolated'),
                 ('--middle-ratio: 4 is not below --last-ratio 3; give the smaller number to '
                  '--middle-ratio', '--middle-ratio', '4', '--last-ratio', '3', '--method',

@@ -91,9 +91,6 @@ int papers_apply(const struct paper_settings *settings, struct refocus_settings 
     if (s->star == 1)
         return report_failure(EXIT_WRONG, "--star",
                               "'1' cannot be used; give 0 for none, or 2 to 16 spikes");
-    if (s->middle_ratio == 1 || s->last_ratio == 1)
-        return report_failure(EXIT_WRONG, s->middle_ratio == 1 ? "--middle-ratio" : "--last-ratio",
-                              "'1' cannot be used; give a number above 1");
     if (s->middle_ratio >= s->last_ratio)
         return report_failure(EXIT_WRONG, "--middle-ratio",
                               "%g is not below --last-ratio %g; give the smaller "
