@@ -96,13 +96,14 @@ static int code_of(const struct step *step, int light)
     return step->texture->transfer->to_code[4 * rf_within(light, RF_LIGHT_MAX)];
 }
 
-/* Light by a residual in codes. */
+/* Light by a residual in codes. Of light above white (highlights/known.h), whose code is that of
+ * white, it takes as much away as of white, and adds nothing. */
 static int changed(const struct step *step, int light, int residual)
 {
     const uint16_t *to_light = step->texture->transfer->to_light;
     const int code = code_of(step, light), other = rf_within(code + residual, 255);
 
-    return rf_within(light + to_light[other] - to_light[code], RF_LIGHT_MAX);
+    return rf_within(light + to_light[other] - to_light[code], rf_larger(light, RF_LIGHT_MAX));
 }
 
 /* Takes the residuals of the window in; returns how many pixels are known. */

@@ -63,6 +63,7 @@ struct refocus_renderer *deep_renderer(int width, int height, float blur, int th
 
     limits.threads = threads;
     limits.deep = 1;
+    limits.textured = 1;
     limits.depth_edges = REFOCUS_DEPTH_EDGES_AUTO;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     return renderer;

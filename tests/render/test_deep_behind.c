@@ -17,31 +17,45 @@ static bool is_before(const struct square *square, int x, int y)
            y < square->y + square->side;
 }
 
-/* Renders a dark square, `times` as bright, before `photo`, with a disparity in focus. */
-static struct deep render_before(const struct deep *photo, const struct square *square, float times,
-                                 float focus, float blur, int blades)
+/* A disparity in focus, and how the lens and what is hidden are made. */
+struct lens {
+    float focus, blur;
+    int blades;
+    uint32_t inpaint;
+};
+
+/* Renders `photo`, of which a square is near. */
+static struct deep render(const struct deep *photo, const struct square *square, struct lens lens)
 {
     struct deep out = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H);
     static uint16_t map[W * H];
     const struct refocus_disparity disparity = refocus_disparity16(map, W, H, 2 * W);
-    struct refocus_settings params = refocus_settings_default(focus, blur);
+    struct refocus_settings params = refocus_settings_default(lens.focus, lens.blur);
     struct refocus_aperture_params shape = refocus_aperture_params_default();
-    struct refocus_renderer *renderer = deep_renderer(W, H, blur, 2);
+    struct refocus_renderer *renderer = deep_renderer(W, H, lens.blur, 2);
     struct refocus_aperture *aperture;
 
-    for (int i = 0; i < W * H; i++) {
+    for (int i = 0; i < W * H; i++)
         map[i] = is_before(square, i % W, i / W) ? 65535 : 0;
-        for (int c = 0; c < 3 && map[i]; c++)
-            deep_put(photo, i % W, i / W, c, times * dark);
-    }
-    shape.blades = blades;
+    shape.blades = lens.blades;
     assert_int_equal(refocus_aperture_create(&aperture, &shape), REFOCUS_OK);
     params.render.aperture = aperture;
+    params.render.inpaint = lens.inpaint;
     assert_int_equal(refocus_prepare(renderer, &photo->image, &disparity), REFOCUS_OK);
     assert_int_equal(refocus_render_settings(renderer, &params, &out.image), REFOCUS_OK);
     refocus_aperture_destroy(&aperture);
     refocus_renderer_destroy(&renderer);
     return out;
+}
+
+/* Renders a dark square, `times` as bright, before `photo`. */
+static struct deep render_before(const struct deep *photo, const struct square *square, float times,
+                                 struct lens lens)
+{
+    for (int i = 0; i < W * H; i++)
+        for (int c = 0; c < 3 && is_before(square, i % W, i / W); c++)
+            deep_put(photo, i % W, i / W, c, times * dark);
+    return render(photo, square, lens);
 }
 
 /* Compares what lies up to 30 pixels beside the square with the sky. */
@@ -51,7 +65,7 @@ static void expect_sky(struct square square, float blur, int blades)
     double worst = 0;
 
     deep_fill(&photo, sky);
-    out = render_before(&photo, &square, 1, 1, blur, blades);
+    out = render_before(&photo, &square, 1, (struct lens){1, blur, blades, 0});
     for (int i = 0; i < W * H; i++) {
         const int x = i % W, y = i / W;
         const double off = fabs((double)deep_get(&out, x, y, 1) / (double)sky - 1);
@@ -85,32 +99,40 @@ static void skies(void **state)
 
 /* A blurred square before a sky in focus: the picture of a fifth of the light, which is not above
  * white, is a fifth as bright. */
+static void expect_alike(const struct square *square, float blur, uint32_t inpaint)
+{
+    const struct lens lens = {0, blur, 0, inpaint};
+    struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H), bright, fifth;
+
+    deep_fill(&photo, sky);
+    bright = render_before(&photo, square, 1, lens);
+    deep_fill(&photo, sky / 5);
+    fifth = render_before(&photo, square, 0.2f, lens);
+    for (int k = 0; k < W * H; k++) {
+        const float got = deep_get(&bright, k % W, k / W, 1);
+        const float expected = 5 * deep_get(&fifth, k % W, k / W, 1);
+
+        if (fabsf(got - expected) > 0.1f)
+            fail_msg("a square at (%d, %d), a blur of %g, inpaint %u: (%d, %d) is %.3f, "
+                     "expected %.3f",
+                     square->x, square->y, (double)blur, (unsigned)inpaint, k % W, k / W,
+                     (double)got, (double)expected);
+    }
+    free(bright.memory);
+    free(fifth.memory);
+    free(photo.memory);
+}
+
 static void blurred_before_a_sky(void **state)
 {
     static const struct square squares[] = {{96, 96, 64}, {90, 85, 61}, {90, 0, 61}};
-    struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H);
 
     (void)state;
     for (size_t i = 0; i < sizeof squares / sizeof *squares; i++)
         for (int blur = 6; blur <= 60; blur *= 3) {
-            struct deep bright, fifth;
-
-            deep_fill(&photo, sky);
-            bright = render_before(&photo, &squares[i], 1, 0, (float)blur, 0);
-            deep_fill(&photo, sky / 5);
-            fifth = render_before(&photo, &squares[i], 0.2f, 0, (float)blur, 0);
-            for (int k = 0; k < W * H; k++) {
-                const float got = deep_get(&bright, k % W, k / W, 1);
-                const float expected = 5 * deep_get(&fifth, k % W, k / W, 1);
-
-                if (fabsf(got - expected) > 0.1f)
-                    fail_msg("square %zu, a blur of %d: (%d, %d) is %.3f, expected %.3f", i, blur,
-                             k % W, k / W, (double)got, (double)expected);
-            }
-            free(bright.memory);
-            free(fifth.memory);
+            expect_alike(&squares[i], (float)blur, REFOCUS_INPAINT_SMOOTH);
+            expect_alike(&squares[i], (float)blur, REFOCUS_INPAINT_TEXTURED);
         }
-    free(photo.memory);
 }
 
 /* A lamp that is beside the square, three pixels wide, adds no more than its own light. */
@@ -124,7 +146,7 @@ static void lamps(void **state)
     deep_fill(&photo, dark);
     for (int i = 0; i < 3 * 9; i++)
         deep_put(&photo, 90 + i / 3 % 3, 120 + i / 9, i % 3, 30);
-    out = render_before(&photo, &square, 1, 1, 20, 0);
+    out = render_before(&photo, &square, 1, (struct lens){1, 20, 0, 0});
     for (int i = 0; i < W * H; i++)
         sum += (double)deep_get(&out, i % W, i / W, 1) - (double)dark;
     assert_true(sum < 9 * 30);
