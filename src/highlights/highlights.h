@@ -165,11 +165,18 @@ struct rf_blur_patch {
  * that are as bright as the highlight. Where a clipped pixel has at least half as many dark pixels
  * of its depth as clipped ones around it, 13 x 13, and three clipped ones farther away that are
  * nobody's silhouette, it is rendered at their depth, the nearest of them.
+ *
+ * Where the light above white is known it tells more. With N the light of such a pixel, F that of
+ * the brightest farther one beside it, and S the least of its own depth, 5 x 5, which is dark, N is
+ * rendered at the depth of F if that gives half of its light: N = (1 - b) S + b F, and 2 b F >= N.
+ * A hair, S = 0.1, before a lamp, F = 8: of N = 2, b = 0.24 and b F = 1.9, so the lamp's it is.
+ * And what outshines N is no silhouette of it.
  */
 struct rf_silhouette_window {
     const struct rf_viewport *view;
     struct rf_light_q12 light; /* linear */
     struct rf_disparity_q16 disparity;
+    const struct rf_deep *known; /* the photo, if it holds what is above white, else NULL */
 };
 
 /* Adds to the list those of the bright pixels in a part of the window. Reads pixels up to seven

@@ -55,8 +55,8 @@ void rf_raise_known(const struct rf_executor *exec, const struct rf_highlight_wi
 /* The hidden background is inpainted from light up to white. Adds the light above it that wide
  * areas have, in a row of tiles, to level 1 of the pyramid that has been pushed from level 0: up to
  * 4 times white in all. Afterwards notes in bins how bright what was inpainted is there. */
-void rf_push_known(const struct rf_highlight_window *window, struct rf_disparity_q16 disparity,
-                   const struct rf_pyramid *pyramid, int band);
+void rf_push_known(const struct rf_highlight_window *window, const struct rf_focus_plan *plan,
+                   struct rf_disparity_q16 disparity, const struct rf_pyramid *pyramid, int band);
 void rf_note_behind(const struct rf_executor *exec, const struct rf_highlight_window *window,
                     struct rf_light_q12 behind, int band);
 

@@ -19,6 +19,7 @@ enum { FAR = 4096 };
 
 struct behind {
     const struct rf_highlight_window *window;
+    const struct rf_focus_plan *plan;
     struct rf_disparity_q16 disparity;
     const struct rf_level *fine, *coarse;
     int apart; /* as of the pyramid */
@@ -28,23 +29,26 @@ struct behind {
 struct tile {
     struct rf_rect at;
     int excess[3][RF_TILE * RF_TILE];
+    int16_t map_blur[RF_TILE * RF_TILE]; /* by the map's disparity, as is stored */
 };
 
+static int place_of(const struct tile *tile, int x, int y)
+{
+    return (y - tile->at.y0) * RF_TILE + x - tile->at.x0;
+}
+
 /* Whether a pixel is behind the focus, or as far as any, and hides nothing that is farther. Other
- * bright things hide what is dark. */
-static bool is_background(const struct behind *b, int x, int y)
+ * bright things hide what is dark. A silhouette that was given the depth of what is behind it is no
+ * more than a mixture. */
+static bool is_background(const struct behind *b, const struct tile *tile, int x, int y)
 {
     const struct rf_blur_q8 *const own = &b->window->blur, *const background = &b->fine->blur;
     const int blur = own->at[y * own->stride + x];
 
     return (rf_in_pixels(blur, own->unit) >= RF_KNOWN_FROM ||
             b->disparity.at[y * b->disparity.stride + x] < FAR) &&
-           background->at[y * background->stride + x] == blur;
-}
-
-static int place_of(const struct tile *tile, int x, int y)
-{
-    return (y - tile->at.y0) * RF_TILE + x - tile->at.x0;
+           background->at[y * background->stride + x] == blur &&
+           tile->map_blur[place_of(tile, x, y)] == blur;
 }
 
 static bool is_above(const struct tile *tile, int i)
@@ -83,6 +87,25 @@ static void read_left(const struct behind *b, struct tile *tile, int y)
     }
 }
 
+static void take_map_blur(const struct behind *b, struct tile *tile)
+{
+    const struct rf_viewport *const view = b->window->view;
+
+    for (int y = tile->at.y0; y < tile->at.y1; y++)
+        rf_focus_row(b->plan, tile->map_blur + place_of(tile, tile->at.x0, y),
+                     b->disparity.at + y * b->disparity.stride + tile->at.x0,
+                     view->x0 + tile->at.x0, view->y0 + y, tile->at.x1 - tile->at.x0);
+}
+
+static bool has_light(const struct tile *tile)
+{
+    int any = 0;
+
+    for (int i = 0; i < RF_TILE * RF_TILE; i++)
+        any |= is_above(tile, i);
+    return any;
+}
+
 /* Whether three quarters of the background in a tile are above white. */
 static bool is_wide(const struct behind *b, const struct tile *tile)
 {
@@ -90,7 +113,7 @@ static bool is_wide(const struct behind *b, const struct tile *tile)
 
     for (int y = tile->at.y0; y < tile->at.y1; y++)
         for (int x = tile->at.x0; x < tile->at.x1; x++)
-            if (is_background(b, x, y)) {
+            if (is_background(b, tile, x, y)) {
                 above += is_above(tile, place_of(tile, x, y));
                 all++;
             }
@@ -128,7 +151,7 @@ static void add_to_parents(const struct behind *b, const struct tile *tile)
             const ptrdiff_t at = y / 2 * light->stride + x / 2;
             int count;
 
-            if (!is_above(tile, i) || !is_background(b, x, y) || !counts(b, x, y))
+            if (!is_above(tile, i) || !is_background(b, tile, x, y) || !counts(b, x, y))
                 continue;
             count = count_all(b, x, y);
             for (int c = 0; c < 3; c++) {
@@ -140,10 +163,10 @@ static void add_to_parents(const struct behind *b, const struct tile *tile)
         }
 }
 
-void rf_push_known(const struct rf_highlight_window *window, struct rf_disparity_q16 disparity,
-                   const struct rf_pyramid *pyramid, int band)
+void rf_push_known(const struct rf_highlight_window *window, const struct rf_focus_plan *plan,
+                   struct rf_disparity_q16 disparity, const struct rf_pyramid *pyramid, int band)
 {
-    const struct behind b = {window, disparity, &pyramid->level[0], &pyramid->level[1],
+    const struct behind b = {window,        plan, disparity, &pyramid->level[0], &pyramid->level[1],
                              pyramid->apart};
 
     for (int tx = 0; tx < window->view->tiles_x && pyramid->levels > 0; tx++) {
@@ -154,6 +177,9 @@ void rf_push_known(const struct rf_highlight_window *window, struct rf_disparity
 
         for (int y = tile.at.y0; y < tile.at.y1; y++)
             (is_left ? read_left : read_listed)(&b, &tile, y);
+        if (!has_light(&tile))
+            continue;
+        take_map_blur(&b, &tile);
         if (is_wide(&b, &tile))
             add_to_parents(&b, &tile);
     }

@@ -1,6 +1,6 @@
 /* silhouette.c: finds pixels at the silhouette of something bright, and the depth that they belong
  * to. */
-#include "highlights/highlights.h"
+#include "highlights/known.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -157,6 +157,42 @@ static bool may_belong_to_background(const struct run *run, int at, int own)
     return fars >= FAR && 2 * darks >= brights;
 }
 
+/* The light of the brightest channel of a pixel, also above white, Q12. */
+static int64_t known_light(const struct rf_silhouette_window *w, int x, int y)
+{
+    int excess[3];
+
+    rf_known_excess(w->known, x + w->view->x0, y + w->view->y0, excess);
+    return rf_brightest_at(&w->light, y * w->light.stride + x) +
+           rf_larger(rf_larger(excess[0], excess[1]), excess[2]);
+}
+
+/* Whether half of the light of a pixel, at the depth `own` of something dark, is that of the
+ * brightest farther one beside it, whose disparity it gets. */
+static bool is_outshone(const struct rf_silhouette_window *w, int x, int y, int own,
+                        uint16_t *disparity)
+{
+    const struct rf_rect in = rf_around(w->view, x, y, 2);
+    const int64_t light = known_light(w, x, y);
+    int64_t far = 0, least = light;
+
+    *disparity = 0;
+    for (int py = in.y0; py < in.y1; py++)
+        for (int px = in.x0; px < in.x1; px++) {
+            const int d = w->disparity.at[py * w->light.stride + px];
+            const bool beside = abs(px - x) <= 1 && abs(py - y) <= 1;
+            const int64_t here = known_light(w, px, py);
+
+            if (abs(d - own) <= JUMP) {
+                least = here < least ? here : least;
+            } else if (beside && d < own && here > far) {
+                far = here;
+                *disparity = (uint16_t)d;
+            }
+        }
+    return far > light && least < DARK && 2 * (light - least) * far >= light * (far - least);
+}
+
 /* Whether the bright pixel (x, y) belongs to a farther surface, whose disparity it gets. */
 static bool belongs_to_background(const struct rf_silhouette_window *w, const struct run *run,
                                   int x, int y, uint16_t *disparity)
@@ -165,8 +201,11 @@ static bool belongs_to_background(const struct rf_silhouette_window *w, const st
     const struct rf_rect in = rf_around(w->view, x, y, AROUND);
     int far = 0, nearest = 0;
 
-    if (!has_far(w, rf_around(w->view, x, y, 1), own) ||
-        !may_belong_to_background(run, x - run->x0, own))
+    if (!has_far(w, rf_around(w->view, x, y, 1), own))
+        return false;
+    if (w->known && is_outshone(w, x, y, own, disparity))
+        return true;
+    if (!may_belong_to_background(run, x - run->x0, own))
         return false;
     for (int py = in.y0; py < in.y1; py++)
         for (int px = in.x0; px < in.x1; px++) {
@@ -186,7 +225,9 @@ static bool belongs_to_background(const struct rf_silhouette_window *w, const st
 static bool is_silhouette(const struct rf_silhouette_window *w, int x, int y, ptrdiff_t n)
 {
     return w->disparity.at[y * w->light.stride + x] + JUMP < w->disparity.at[n] &&
-           is_bright(w, n) && is_mixture(w, x, y, n);
+           is_bright(w, n) && is_mixture(w, x, y, n) &&
+           !(w->known && known_light(w, x, y) > known_light(w, (int)(n % w->light.stride),
+                                                            (int)(n / w->light.stride)));
 }
 
 /* Whether it is the silhouette of one that is nearer than n, or as near and before it. */

@@ -16,6 +16,7 @@ struct mark {
     const struct rf_behind_pass *behind;     /* NULL: the scene has none */
     const struct rf_thin_pass *thin;         /* NULL: it hides nothing */
     const struct rf_highlight_window *known; /* NULL: no light above white is known */
+    const struct rf_focus_plan *plan;
     int levels;
 };
 
@@ -31,7 +32,7 @@ static void push_band(const struct mark *mark, int band)
 
     rf_background_push_band(&r->exec, &r->pyramid, band, 0, rf_smaller(mark->levels, 1));
     if (mark->known)
-        rf_push_known(mark->known, r->disparity, &r->pyramid, band);
+        rf_push_known(mark->known, mark->plan, r->disparity, &r->pyramid, band);
     rf_background_push_band(&r->exec, &r->pyramid, band, 1, mark->levels);
 }
 
@@ -90,6 +91,7 @@ void rf_pass_mark_background(struct rf_frame *f, int levels)
                         .behind = r->photo.behind.width ? &behind : NULL,
                         .thin = f->textured && f->thin.disc_scale ? &f->thin : NULL,
                         .known = known_of(f),
+                        .plan = &f->plan,
                         .pass = {.planes = r->yuv->on ? 1 : 3,
                                  .reach = rf_mark_reach(f->plan.plain, r->view.pad, f->focus.unit),
                                  .blur = r->blur,

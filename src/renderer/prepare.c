@@ -182,9 +182,11 @@ static void take_in(struct refocus_renderer *r, const struct scene *scene)
     if (scene->has_matte && !rf_cancelled(&r->exec))
         take_in_matte(r, &scene->matte);
     if (!rf_cancelled(&r->exec))
-        rf_find_silhouettes(&r->exec,
-                            &(struct rf_silhouette_window){&r->view, r->light, r->disparity},
-                            rf_whole(r), &r->photo.silhouettes);
+        rf_find_silhouettes(
+            &r->exec,
+            &(struct rf_silhouette_window){&r->view, r->light, r->disparity,
+                                           r->deep.on && r->deep.exceeds ? &r->deep : NULL},
+            rf_whole(r), &r->photo.silhouettes);
 }
 
 /* Leaves photo and map where they are, but for a map whose edges were moved. */

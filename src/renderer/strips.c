@@ -101,9 +101,9 @@ void rf_find_silhouettes_in_blocks(struct refocus_renderer *r)
 
         load(r, block, RF_TILE);
         if (!rf_cancelled(&r->exec))
-            rf_find_silhouettes(&r->exec,
-                                &(struct rf_silhouette_window){&r->view, r->light, r->disparity},
-                                rf_part_in_window(&r->view, block), &r->photo.silhouettes);
+            rf_find_silhouettes(
+                &r->exec, &(struct rf_silhouette_window){&r->view, r->light, r->disparity, NULL},
+                rf_part_in_window(&r->view, block), &r->photo.silhouettes);
     }
 }
 

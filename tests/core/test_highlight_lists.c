@@ -142,7 +142,7 @@ static uint32_t silhouettes_of(int codes, bool mottled)
                                      .tiles_x = SQUARE / RF_TILE,
                                      .tiles_y = SQUARE / RF_TILE};
     const struct rf_silhouette_window window = {
-        &view, {{light, light, light}, SQUARE}, {disparity, SQUARE}};
+        &view, {{light, light, light}, SQUARE}, {disparity, SQUARE}, NULL};
     static struct rf_silhouette pixel[SQUARE * SQUARE];
     struct rf_silhouettes list = {.pixel = pixel, .capacity = SQUARE * SQUARE};
     struct rf_kernels kernels;

@@ -1,6 +1,7 @@
 /* test_deep_behind.c: a sky brighter than white is as bright beside what stands before it as it is
  * elsewhere, which of both is in focus: what is inpainted is brighter than white, too. A lamp is
- * not spread there. */
+ * not spread there, and is blurred as far as it is away where something before it hides half of it.
+ */
 #include "deep_pictures.h"
 
 enum { W = 240, H = 240 };
@@ -154,6 +155,44 @@ static void lamps(void **state)
     free(out.memory);
 }
 
+/* A photo that mixes a lamp of 4 rows at the right edge of the square, `near`, with what is behind,
+ * `far`; what is in focus of it is the square. Returns the light of both pixels of a row. */
+static void light_at_edge(float before, float near, float far, float light[2])
+{
+    const struct square square = {96, 96, 64};
+    struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H), out;
+
+    deep_fill(&photo, dark);
+    for (int i = 0; i < 3 * W * H; i++)
+        if (is_before(&square, i / 3 % W, i / 3 / W))
+            deep_put(&photo, i / 3 % W, i / 3 / W, i % 3, before);
+    for (int i = 0; i < 3 * 4; i++) {
+        deep_put(&photo, 159, 120 + i / 3, i % 3, near);
+        deep_put(&photo, 160, 120 + i / 3, i % 3, far);
+    }
+    out = render(&photo, &square, (struct lens){1, 10, 0, 0});
+    light[0] = deep_get(&out, 159, 121, 1);
+    light[1] = deep_get(&out, 160, 121, 1);
+    free(photo.memory);
+    free(out.memory);
+}
+
+/* A lamp behind the square is a disc, also what the photo has of it on the square, as it is
+ * brighter beyond. What is brightest on the square is the square's, and so is what is hardly
+ * brighter than the rest of it. */
+static void lamps_at_edges(void **state)
+{
+    float light[2];
+
+    (void)state;
+    light_at_edge(dark, 6, 8, light);
+    assert_true(light[0] < 1 && light[1] < 1);
+    light_at_edge(dark, 8, 6, light);
+    assert_true(light[0] == 8);
+    light_at_edge(1.25f, 1.5f, 8, light);
+    assert_true(light[0] == 1.5f);
+}
+
 /* One thread and four, the whole and a part, after another focus and at once: the same. */
 static void same_bytes(void **state)
 {
@@ -208,9 +247,9 @@ static void same_bytes(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(skies),
-                                       cmocka_unit_test(blurred_before_a_sky),
-                                       cmocka_unit_test(lamps), cmocka_unit_test(same_bytes)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(skies), cmocka_unit_test(blurred_before_a_sky), cmocka_unit_test(lamps),
+        cmocka_unit_test(lamps_at_edges), cmocka_unit_test(same_bytes)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
