@@ -31,6 +31,30 @@ class Lens(Case):
                       'say; give --near and --far, or --focus or --focus-at in its place',
                    *self.render('--focus-distance', '1', '--near', '1'))
 
+    def test_subject(self):
+        """Without a point, what stands before its surroundings beside the centre is in focus."""
+        def focus(disparity):
+            pictures.pgm('map.pgm', W, H, disparity)
+            return 255 * self.reports('render', 'photo.ppm', '--depth', 'map.pgm', '-o',
+                                      'out.ppm')['focus']
+
+        def ground(y):
+            return 20 + 4 * y
+
+        def person(x):
+            return 7 <= x < 19
+
+        self.assertAlmostEqual(focus(lambda x, y: 204 if person(x) else 20), 204, 1)
+        self.assertAlmostEqual(focus(lambda x, y: 204 if person(x) else ground(y)), 204, 0)
+        self.assertAlmostEqual(focus(lambda x, y: 204 if person(x) else 230 if y > 28 else 20),
+                               204, 1)  # a table in front of all
+        # But the centre is, where nothing stands out, or on both sides, or is as large.
+        self.assertAlmostEqual(focus(lambda x, y: ground(y)), ground(H // 2), 0)
+        self.assertAlmostEqual(focus(lambda x, y: 204 if abs(2 * x - W) > 24 else 20), 20, 1)
+        self.assertAlmostEqual(focus(lambda x, y: 204 if x < 2 else 20), 20, 1)
+        self.assertAlmostEqual(focus(lambda x, y: 20 if person(x) else 204), 204, 1)
+        os.remove('map.pgm')
+
     def test_focus_at_is_robust(self):
         """Wrong single samples do not win."""
         pictures.pgm('specks.pgm', W, H,

@@ -115,10 +115,11 @@ static void print_defaults(const struct input *input)
     if (!find_blur(input, &blur, why))
         return;
     printf("render takes  %.1f pixels of blur: %s\n", blur, why);
-    printf("              focus on the %s\n", has_focus_point(info) ? "focus point"
-                                              : info->focus_distance > 0 && input->report.near_m > 0
-                                                  ? "focus distance"
-                                                  : "centre, for the file names no point");
+    printf("              focus on the %s\n",
+           has_focus_point(info) ? "focus point"
+           : info->focus_distance > 0 && input->report.near_m > 0
+               ? "focus distance"
+               : "subject by its depth, or the centre: the file names no point");
 }
 
 /* How the edges of the depth lie on the photo's, and what rendering does about it. */

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "inputs/lens.h"
+#include "inputs/subject.h"
 #include "line/report.h"
 
 static bool given(double value)
@@ -364,8 +365,9 @@ int input_focus(const struct input *input, const struct lens_settings *settings,
         *focus = fmin(fmax(refocus_disparity_of_depth(&range, info->focus_distance), 0), 1);
         return EXIT_DONE;
     } else {
-        at[0] = width / 2;
-        at[1] = height / 2;
+        *focus = input_surface_at(prepared, width, height, width / 2, height / 2);
+        input_find_subject(prepared, width, height, *focus, focus);
+        return EXIT_DONE;
     }
     *focus = input_surface_at(prepared, width, height, (int)at[0], (int)at[1]);
     return EXIT_DONE;

@@ -58,7 +58,7 @@ int input_focus(const struct input *input, const struct lens_settings *settings,
                 const uint16_t *prepared, double *focus);
 
 /* The pixel where the focus is found, by the settings or the file; NAN: it is not found at one, or
- * at the centre because nothing says where. */
+ * nothing says where: it is on the subject (inputs/subject.h), else on the centre. */
 void input_focus_point(const struct input *input, const struct lens_settings *settings,
                        double at[2]);
 

@@ -9,7 +9,8 @@ const struct option focus_options[] = {
      .least = -INFINITY, .greatest = INFINITY, .count = 2,
      .brief = "focus on the surface at that pixel",
      .help = "focus on the surface at that pixel: the nearer one at an edge; without any "
-             "--focus...: the point or distance that the file names, else the centre"},
+             "--focus...: the point or distance that the file names, else what stands before its "
+             "surroundings near the centre, else the centre"},
     {OPTION(OPTION_NUMBERS, "--focus-rectangle", "X,Y,W,H", struct lens_settings, focus_rectangle),
      .group = "focus", .least = 0, .greatest = REFOCUS_MAX_SIDE, .count = 4,
      .help = "focus on the nearest surface that has a quarter of that rectangle, pixels"},
