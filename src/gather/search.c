@@ -13,8 +13,7 @@
  * guess, 0.4, leads 2 pixels to the right, where the disparity is 0.41: 20 x 0.01 is 0.2 pixels,
  * and the ray hits this pixel.
  */
-#include "gather/search_chunk.h"
-#include "gather/search_counts.h"
+#include "gather/frame.h"
 #include "gather/sums.h"
 #include "image/viewport.h"
 
@@ -30,6 +29,12 @@ union run {
     uint64_t weighted[4][LANES];
 };
 
+/* At most RF_RAY_CHUNK rays of equal weight, and the cells of their first guesses. */
+struct chunk {
+    struct rf_search_rays rays;
+    int32_t cell[RF_RAY_CHUNK];
+};
+
 /* The rays of a strip: those that are settled for the strip as a whole, which are added as the
  * sweep adds rays that need no test, and those to be searched. */
 struct sorted {
@@ -37,8 +42,28 @@ struct sorted {
     alignas(64) struct rf_search_rays left;
 };
 
-static void sort_chunk(struct sorted *sorted, const struct rf_frame *f,
-                       const struct rf_search_chunk *chunk, int tx, int y)
+/* Sets n rays. */
+static void set_chunk(struct chunk *chunk, const struct rf_frame *f, const struct refocus_ray *ray,
+                      int n)
+{
+    struct rf_search_rays *rays = &chunk->rays;
+
+    rays->rays = n;
+    for (int i = 0; i < n; i++) {
+        rays->u[i] = ray[i].u;
+        rays->v[i] = ray[i].v;
+    }
+    f->exec->kernels->aim(rays->start, chunk->cell, rays->u, rays->v, rf_nearest_blur(f), 0,
+                          (int32_t)f->view->stride, (int32_t)f->range.stride, n);
+    f->exec->kernels->tolerances(rays->within, rays->u, rays->v, n);
+}
+
+/* The planes of light and of weights have rows of their own: where a settled ray looks is told as
+ * x + PLACE_ROW y, from which either's offset follows. */
+enum { PLACE_ROW = 256 };
+
+static void sort_chunk(struct sorted *sorted, const struct rf_frame *f, const struct chunk *chunk,
+                       int tx, int y)
 {
     const uint16_t *const light =
         rf_searched_light(f).channel[0] + y * f->view->stride + tx * RF_TILE;
@@ -49,9 +74,11 @@ static void sort_chunk(struct sorted *sorted, const struct rf_frame *f,
     int32_t place[RF_RAY_CHUNK];
     int add = 0, search = 0;
 
-    rf_settle_chunk(is_settled, place, f, chunk, tx, y);
+    f->exec->kernels->settle(
+        is_settled, place, f->range.at + y / RF_CELL * f->range.stride + tx * (RF_TILE / RF_CELL),
+        chunk->cell, rays, f->params->iterations, PLACE_ROW, (int32_t)f->range.stride);
     for (int n = 0; n < rays->rays; n++) {
-        const int row = rf_settled_y(place[n]), x = rf_settled_x(place[n]);
+        const int row = (place[n] + PLACE_ROW / 2) >> 8, x = place[n] - row * PLACE_ROW;
 
         left->start[search] = rays->start[n];
         left->u[search] = rays->u[n];
@@ -74,8 +101,6 @@ static_assert(UINT64_C(16) * RF_CHROMA_MAX * RF_WEIGHT_MAX <= UINT32_MAX &&
                   UINT64_C(32) * RF_LIGHT_MAX * RF_WEIGHT_MAX <= UINT32_MAX,
               "sums of weighted light");
 static_assert((int)RF_CHROMA_MAX <= (int)RF_PLAIN_GAIN * RF_LIGHT_MAX, "chroma is RF_BRIGHT");
-
-static_assert(8 * RF_LIGHT_MAX <= INT16_MAX, "light that is RF_BRIGHTER is counted as signed");
 
 /* The most that a plane of what is searched holds. */
 static int most_light(const struct rf_frame *f)
@@ -118,17 +143,12 @@ static struct rf_search_job job_of(const struct rf_frame *f, const struct rf_sea
     return job;
 }
 
-/* The share of a worker, for a tile, whose rays are followed one by one, or counted. */
+/* The share of a worker. */
 struct share {
     alignas(64) struct rf_sums sums;
-    union {
-        struct {
-            alignas(64) union run run;
-            alignas(64) struct rf_search_chunk chunk;
-            struct sorted sorted;
-        };
-        struct rf_counting counting;
-    };
+    alignas(64) union run run;
+    alignas(64) struct chunk chunk;
+    struct sorted sorted;
 };
 
 uint64_t rf_search_share(void)
@@ -182,11 +202,13 @@ static void add_run(const struct rf_frame *f, const union run *run, uint64_t ray
         sums->weight[i] += ray_weight * run->weighted[3][i];
 }
 
-static void search_rays(const struct rf_frame *f, int tx, int ty, const struct rf_ray_set *set,
-                        struct share *share)
+/* Adds up the rays of a tile. */
+static void search_sums(const struct rf_frame *f, int tx, int ty, struct share *share)
 {
+    const struct rf_ray_set *const set = &f->ray_sets->set[f->ray_sets->preset];
     struct rf_sums *const sums = &share->sums;
 
+    memset(sums, 0, sizeof *sums);
     memset(&share->run, 0, sizeof share->run);
     for (int n = 0, rays; n < set->count; n += rays) {
         const struct refocus_ray *ray = &set->ray[n];
@@ -194,7 +216,7 @@ static void search_rays(const struct rf_frame *f, int tx, int ty, const struct r
         if (rf_cancelled(f->exec))
             return;
         rays = rf_rays_of_equal_weight(set, n);
-        rf_set_search_chunk(&share->chunk, f, ray, rays, f->view->stride);
+        set_chunk(&share->chunk, f, ray, rays);
         for (int y = 0; y < RF_TILE; y += RF_STRIP)
             search_strip(f, share, tx, ty * RF_TILE + y);
         if (n + rays < set->count && ray[rays].weight == ray->weight)
@@ -204,18 +226,6 @@ static void search_rays(const struct rf_frame *f, int tx, int ty, const struct r
     }
     for (int i = 0; !f->weighted && i < LANES; i++)
         sums->weight[i] = set->total_weight;
-}
-
-/* Adds up the rays of a tile. */
-static void search_sums(const struct rf_frame *f, int tx, int ty, struct share *share)
-{
-    const struct rf_ray_set *const set = &f->ray_sets->set[f->ray_sets->preset];
-
-    memset(&share->sums, 0, sizeof share->sums);
-    if (rf_count_begin(&share->counting, f, tx, ty, set))
-        rf_count_rays(&share->counting, f, tx, ty, set, &share->sums);
-    else
-        search_rays(f, tx, ty, set, share);
 }
 
 static void compute_means(const struct rf_sums *sums, uint16_t mean[3][LANES])

@@ -7,7 +7,7 @@
 
 #include "kernels/kernels.h"
 
-enum { N = 1024, MARGIN = 256, ROW = N + 2 * MARGIN, SHORTS = 12, FLOATS = 6, COUNTED = 256 };
+enum { N = 1024, MARGIN = 256, ROW = N + 2 * MARGIN, SHORTS = 12, FLOATS = 6 };
 
 /* Rows with a margin: what each kernel takes them for is its business. */
 struct rows {
@@ -22,11 +22,6 @@ struct rows {
     uint64_t strip_wide[4][RF_STRIP_LANES];
     struct rf_sorted_rays rays;
     struct rf_search_rays searched;
-    int16_t around[(RF_TILE + 2 * RF_COUNT_REACH) * RF_COUNT_ROW]; /* blur around a tile */
-    uint16_t counts[RF_COUNTS][RF_TILE], number[COUNTED];
-    uint8_t touched[RF_COUNTS];
-    uint32_t counted_sum[RF_COUNTED_PLANES][RF_TILE];
-    struct rf_counted_rays counted;
 };
 
 typedef void measured_fn(const struct rf_kernels *k, struct rows *r);
@@ -193,37 +188,6 @@ static void search_weighted(const struct rf_kernels *k, struct rows *r)
                        &job);
 }
 
-/* A chunk of rays of one row of a tile, two surfaces around it. */
-static void count_hits(const struct rf_kernels *k, struct rows *r)
-{
-    struct rf_counted_rays *rays = &r->counted;
-
-    rays->rays = RF_RAY_CHUNK;
-    for (int n = 0; n < RF_RAY_CHUNK; n++) {
-        rays->u[n] = (int16_t)((n % 8 - 4) * 3000);
-        rays->v[n] = (int16_t)((n / 8 - 4) * 3000);
-        rays->start[n] = (int16_t)((n / 8 - 4) * RF_COUNT_ROW + (n % 8 - 4) * 5);
-        rays->within[n] = 128;
-        rays->times[n] = 1;
-    }
-    k->count_hits(r->counts, r->touched, r->around + rf_count_number(0, 0), rays);
-}
-
-/* The planes overlap, which changes nothing in the time. */
-static void add_counted(const struct rf_kernels *k, struct rows *r)
-{
-    const struct rf_counted_job job = {.count = (const uint16_t(*)[RF_TILE])r->counts,
-                                       .plane = r->shorts[0],
-                                       .pitch = ROW,
-                                       .planes = RF_COUNTED_PLANES,
-                                       .n = COUNTED,
-                                       .number = r->number};
-
-    for (int i = 0; i < COUNTED; i++)
-        r->number[i] = (uint16_t)rf_count_number(i % 16 - 8, i / 16 - 8);
-    k->add_counted(r->counted_sum, &job);
-}
-
 static const struct {
     const char *name, *unit;
     measured_fn *run;
@@ -232,8 +196,6 @@ static const struct {
     {"sweep", "ray sample", sweep, RF_RAY_CHUNK *RF_STRIP_LANES},
     {"search", "ray sample", search, RF_RAY_CHUNK *RF_STRIP_LANES},
     {"search_weighted", "ray sample", search_weighted, RF_RAY_CHUNK *RF_STRIP_LANES},
-    {"count_hits", "ray sample", count_hits, RF_RAY_CHUNK *RF_TILE},
-    {"add_counted", "product", add_counted, COUNTED *RF_COUNTED_PLANES *RF_TILE},
     {"signed_blur", "pixel", signed_blur, N},
     {"smooth3", "pixel", smooth3, N},
     {"spread_row", "pixel", spread_row, N},
@@ -266,8 +228,6 @@ static void fill(struct rows *r)
         r->wide[1][i] = 1000u + r->shorts[2][i];
         r->wide[0][i] = r->wide[1][i] * r->shorts[3][i];
     }
-    for (int i = 0; i < (int)(sizeof r->around / sizeof r->around[0]); i++)
-        r->around[i] = r->blur[0][i % RF_COUNT_ROW];
     for (int y = 0; y < 4 * RF_TILE; y++) {
         memcpy(r->plane[y], r->blur[0], sizeof r->blur[0]);
         for (int c = 0; c < 3; c++)

@@ -33,7 +33,6 @@ int check_sweep(const struct subject *subject);
 int check_aim(const struct subject *subject);
 int check_windows(const struct subject *subject);
 int check_search(const struct subject *subject);
-int check_counts(const struct subject *subject);
 int check_series(const struct subject *subject);
 int check_texture(const struct subject *subject);
 int check_discs(const struct subject *subject);

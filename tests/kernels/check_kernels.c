@@ -79,10 +79,9 @@ int main(int argc, char **argv)
         } else if (!bench) {
             failures += check_vec(cpu) + check_aim(&subject) + check_windows(&subject) +
                         check_sweep(&subject) + check_discs(&subject) + check_light(&subject) +
-                        check_search(&subject) + check_counts(&subject) + check_series(&subject) +
-                        check_texture(&subject) + check_rows(&subject) + check_surface(&subject) +
-                        check_thin(&subject) + check_edges(&subject) + check_edge_planes(&subject) +
-                        check_yuv(&subject);
+                        check_search(&subject) + check_series(&subject) + check_texture(&subject) +
+                        check_rows(&subject) + check_surface(&subject) + check_thin(&subject) +
+                        check_edges(&subject) + check_edge_planes(&subject) + check_yuv(&subject);
         }
     }
     return failures > 0;
