@@ -8,7 +8,6 @@
 #include "live/live_commands.h"
 #include "live/live_depth_camera.h"
 #include "live/live_estimate.h"
-#include "live/live_inputs.h"
 #include "live/live_lens.h"
 #include "live/live_look.h"
 #include "live/live_options.h"
@@ -147,7 +146,7 @@ static void run_threads(struct live *live)
      * came. */
     if (running[OUTPUT])
         pthread_join(thread[OUTPUT], NULL);
-    live_end(live);
+    live_stop(live);
     live_depths_end(&live->depths, false);
     live_queue_close(&live->captured);
     live_queue_close(&live->rendered);
@@ -171,9 +170,9 @@ static void begin_without_frames(struct live *live)
         refocus_sink_start_image(live->sink, &like, live->mode.fps, NULL);
 }
 
-static void end_live(void *live)
+static void stop_live(void *live)
 {
-    live_end(live);
+    live_stop(live);
 }
 
 static int run_live(struct live *live)
@@ -181,7 +180,7 @@ static int run_live(struct live *live)
     struct refocus_reason reason = {""};
     int status;
 
-    interrupt_call(end_live, live);
+    interrupt_call(stop_live, live);
     status = open_all(live);
     if (status == EXIT_DONE) {
         live->yuv_formats = find_yuv_formats(live);
@@ -206,6 +205,30 @@ static int run_live(struct live *live)
     return status;
 }
 
+/* An output that would be written over an input is refused before either is opened. */
+static int check_output(const struct live_settings *settings)
+{
+    const char *const inputs[] = {settings->camera,
+                                  settings->depth.file,
+                                  settings->estimate.model,
+                                  settings->calibration,
+                                  settings->engine.aperture,
+                                  settings->engine.papers.field_map,
+                                  settings->engine.controls.focus_map,
+                                  settings->engine.controls.sharp_mask};
+
+    for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++) {
+        const int answer = refocus_sink_overwrites(settings->out, inputs[i]);
+
+        if (answer < 0)
+            return report_failure(EXIT_FAILED, settings->out, "%s", refocus_strerror(answer));
+        if (answer)
+            return report_failure(EXIT_WRONG, settings->out,
+                                  "it is an input too and would be lost; give another name");
+    }
+    return EXIT_DONE;
+}
+
 static int run(int argc, char **argv)
 {
     struct live_settings settings = live_settings_none;
@@ -221,7 +244,7 @@ static int run(int argc, char **argv)
         return list(&settings);
     status = live_check_settings(&settings);
     if (status == EXIT_DONE)
-        status = live_check_inputs(&settings);
+        status = check_output(&settings);
     if (status != EXIT_DONE)
         return status;
     live = calloc(1, sizeof *live);

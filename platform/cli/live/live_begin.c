@@ -4,7 +4,7 @@
 #include <unistd.h>
 #include "line/report.h"
 #include "live/live_lock.h"
-#include "live/live_sources.h"
+#include "live/live_state.h"
 
 int live_begin(struct live *live, const struct live_settings *settings, struct engine *engine)
 {

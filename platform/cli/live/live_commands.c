@@ -51,7 +51,7 @@ static void obey(void *user, char *line)
             report_failure(EXIT_FAILED, line, "%s", why); /* printed, and live goes on */
     }
     if (quit)
-        live_end(live);
+        live_stop(live);
 }
 
 /* False when no more will come. */

@@ -19,8 +19,6 @@ struct live_feed {
     struct live live;
     struct live_settings settings;
     struct engine engine;
-    pthread_t thread[FEED_THREADS];
-    bool running[FEED_THREADS];
     struct live_picture *held;
     struct live_depth_map wide;
     struct live_range range;
@@ -33,11 +31,10 @@ static int start(struct live_feed *feed)
     const bool wanted[FEED_THREADS] = {true, feed->live.depth_camera, feed->live.estimator};
 
     for (int i = 0; i < FEED_THREADS; i++) {
-        if (!wanted[i])
-            continue;
-        if (pthread_create(&feed->thread[i], NULL, main_of[i], &feed->live) != 0)
+        pthread_t thread;
+
+        if (wanted[i] && pthread_create(&thread, NULL, main_of[i], &feed->live) != 0)
             return report_failure(EXIT_FAILED, "live", "a thread could not be started");
-        feed->running[i] = true;
     }
     return EXIT_DONE;
 }
@@ -122,24 +119,4 @@ int live_feed_next(struct live_feed *feed, int wait_ms, struct live_frame *frame
     frame->depth = depth;
     *came = true;
     return EXIT_DONE;
-}
-
-void live_feed_close(struct live_feed **feed)
-{
-    struct live_feed *const closed = *feed;
-
-    *feed = NULL;
-    if (!closed)
-        return;
-    live_end(&closed->live);
-    live_depths_end(&closed->live.depths, false);
-    live_queue_close(&closed->live.captured);
-    live_queue_close(&closed->live.to_estimate);
-    for (int i = 0; i < FEED_THREADS; i++)
-        if (closed->running[i])
-            pthread_join(closed->thread[i], NULL);
-    live_sources_close(&closed->live);
-    live_clear(&closed->live);
-    free(closed->wide.disparity);
-    free(closed);
 }

@@ -13,12 +13,11 @@ struct live_frame {
     const struct live_depth_map *depth;
 };
 
-/* Open the sources of settings that are checked, and stay; an exit code, and reports why. Ended by
- * live_feed_close(), also after an error. */
+/* Open the sources of settings that are checked, and stay; an exit code, and reports why. A feed
+ * ends with its process: one of the page's has one session, and its cameras. */
 int live_feed_open(struct live_feed **feed, const struct live_settings *settings);
 /* Wait so long for a frame that is newer than the last one. An exit code, which is not EXIT_DONE
  * once the sources have failed, and why is reported; *came: whether there is one. */
 int live_feed_next(struct live_feed *feed, int wait_ms, struct live_frame *frame, bool *came);
-void live_feed_close(struct live_feed **feed);
 
 #endif

@@ -108,7 +108,7 @@ void *live_output_thread(void *argument)
         if (!go_on)
             break;
     }
-    live_end(live);
+    live_stop(live);
     live_queue_close(&live->rendered);
     return NULL;
 }

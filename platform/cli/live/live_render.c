@@ -2,10 +2,10 @@
 #include <math.h>
 #include <stdlib.h>
 #include "inputs/lens.h"
+#include "inputs/upsample.h"
 #include "line/interrupt.h"
 #include "live/live_look.h"
 #include "live/live_render.h"
-#include "live/live_upsample.h"
 
 /* Small changes of the light of highlights from frame to frame are reduced by this part. */
 #define STEADY_LIGHT 0.8f
@@ -113,6 +113,28 @@ static void advance(struct live *live, const struct live_picture *picture)
     live->last_frame_ns = picture->timestamp_ns;
 }
 
+/* Puts a map of the photo's size in place of a map of another, in memory that `full` owns, by a way
+ * of upsample_words; the core's is left to the renderer. */
+static int upsample(struct live_depth_map *full, const struct live_depth_map **map,
+                    const struct refocus_image *photo, int way, struct refocus_reason *reason)
+{
+    const struct live_depth_map *const from = *map;
+    const struct refocus_disparity small =
+        refocus_disparity16(from->disparity, from->width, from->height, (ptrdiff_t)from->width * 2);
+    int status;
+
+    if (way == 0 || (from->width == photo->width && from->height == photo->height))
+        return REFOCUS_OK;
+    if (!live_depth_reserve(full, photo->width, photo->height))
+        return REFOCUS_ERR_MEMORY;
+    status = upsample_by_filter(way, photo, &small, full->disparity, reason);
+    full->timestamp_ns = from->timestamp_ns;
+    full->number = from->number;
+    full->range = from->range;
+    *map = full;
+    return status;
+}
+
 static int refocus(struct live *live, const struct live_picture *picture,
                    const struct live_depth_map *map, const struct refocus_image *out,
                    struct refocus_reason *reason)
@@ -128,8 +150,8 @@ static int refocus(struct live *live, const struct live_picture *picture,
     live_focus_frame(&live->focus, live->clock_ns, live->lens_dioptres, &live->range);
     status = live_depth_widen(&live->wide, &map, &live->range);
     if (status == REFOCUS_OK)
-        status = live_upsample(&live->full, &map, &picture->image, live->settings->depth.upsample,
-                               reason);
+        status =
+            upsample(&live->full, &map, &picture->image, live->settings->depth.upsample, reason);
     if (status != REFOCUS_OK)
         return status;
     disparity =

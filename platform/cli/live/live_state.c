@@ -10,7 +10,7 @@ bool live_is_over(struct live *live)
     return atomic_load(&live->quit) || interrupt_came();
 }
 
-void live_end(struct live *live)
+void live_stop(struct live *live)
 {
     const uint64_t one = 1;
 
@@ -38,5 +38,5 @@ void live_note_failure(struct live *live, int exit_code, const char *what, const
 void live_fail(struct live *live, int exit_code, const char *what, const char *why)
 {
     live_note_failure(live, exit_code, what, why);
-    live_end(live);
+    live_stop(live);
 }

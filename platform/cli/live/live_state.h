@@ -79,12 +79,18 @@ struct live {
     uint64_t frames_rendered;
 };
 
+/* Begin with no thread and no camera, in memory of zeros. What is given stays the caller's. An exit
+ * code; unless that is EXIT_DONE it prints why, and there is nothing to clear. */
+int live_begin(struct live *live, const struct live_settings *settings, struct engine *engine);
+void live_clear(struct live *live);
+
 /* Remember the first failure; what "": it has been printed. A source that fails does no more than
  * that and ends: what came before is still rendered and written. */
 void live_note_failure(struct live *live, int exit_code, const char *what, const char *why);
-/* Remember the first failure, and let all come to an end at once. */
+/* Remember the first failure, and stop. */
 void live_fail(struct live *live, int exit_code, const char *what, const char *why);
-void live_end(struct live *live);
+/* Let all come to an end at once. */
+void live_stop(struct live *live);
 bool live_is_over(struct live *live);
 
 #endif
