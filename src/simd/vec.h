@@ -46,13 +46,10 @@
  *                             of four groups of four elements: out[i] = 2^15 +
  *                             (sum of (p[i][k] - 2^15) * share[i][k] + 2^14) >> 15, shares not
  *                             negative and of sum 2^15
- *
- *     vec_u16_mix4(a, b, c, d, share)
- *                             the same of lane i of a, b, c and d with one share[4]
- *
  *     vec_u16_cubic4(a, b, c, d, share)
  *                             2^15 + ((sum of (p - 2^15) * share + 2^13) >> 14) of a lane p of
- * each, or the nearest of 0 and 65535; magnitudes of shares add up to less than 2^15
+ *                             each, or the nearest of 0 and 65535; magnitudes of shares add up
+ *                             to less than 2^15
  *
  * A vec_mask has lanes that are on or off:
  *

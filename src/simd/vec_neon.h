@@ -211,25 +211,6 @@ static inline void vec_dots4(uint16_t out[4], const uint16_t *const p[4],
     vst1_u16(out, veor_u16(vreinterpret_u16_s16(vqrshrn_n_s32(sums, 15)), sign));
 }
 
-/* Works on unsigned numbers: sums are below 2^31, and as shares sum to 2^15, so does what they
- * multiply 2^15 by. */
-static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
-                                   const int16_t share[4])
-{
-    const uint16_t s0 = (uint16_t)share[0], s1 = (uint16_t)share[1];
-    const uint16_t s2 = (uint16_t)share[2], s3 = (uint16_t)share[3];
-    uint32x4_t low = vmull_n_u16(vget_low_u16(a), s0);
-    uint32x4_t high = vmull_n_u16(vget_high_u16(a), s0);
-
-    low = vmlal_n_u16(low, vget_low_u16(b), s1);
-    high = vmlal_n_u16(high, vget_high_u16(b), s1);
-    low = vmlal_n_u16(low, vget_low_u16(c), s2);
-    high = vmlal_n_u16(high, vget_high_u16(c), s2);
-    low = vmlal_n_u16(low, vget_low_u16(d), s3);
-    high = vmlal_n_u16(high, vget_high_u16(d), s3);
-    return vcombine_u16(vrshrn_n_u32(low, 15), vrshrn_n_u32(high, 15));
-}
-
 static inline vec_u16 vec_u16_cubic4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
                                      const int16_t share[4])
 {

@@ -163,11 +163,10 @@ static inline vec_u16 vec_s16_max(vec_u16 a, vec_u16 b)
 }
 
 /* Both halves of registers unpack and pack alike: lanes stay where they were. */
-static inline vec_u16 vec_weigh4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d, const int16_t share[4],
-                                 const int shift)
+static inline vec_u16 vec_u16_cubic4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
+                                     const int16_t share[4])
 {
-    const vec_u16 sign = VEC_LANES(set1_epi16)(-32768),
-                  half = VEC_LANES(set1_epi32)(1 << (shift - 1));
+    const vec_u16 sign = VEC_LANES(set1_epi16)(-32768), half = VEC_LANES(set1_epi32)(1 << 13);
     const vec_u16 ab = VEC_LANES(set1_epi32)(vec_pair(share[0], share[1]));
     const vec_u16 cd = VEC_LANES(set1_epi32)(vec_pair(share[2], share[3]));
     vec_u16 low, high;
@@ -180,21 +179,9 @@ static inline vec_u16 vec_weigh4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d, con
                                VEC_LANES(madd_epi16)(VEC_LANES(unpacklo_epi16)(c, d), cd));
     high = VEC_LANES(add_epi32)(VEC_LANES(madd_epi16)(VEC_LANES(unpackhi_epi16)(a, b), ab),
                                 VEC_LANES(madd_epi16)(VEC_LANES(unpackhi_epi16)(c, d), cd));
-    low = VEC_LANES(srai_epi32)(VEC_LANES(add_epi32)(low, half), shift);
-    high = VEC_LANES(srai_epi32)(VEC_LANES(add_epi32)(high, half), shift);
+    low = VEC_LANES(srai_epi32)(VEC_LANES(add_epi32)(low, half), 14);
+    high = VEC_LANES(srai_epi32)(VEC_LANES(add_epi32)(high, half), 14);
     return VEC_WHOLE(xor)(VEC_LANES(packs_epi32)(low, high), sign);
-}
-
-static inline vec_u16 vec_u16_mix4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
-                                   const int16_t share[4])
-{
-    return vec_weigh4(a, b, c, d, share, 15);
-}
-
-static inline vec_u16 vec_u16_cubic4(vec_u16 a, vec_u16 b, vec_u16 c, vec_u16 d,
-                                     const int16_t share[4])
-{
-    return vec_weigh4(a, b, c, d, share, 14);
 }
 
 static inline vec_u16 vec_u16_select(vec_u16 m, vec_u16 a, vec_u16 b)

@@ -206,42 +206,6 @@ static int check_sixteen(void)
     return 0;
 }
 
-/* Lanes of four vectors by one share each. */
-static int check_mix(void)
-{
-    uint32_t seed = 14;
-
-    for (int round = 0; round < ROUNDS; round++) {
-        uint16_t in[4][MOST_LANES], out[MOST_LANES];
-        const int some = noise_between(&seed, 1, 32767), least = round / 4 % 3;
-        int16_t share[4] = {0};
-
-        share[round % 4] = (int16_t)(round % 5 ? some : 32767);
-        share[(round + 1 + least) % 4] = (int16_t)(32768 - share[round % 4]);
-        if (round % 3 == 0) {
-            share[round % 4] = (int16_t)(share[round % 4] / 2);
-            share[(round + 1 + (least + 1) % 3) % 4] =
-                (int16_t)(32768 - share[round % 4] - share[(round + 1 + least) % 4]);
-        }
-        for (int k = 0; k < 4; k++)
-            for (int i = 0; i < (int)VEC_U16; i++)
-                in[k][i] = pick(round, i, k % 2, &seed);
-        vec_u16_store(out, vec_u16_mix4(vec_u16_load(in[0]), vec_u16_load(in[1]),
-                                        vec_u16_load(in[2]), vec_u16_load(in[3]), share));
-        for (int i = 0; i < (int)VEC_U16; i++) {
-            int64_t sum = 1 << 14;
-
-            for (int k = 0; k < 4; k++)
-                sum += (int64_t)in[k][i] * share[k];
-            if (out[i] != sum >> 15) {
-                printf("FAIL  vec_u16_mix4, %s: round %d\n", TEXT(RF_VEC_SET), round);
-                return 1;
-            }
-        }
-    }
-    return 0;
-}
-
 /* Shares of any sign, whose magnitudes add up to less than 2^15. */
 static int check_cubic(void)
 {
@@ -281,5 +245,5 @@ static int check_cubic(void)
 int RF_VEC(check_vec_across)(void)
 {
     return check_from_bytes() + check_order() + check_bytes() + check_together() + check_sixteen() +
-           check_mix() + check_cubic();
+           check_cubic();
 }

@@ -1,8 +1,8 @@
 /* blend4.c: the depth upsampler: computes the weighted mean of four rows of samples. */
 #include "kernels/kernels.h"
 
-void rf_blend4_c(uint16_t *restrict out, const uint16_t *const row[RF_TAPS],
-                 const int16_t share[RF_TAPS], int n)
+void RF_VEC(rf_blend4)(uint16_t *restrict out, const uint16_t *const row[RF_TAPS],
+                       const int16_t share[RF_TAPS], int n)
 {
     const uint16_t *restrict a = row[0], *restrict b = row[1];
     const uint16_t *restrict c = row[2], *restrict d = row[3];
