@@ -44,12 +44,6 @@ int check_edges(const struct subject *subject);
 int check_edge_planes(const struct subject *subject);
 int check_focus(void);
 
-/* Prints a line with the time of each kernel of rows, in plain C and by the subject. */
-void bench_rows(const struct subject *subject);
-
-/* Seconds that the fastest of several runs of call(context) takes. */
-double best_time(void (*call)(void *context), void *context);
-
 /* Operations of simd/vec.h, by check_vec.c of each instruction set. */
 #define SET(name, NAME, test) int check_vec_##name(void);
 #define NO_SET(name, NAME)

@@ -1,31 +1,14 @@
 /* check_kernels.c: check-kernels: every kernel of every instruction set that this build and this
- * processor have, bit for bit against a reference. With --bench, their times beside those of
- * plain C.
+ * processor have, bit for bit against a reference. With --bench, the times of those that
+ * src/kernels/measure.c has, beside those of plain C.
  *
  * usage: check-kernels [--bench] */
 #include "check.h"
-#include "../clock.h"
 
 #include <refocus/measure.h>
 
 #include <stdio.h>
 #include <string.h>
-
-double best_time(void (*call)(void *context), void *context)
-{
-    const double end = now_ms() + 100;
-    double best = 1e9;
-
-    do {
-        const double start = now_ms();
-        double taken;
-
-        call(context);
-        taken = 1e-3 * (now_ms() - start);
-        best = taken < best ? taken : best;
-    } while (now_ms() < end);
-    return best;
-}
 
 /* Plain C has no operations of its own. */
 int check_vec_c(void)
@@ -45,7 +28,6 @@ static int check_vec(uint32_t cpu)
     return 0;
 }
 
-/* The kernels that have a row in src/kernels/measure.c. */
 static void bench_measured(uint32_t cpu)
 {
     struct refocus_kernel_time time = refocus_kernel_time_default();
@@ -75,7 +57,6 @@ int main(int argc, char **argv)
             continue;
         if (bench && cpu != REFOCUS_CPU_C) {
             bench_measured(cpu);
-            bench_rows(&subject);
         } else if (!bench) {
             failures += check_vec(cpu) + check_aim(&subject) + check_windows(&subject) +
                         check_sweep(&subject) + check_discs(&subject) + check_light(&subject) +
