@@ -21,11 +21,11 @@ struct refocus_temporal {
     uint32_t strength; /* Q8 */
     int noise;         /* disparities */
     bool guided;
-    int frames;                      /* Known ones, up to RF_LOOKS. */
-    struct rf_frame frame[RF_LOOKS]; /* as they came, the newest first */
-    uint16_t *last, *filtered;       /* the filtered map of the last frame and of this one */
-    uint8_t *count, *counted;        /* frames that each sample has been seen in */
-    struct rf_motion *motion;        /* One vector a block. */
+    int frames;                        /* Known ones, up to RF_HISTORY. */
+    struct rf_frame frame[RF_HISTORY]; /* as they came, the newest first */
+    uint16_t *last, *filtered;         /* the filtered map of the last frame and of this one */
+    uint8_t *count, *counted;          /* frames that each sample has been seen in */
+    struct rf_motion *motion;          /* One vector a block. */
     void *block;
     struct rf_run run;
 };
@@ -43,7 +43,7 @@ static void lay_out(struct refocus_temporal *f, struct rf_arena *arena)
     const uint64_t blocks = (uint64_t)((f->width + RF_BLOCK - 1) / RF_BLOCK) *
                             (uint64_t)((f->height + RF_BLOCK - 1) / RF_BLOCK);
 
-    for (int k = 0; k < RF_LOOKS; k++) {
+    for (int k = 0; k < RF_HISTORY; k++) {
         f->frame[k].disparity = rf_arena_take(arena, samples, 2);
         f->frame[k].guide = rf_arena_take(arena, samples, 1);
         f->frame[k].from = rf_arena_take(arena, samples, sizeof *f->frame[k].from);
@@ -143,7 +143,8 @@ int refocus_temporal_rescale(struct refocus_temporal *f, double scale, double of
     samples = (size_t)f->width * (size_t)f->height;
     for (size_t i = 0; i < samples && f->frames > 0; i++)
         f->last[i] = rescale(f->last[i], scale, offset);
-    for (int k = 1; k < RF_LOOKS; k++) /* Frame 0 is the next; of the others as many are filled. */
+    for (int k = 1; k < RF_HISTORY;
+         k++) /* Frame 0 is the next; of the others as many are filled. */
         for (size_t i = 0; i < samples && k <= f->frames; i++) {
             f->frame[k].disparity[i] = rescale(f->frame[k].disparity[i], scale, offset);
             if (!f->guided) /* then depth is its own guide */
@@ -153,7 +154,7 @@ int refocus_temporal_rescale(struct refocus_temporal *f, double scale, double of
 }
 
 /* Filters one sample as refocus_temporal_run() says. A block of which most
- * changes needs no majority of looks. */
+ * changes needs no majority of the history. */
 static void filter(struct refocus_temporal *f, size_t i, bool changes)
 {
     const struct rf_motion from = f->frame[0].from[i];
@@ -172,13 +173,13 @@ static void filter(struct refocus_temporal *f, size_t i, bool changes)
         f->frame[0].from[i].x = RF_NOWHERE;
         return;
     }
-    /* The photo does not explain a jump: looks vote. */
+    /* The photo does not explain a jump: the history votes. */
     if (apart >= f->noise) {
-        struct rf_looks looks;
+        struct rf_history history;
         int of;
 
-        rf_look_back(&looks, f->frame, changes ? 2 : f->frames, f->width, i);
-        of = rf_vote_of_looks(&looks, p, f->noise, &f->filtered[i]);
+        rf_history_take(&history, f->frame, changes ? 2 : f->frames, f->width, i);
+        of = rf_history_vote(&history, p, f->noise, &f->filtered[i]);
         if (!of)
             f->filtered[i] = (uint16_t)p;
         f->counted[i] = (uint8_t)(of ? of : n);
@@ -307,7 +308,7 @@ int refocus_temporal_run(struct refocus_temporal *f, const struct refocus_image 
         rf_is_cut(f->frame[0].guide, f->frame[1].guide, f->width, f->height))
         refocus_temporal_reset(f);
     if (f->frames++ > 0) {
-        f->frames = f->frames < RF_LOOKS ? f->frames : RF_LOOKS;
+        f->frames = f->frames < RF_HISTORY ? f->frames : RF_HISTORY;
         filter_all(f);
     } else {
         memcpy(f->filtered, f->frame[0].disparity, samples * sizeof *f->filtered);
@@ -320,8 +321,8 @@ int refocus_temporal_run(struct refocus_temporal *f, const struct refocus_image 
     for (int y = 0; y < f->height; y++)
         memcpy((char *)out + y * stride, f->filtered + (size_t)y * (size_t)f->width,
                (size_t)f->width * sizeof *out);
-    oldest = f->frame[RF_LOOKS - 1];
-    memmove(f->frame + 1, f->frame, (RF_LOOKS - 1) * sizeof *f->frame);
+    oldest = f->frame[RF_HISTORY - 1];
+    memmove(f->frame + 1, f->frame, (RF_HISTORY - 1) * sizeof *f->frame);
     f->frame[0] = oldest;
     swap16(&f->last, &f->filtered);
     swap8(&f->count, &f->counted);

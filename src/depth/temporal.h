@@ -51,29 +51,30 @@ bool rf_is_cut(const uint8_t *now, const uint8_t *last, int width, int height);
 struct rf_run *rf_run_of_temporal(struct refocus_temporal *f);
 
 enum {
-    RF_LOOKS = 7,  /* frames that vote */
-    RF_ALIKE = 12, /* codes of the guide, from which on two frames show different things */
+    RF_HISTORY = 7, /* frames that vote */
+    RF_ALIKE = 12,  /* codes of the guide, from which on two frames show different things */
     RF_NOWHERE = INT8_MIN,
 };
 
 /* A sample as the last frames saw it, the newest first, and how alike the photo was: 1 to
  * RF_ALIKE. */
-struct rf_looks {
+struct rf_history {
     int count;
-    uint16_t disparity[RF_LOOKS];
-    uint8_t weight[RF_LOOKS];
+    uint16_t disparity[RF_HISTORY];
+    uint8_t weight[RF_HISTORY];
 };
 
-/* Look at sample i of frame[0] in up to `frames` of them; those that are not alike are left out. */
-void rf_look_back(struct rf_looks *looks, const struct rf_frame frame[], int frames, int width,
-                  size_t i);
+/* Take sample i of frame[0] and what it was in up to `frames` of them; those that are not alike are
+ * left out. */
+void rf_history_take(struct rf_history *history, const struct rf_frame frame[], int frames,
+                     int width, size_t i);
 
 /*
- * Disparities that differ by less than noise are one surface, for which looks vote by their
+ * Disparities that differ by less than noise are one surface, for which frames vote by their
  * weights. Where one leads the surface of `last` by half of all votes, *disparity receives its
- * mean; returns the number of looks that voted for it, or 0 while `last` stays: of seven alike
- * looks two hold it, and one does not.
+ * mean; returns the number of frames that voted for it, or 0 while `last` stays: of seven
+ * alike frames two hold it, and one does not.
  */
-int rf_vote_of_looks(const struct rf_looks *looks, int last, int noise, uint16_t *disparity);
+int rf_history_vote(const struct rf_history *history, int last, int noise, uint16_t *disparity);
 
 #endif

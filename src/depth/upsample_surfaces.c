@@ -15,8 +15,8 @@ enum {
 };
 
 /* Where pixels of spans lie among the samples, for the last few kinds of spans. */
-struct lies {
-    struct rf_lie lie[KINDS];
+struct placements {
+    struct rf_placement placement[KINDS];
     int alike[KINDS], x[KINDS];
 };
 
@@ -37,7 +37,7 @@ struct patch {
     uint8_t colour[3][RUN][SLICE + RUN];
     struct rf_parts parts;
     struct rf_cell cell;
-    struct lies lies;
+    struct placements placements;
     struct around around;
 };
 
@@ -77,33 +77,33 @@ static void collect(uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], struct patch *
         memset(&colour[c][at], colour[c][0], RF_BATCH_SPARE);
 }
 
-static const struct rf_lie *lie_of(struct patch *patch, int cell, int x, int n)
+static const struct rf_placement *placement_of(struct patch *patch, int cell, int x, int n)
 {
     const struct rf_upsampler *up = patch->up;
     const struct rf_span *span = &up->span[cell];
     /* Runs of one span have places of their own: 3 apart, those of up to three kinds of spans. */
     const int off = x - span->begin, kind = (span->alike + off / RUN * 3) % KINDS;
-    struct rf_lie *lie = &patch->lies.lie[kind];
+    struct rf_placement *placement = &patch->placements.placement[kind];
 
-    if (patch->lies.alike[kind] == span->alike && patch->lies.x[kind] == off)
-        return lie;
-    patch->lies.alike[kind] = span->alike;
-    patch->lies.x[kind] = off;
+    if (patch->placements.alike[kind] == span->alike && patch->placements.x[kind] == off)
+        return placement;
+    patch->placements.alike[kind] = span->alike;
+    patch->placements.x[kind] = off;
     for (int y = patch->y0, at = 0; y < patch->y1; y++)
         for (int i = 0; i < n; i++, at++) {
-            lie->all[at] = 0;
+            placement->all[at] = 0;
             for (int t = 0; t < RF_TAP_COUNT; t++) {
                 const uint32_t near_by = (uint32_t)up->across[x + i].near_by[t / RF_TAPS] *
                                              up->down[y].near_by[t % RF_TAPS] >>
                                          16;
 
-                lie->near_by[t][at] = (uint16_t)near_by;
-                lie->all[at] = (uint16_t)(lie->all[at] + near_by);
+                placement->near_by[t][at] = (uint16_t)near_by;
+                placement->all[at] = (uint16_t)(placement->all[at] + near_by);
             }
-            lie->x[at] = up->across[x + i].middle;
-            lie->y[at] = up->down[y].middle;
+            placement->x[at] = up->across[x + i].middle;
+            placement->y[at] = up->down[y].middle;
         }
-    return lie;
+    return placement;
 }
 
 /* n elements of one or two bytes, at most 8 and often 4 or more: then four and four. */
@@ -226,8 +226,8 @@ static void fill_cell(struct patch *patch, int cell, int i)
         if (!found)
             up->kernels->find_surfaces(&patch->cell, &window, &patch->parts, i);
         found = true;
-        up->kernels->choose_surface(result, sure, &patch->cell, &window, lie_of(patch, cell, x, n),
-                                    colour, rows * n);
+        up->kernels->choose_surface(result, sure, &patch->cell, &window,
+                                    placement_of(patch, cell, x, n), colour, rows * n);
         put_rows(patch, result, sure, x, (size_t)n);
     }
 }
@@ -351,7 +351,7 @@ void rf_upsample_rows(const struct rf_upsampler *up, int first, int y0, int y1, 
         patch->y1 = patch->y0 + RUN < y1 ? patch->y0 + RUN : y1;
         patch->from = patch->ready = 0;
         for (int i = 0; i < KINDS; i++)
-            patch->lies.alike[i] = -1;
+            patch->placements.alike[i] = -1;
         for (int i = 0; i < cells && !rf_run_cancelled(up->run); i += RF_CELLS)
             fill_cells(patch, i, cells - i < RF_CELLS ? cells - i : RF_CELLS);
     }

@@ -66,13 +66,14 @@ static void look(uint16_t alike[LANES], uint8_t *const colour[3], const struct b
 }
 
 static void add_taps(uint16_t prior[LANES], const struct rf_cell *cell,
-                     const struct rf_surface *surface, const struct rf_lie *lie, int from)
+                     const struct rf_surface *surface, const struct rf_placement *placement,
+                     int from)
 {
     for (int x = 0; x < LANES; x++)
         prior[x] = 0;
     for (unsigned taps = surface->taps; taps; taps &= taps - 1) {
         const int t = __builtin_ctz(taps);
-        const uint16_t *restrict near_by = lie->near_by[t] + from;
+        const uint16_t *restrict near_by = placement->near_by[t] + from;
         const uint16_t trust = cell->trust[t];
 
         if (cell->sure)
@@ -87,16 +88,16 @@ static void add_taps(uint16_t prior[LANES], const struct rf_cell *cell,
 /* The prior of each surface. Where the taps are sure, the surface with the most
  * of them is given what the others leave. */
 static void expect(uint16_t prior[RF_TAP_COUNT][LANES], const struct rf_cell *cell,
-                   const struct rf_lie *lie, int from)
+                   const struct rf_placement *placement, int from)
 {
     const int rest = cell->sure ? cell->greatest : RF_TAP_COUNT;
     uint16_t left[LANES];
 
-    memcpy(left, lie->all + from, sizeof left);
+    memcpy(left, placement->all + from, sizeof left);
     for (int k = 0; k < cell->surfaces; k++) {
         if (k == rest)
             continue;
-        add_taps(prior[k], cell, &cell->surface[k], lie, from);
+        add_taps(prior[k], cell, &cell->surface[k], placement, from);
         for (int x = 0; x < LANES; x++)
             left[x] = (uint16_t)(left[x] - prior[k][x]);
     }
@@ -105,11 +106,11 @@ static void expect(uint16_t prior[RF_TAP_COUNT][LANES], const struct rf_cell *ce
 }
 
 static void height_of(uint16_t height[LANES], const struct rf_surface *surface,
-                      const struct rf_lie *lie, int from)
+                      const struct rf_placement *placement, int from)
 {
     const int mean = surface->mean, right = surface->right, below = surface->below;
     const int low = surface->low, range = surface->range;
-    const int16_t *restrict at_x = lie->x + from, *restrict at_y = lie->y + from;
+    const int16_t *restrict at_x = placement->x + from, *restrict at_y = placement->y + from;
 
     for (int x = 0; x < LANES; x++) {
         const int d =
@@ -120,13 +121,13 @@ static void height_of(uint16_t height[LANES], const struct rf_surface *surface,
 }
 
 static void choose(uint16_t *restrict out, uint8_t *restrict sure, const struct rf_cell *cell,
-                   const struct rf_window *window, const struct rf_lie *lie,
+                   const struct rf_window *window, const struct rf_placement *placement,
                    uint8_t *const colour[3], int from)
 {
     const struct box box = box_of(colour);
     uint16_t best[LANES] = {0}, second[LANES] = {0}, prior[RF_TAP_COUNT][LANES];
 
-    expect(prior, cell, lie, from);
+    expect(prior, cell, placement, from);
     for (int x = 0; x < LANES; x++)
         out[x] = cell->surface[0].low;
     for (int k = 0; k < cell->surfaces; k++) {
@@ -135,7 +136,7 @@ static void choose(uint16_t *restrict out, uint8_t *restrict sure, const struct 
         uint16_t alike[LANES], height[LANES];
 
         look(alike, colour, &box, window, s->samples);
-        height_of(height, s, lie, from);
+        height_of(height, s, placement, from);
         for (int x = 0; x < LANES; x++) {
             const uint16_t mean = (uint16_t)((uint32_t)(uint16_t)(alike[x] * grow) * scale >> 16);
             const uint16_t evidence = (uint16_t)(4 * mean + RF_UNLIKE);
@@ -152,12 +153,12 @@ static void choose(uint16_t *restrict out, uint8_t *restrict sure, const struct 
 }
 
 void rf_choose_surface_c(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH], const struct rf_cell *cell,
-                         const struct rf_window *window, const struct rf_lie *lie,
+                         const struct rf_window *window, const struct rf_placement *placement,
                          uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n)
 {
     for (int x = 0; x < n; x += LANES) {
         uint8_t *const own[3] = {colour[0] + x, colour[1] + x, colour[2] + x};
 
-        choose(out + x, sure + x, cell, window, lie, own, x);
+        choose(out + x, sure + x, cell, window, placement, own, x);
     }
 }

@@ -55,7 +55,7 @@ static inline void look(uint16_t alike[VEC_U8], const vec_u8 colour[3],
 }
 
 static inline void add_taps(vec_u16 prior[HALVES], const struct rf_cell *cell, unsigned taps,
-                            const struct rf_lie *lie, int x)
+                            const struct rf_placement *placement, int x)
 {
     vec_u16 sum[HALVES] = {vec_u16_set(0), vec_u16_set(0)};
 
@@ -63,7 +63,7 @@ static inline void add_taps(vec_u16 prior[HALVES], const struct rf_cell *cell, u
         const int t = __builtin_ctz(taps);
 
         for (int h = 0; h < HALVES; h++) {
-            vec_u16 near_by = vec_u16_load(lie->near_by[t] + x + h * VEC_U16);
+            vec_u16 near_by = vec_u16_load(placement->near_by[t] + x + h * VEC_U16);
 
             if (!cell->sure)
                 near_by = vec_u16_mul_high(near_by, vec_u16_set(cell->trust[t]));
@@ -77,17 +77,17 @@ static inline void add_taps(vec_u16 prior[HALVES], const struct rf_cell *cell, u
 /* The prior of each surface. Where the taps are sure, the surface with the most
  * of them is given what the others leave. */
 static inline void expect(vec_u16 prior[RF_TAP_COUNT][HALVES], const struct rf_cell *cell,
-                          const struct rf_lie *lie, int x)
+                          const struct rf_placement *placement, int x)
 {
     const int rest = cell->sure ? cell->greatest : RF_TAP_COUNT;
     vec_u16 left[HALVES];
 
     for (int h = 0; h < HALVES; h++)
-        left[h] = vec_u16_load(lie->all + x + h * VEC_U16);
+        left[h] = vec_u16_load(placement->all + x + h * VEC_U16);
     for (int k = 0; k < cell->surfaces; k++) {
         if (k == rest)
             continue;
-        add_taps(prior[k], cell, cell->surface[k].taps, lie, x);
+        add_taps(prior[k], cell, cell->surface[k].taps, placement, x);
         for (int h = 0; h < HALVES; h++)
             left[h] = vec_u16_sub(left[h], prior[k][h]);
     }
@@ -95,14 +95,15 @@ static inline void expect(vec_u16 prior[RF_TAP_COUNT][HALVES], const struct rf_c
         prior[rest][h] = left[h];
 }
 
-static inline vec_u16 height_of(const struct rf_surface *surface, const struct rf_lie *lie, int x)
+static inline vec_u16 height_of(const struct rf_surface *surface,
+                                const struct rf_placement *placement, int x)
 {
     vec_u16 d = vec_u16_set((uint16_t)surface->mean);
 
-    d = vec_u16_add(d,
-                    vec_s16_scale(vec_u16_set((uint16_t)surface->right), vec_u16_load(lie->x + x)));
-    d = vec_u16_add(d,
-                    vec_s16_scale(vec_u16_set((uint16_t)surface->below), vec_u16_load(lie->y + x)));
+    d = vec_u16_add(
+        d, vec_s16_scale(vec_u16_set((uint16_t)surface->right), vec_u16_load(placement->x + x)));
+    d = vec_u16_add(
+        d, vec_s16_scale(vec_u16_set((uint16_t)surface->below), vec_u16_load(placement->y + x)));
     d = vec_u16_min(vec_s16_max(d, vec_u16_set(0)), vec_u16_set(surface->range));
     return vec_u16_add(d, vec_u16_set(surface->low));
 }
@@ -112,8 +113,9 @@ struct found {
     vec_u16 best[HALVES], second[HALVES], disparity[HALVES];
 };
 
-static inline void weigh(struct found *found, const struct rf_surface *s, const struct rf_lie *lie,
-                         int x, const vec_u16 prior[HALVES], const uint16_t alike[VEC_U8])
+static inline void weigh(struct found *found, const struct rf_surface *s,
+                         const struct rf_placement *placement, int x, const vec_u16 prior[HALVES],
+                         const uint16_t alike[VEC_U8])
 {
     const vec_u16 grow = vec_u16_set(s->grow), scale = vec_u16_set(s->scale);
     const vec_u16 unlike = vec_u16_set(RF_UNLIKE), four = vec_u16_set(4);
@@ -126,7 +128,7 @@ static inline void weigh(struct found *found, const struct rf_surface *s, const 
         const vec_u16 best = found->best[h];
 
         found->disparity[h] = vec_u16_select(vec_u16_at_most(score, best), found->disparity[h],
-                                             height_of(s, lie, x + h * VEC_U16));
+                                             height_of(s, placement, x + h * VEC_U16));
         found->second[h] = vec_u16_max(found->second[h], vec_u16_min(best, score));
         found->best[h] = vec_u16_max(best, score);
     }
@@ -134,7 +136,7 @@ static inline void weigh(struct found *found, const struct rf_surface *s, const 
 
 void RF_VEC(rf_choose_surface)(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
                                const struct rf_cell *cell, const struct rf_window *window,
-                               const struct rf_lie *lie,
+                               const struct rf_placement *placement,
                                uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n)
 {
     for (int x = 0; x < n; x += VEC_U8) {
@@ -149,12 +151,12 @@ void RF_VEC(rf_choose_surface)(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
             found.best[h] = found.second[h] = vec_u16_set(0);
             found.disparity[h] = vec_u16_set(cell->surface[0].low);
         }
-        expect(prior, cell, lie, x);
+        expect(prior, cell, placement, x);
         for (int k = 0; k < cell->surfaces; k++) {
             uint16_t alike[VEC_U8];
 
             look(alike, own, window->colour, cell->surface[k].samples & near_by);
-            weigh(&found, &cell->surface[k], lie, x, prior[k], alike);
+            weigh(&found, &cell->surface[k], placement, x, prior[k], alike);
         }
         for (int h = 0; h < HALVES; h++) {
             const vec_u16 quarter = vec_u16_half(vec_u16_half(found.best[h]));

@@ -50,7 +50,7 @@ static void dilate_from(const struct rf_kernels *k, struct rows *r)
     k->dilate_from(r->shorts[9] + MARGIN, r->shorts[0] + MARGIN, 0, N);
 }
 
-static void mark(const struct rf_kernels *k, struct rows *r)
+static void mark_foreground(const struct rf_kernels *k, struct rows *r)
 {
     k->mark_foreground(r->blur[1] + MARGIN, r->blur[0] + MARGIN, r->shorts[0] + MARGIN, N);
 }
@@ -91,7 +91,7 @@ static void blend4(const struct rf_kernels *k, struct rows *r)
     k->blend4(r->shorts[6], row, (const int16_t[4]){4000, 12000, 12500, 4268}, N);
 }
 
-static void lean3(const struct rf_kernels *k, struct rows *r)
+static void median3(const struct rf_kernels *k, struct rows *r)
 {
     const uint16_t *const row[3] = {r->shorts[0] + MARGIN, r->shorts[1] + MARGIN,
                                     r->shorts[2] + MARGIN};
@@ -200,13 +200,13 @@ static const struct {
     {"smooth3", "pixel", smooth3, N},
     {"spread_row", "pixel", spread_row, N},
     {"dilate_from", "pixel", dilate_from, N},
-    {"mark_foreground", "pixel", mark, N},
+    {"mark_foreground", "pixel", mark_foreground, N},
     {"push", "pixel", push, N / 2},
     {"pull", "pixel", pull, N},
     {"means", "pixel", means, N},
     {"weighted_means", "pixel", weighted_means, N},
     {"blend4", "pixel", blend4, N},
-    {"median3", "pixel", lean3, N},
+    {"median3", "pixel", median3, N},
     {"series_row", "pixel", series_row, N},
     {"smooth_codes", "pixel", smooth_codes, N},
 };

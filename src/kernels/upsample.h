@@ -101,7 +101,7 @@ typedef void rf_find_surfaces_fn(struct rf_cell *cell, const struct rf_window *w
                                  const struct rf_parts *parts, int at);
 
 /* How pixels that are looked at together lie among the taps of their cell. */
-struct rf_lie {
+struct rf_placement {
     uint16_t near_by[RF_TAP_COUNT][RF_BATCH]; /* Q16, of sum < 1; column by column */
     uint16_t all[RF_BATCH];                   /* the sum */
     int16_t x[RF_BATCH], y[RF_BATCH]; /* from the cell's middle, samples in Q15, |.| <= 1/2 */
@@ -134,7 +134,7 @@ static_assert(127 * 225 <= UINT16_MAX, "and so it does when it is grown,");
 static_assert(4 * 64 * 225 + RF_UNLIKE <= UINT16_MAX, "and so does the evidence");
 typedef void rf_choose_surface_fn(uint16_t out[RF_BATCH], uint8_t sure[RF_BATCH],
                                   const struct rf_cell *cell, const struct rf_window *window,
-                                  const struct rf_lie *lie,
+                                  const struct rf_placement *placement,
                                   uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE], int n);
 
 /* quarter: colours of n pixels of 3 or 4 bytes, of which the first three, in steps of

@@ -19,7 +19,7 @@ static struct {
 } turned;
 static struct rf_parts parts;
 static struct rf_cell cell, plain;
-static struct rf_lie lie;
+static struct rf_placement placement;
 static uint8_t colour[3][RF_BATCH + RF_BATCH_SPARE];
 
 /* Makes samples of one to five surfaces, with noise, slopes, extremes and holes. */
@@ -53,12 +53,12 @@ static void make_pixels(uint32_t *seed)
         int left = 65535;
 
         for (int t = 0; t < RF_TAP_COUNT; t++) {
-            lie.near_by[t][x] = (uint16_t)noise_between(seed, 0, left / 4);
-            left -= lie.near_by[t][x];
+            placement.near_by[t][x] = (uint16_t)noise_between(seed, 0, left / 4);
+            left -= placement.near_by[t][x];
         }
-        lie.all[x] = (uint16_t)(65535 - left);
-        lie.x[x] = (int16_t)noise_between(seed, -16384, 16384);
-        lie.y[x] = (int16_t)noise_between(seed, -16384, 16384);
+        placement.all[x] = (uint16_t)(65535 - left);
+        placement.x[x] = (int16_t)noise_between(seed, -16384, 16384);
+        placement.y[x] = (int16_t)noise_between(seed, -16384, 16384);
     }
 }
 
@@ -114,8 +114,8 @@ static uint16_t expect(const struct rf_window *window, int x, uint8_t *sure)
 
         for (int t = 0; t < RF_TAP_COUNT; t++)
             if (s->taps >> t & 1)
-                prior += cell.sure ? lie.near_by[t][x]
-                                   : (uint32_t)lie.near_by[t][x] * cell.trust[t] >> 16;
+                prior += cell.sure ? placement.near_by[t][x]
+                                   : (uint32_t)placement.near_by[t][x] * cell.trust[t] >> 16;
         for (int i = 0; i < RF_AROUND * RF_AROUND; i++) {
             int unlike = 0;
 
@@ -124,8 +124,8 @@ static uint16_t expect(const struct rf_window *window, int x, uint8_t *sure)
             alike += s->samples >> i & 1 && unlike < 16 ? rf_likeness[unlike] : 0;
         }
         score = prior * (4 * (alike * s->grow * s->scale >> 16) + RF_UNLIKE) >> 16;
-        d = s->mean + ((s->right * lie.x[x] + (1 << 14)) >> 15) +
-            ((s->below * lie.y[x] + (1 << 14)) >> 15);
+        d = s->mean + ((s->right * placement.x[x] + (1 << 14)) >> 15) +
+            ((s->below * placement.y[x] + (1 << 14)) >> 15);
         d = s->low + (d < 0 ? 0 : d > s->range ? s->range : d);
         if (score > best) {
             second = best;
@@ -266,7 +266,7 @@ static int check_pixels(const struct subject *subject, int round)
 
     memset(out, 0xa5, sizeof out);
     memset(sure, 0xa5, sizeof sure);
-    subject->kernels.choose_surface(out, sure, &cell, &window, &lie, colour, n);
+    subject->kernels.choose_surface(out, sure, &cell, &window, &placement, colour, n);
     for (int x = 0; x < RF_BATCH + BEYOND; x++) {
         uint8_t is_sure = 0xa5;
         const int should = x < n ? expect(&window, x, &is_sure) : 0xa5a5;

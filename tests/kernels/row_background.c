@@ -70,13 +70,13 @@ void expect_dilate_from(void *const *row, int parameter, int n)
     }
 }
 
-void run_mark(const struct rf_kernels *k, void *const *row, int parameter, int n)
+void run_mark_foreground(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
     (void)parameter;
     k->mark_foreground(row[0], row[1], row[2], n);
 }
 
-void expect_mark(void *const *row, int parameter, int n)
+void expect_mark_foreground(void *const *row, int parameter, int n)
 {
     int16_t *background = row[0];
     const int16_t *blur = row[1];

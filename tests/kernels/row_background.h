@@ -9,8 +9,8 @@ void run_spread_row(const struct rf_kernels *kernels, void *const *row, int para
 void expect_spread_row(void *const *row, int parameter, int n);
 void run_dilate_from(const struct rf_kernels *kernels, void *const *row, int parameter, int n);
 void expect_dilate_from(void *const *row, int parameter, int n);
-void run_mark(const struct rf_kernels *kernels, void *const *row, int parameter, int n);
-void expect_mark(void *const *row, int parameter, int n);
+void run_mark_foreground(const struct rf_kernels *kernels, void *const *row, int parameter, int n);
+void expect_mark_foreground(void *const *row, int parameter, int n);
 void run_push(const struct rf_kernels *kernels, void *const *row, int parameter, int n);
 void expect_push(void *const *row, int parameter, int n);
 void run_pull(const struct rf_kernels *kernels, void *const *row, int parameter, int n);

@@ -114,12 +114,12 @@ static void expect_means(void *const *row, int parameter, int n)
     }
 }
 
-static void run_at_most(const struct rf_kernels *k, void *const *row, int parameter, int n)
+static void run_clamp_row(const struct rf_kernels *k, void *const *row, int parameter, int n)
 {
     k->clamp_row(row[0], (uint16_t)parameter, n);
 }
 
-static void expect_at_most(void *const *row, int parameter, int n)
+static void expect_clamp_row(void *const *row, int parameter, int n)
 {
     uint16_t *value = row[0];
 
@@ -338,8 +338,8 @@ const struct row_kernel row_kernels[] = {
      {{BLUR, 1, 0, 0}, {BLUR, 1, 0, 0}, {RAISED, 1, 0, 0}},
      0,
      0,
-     run_mark,
-     expect_mark},
+     run_mark_foreground,
+     expect_mark_foreground},
     {"push",
      10,
      {{LIGHT, 1, 0, 0},
@@ -378,6 +378,6 @@ const struct row_kernel row_kernels[] = {
      run_pull_blur,
      expect_pull_blur},
     {"means", 2, {{LIGHT, 1, 0, 0}, {SUM, 1, 0, 0}}, 1, 1024, run_means, expect_means},
-    {"clamp_row", 1, {{LIGHT, 1, 0, 0}}, 0, UINT16_MAX, run_at_most, expect_at_most},
+    {"clamp_row", 1, {{LIGHT, 1, 0, 0}}, 0, UINT16_MAX, run_clamp_row, expect_clamp_row},
 };
 const int row_kernel_count = sizeof row_kernels / sizeof row_kernels[0];

@@ -1,4 +1,4 @@
-/* test_looks.c: earlier frames look at a sample of this one, and vote on its depth. */
+/* test_temporal_history.c: earlier frames show a sample of this one, and vote on its depth. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,11 +7,11 @@
 
 #include "depth/temporal.h"
 
-/* Looks with weights vote against a surface at 1000. */
+/* Frames with weights vote against a surface at 1000. */
 static void majorities(void **state)
 {
     static const struct {
-        struct rf_looks looks;
+        struct rf_history history;
         int voters, mean; /* 0: the surface stays */
     } cases[] = {
         {{7, {1000, 1000, 9000, 9000, 9000, 9000, 9000}, {12, 12, 12, 12, 12, 12, 12}}, 0, 0},
@@ -29,19 +29,19 @@ static void majorities(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         uint16_t mean = 0;
 
-        assert_int_equal(rf_vote_of_looks(&cases[i].looks, 1000, 100, &mean), cases[i].voters);
+        assert_int_equal(rf_history_vote(&cases[i].history, 1000, 100, &mean), cases[i].voters);
         assert_int_equal(mean, cases[i].mean);
     }
 }
 
-/* Looks follow a sample back until it was nowhere; what shows other things has no vote. */
-static void looks_go_back(void **state)
+/* The history follows a sample back until it was nowhere; what shows other things has no vote. */
+static void goes_back(void **state)
 {
     uint16_t disparity[4][9];
     uint8_t guide[4][9];
     struct rf_motion from[4][9];
     struct rf_frame frame[4];
-    struct rf_looks looks;
+    struct rf_history history;
 
     (void)state;
     for (int k = 0; k < 4; k++) {
@@ -52,24 +52,25 @@ static void looks_go_back(void **state)
             from[k][i] = (struct rf_motion){(int8_t)(k % 2 ? 0 : 1), (int8_t)(k % 2 ? -1 : 0)};
         }
     }
-    rf_look_back(&looks, frame, 4, 3, 4); /* by 5 and 2 to 3 */
-    assert_int_equal(looks.count, 3);
-    assert_true(looks.disparity[0] == 4 && looks.disparity[1] == 202 && looks.disparity[2] == 303);
-    assert_true(looks.weight[0] == RF_ALIKE && looks.weight[1] == RF_ALIKE - 2 &&
-                looks.weight[2] == RF_ALIKE - 1);
+    rf_history_take(&history, frame, 4, 3, 4); /* by 5 and 2 to 3 */
+    assert_int_equal(history.count, 3);
+    assert_true(history.disparity[0] == 4 && history.disparity[1] == 202 &&
+                history.disparity[2] == 303);
+    assert_true(history.weight[0] == RF_ALIKE && history.weight[1] == RF_ALIKE - 2 &&
+                history.weight[2] == RF_ALIKE - 1);
     from[1][5].x = RF_NOWHERE;
-    rf_look_back(&looks, frame, 4, 3, 4);
-    assert_int_equal(looks.count, 1);
-    rf_look_back(&looks, frame, 1, 3, 4);
-    assert_int_equal(looks.count, 1);
+    rf_history_take(&history, frame, 4, 3, 4);
+    assert_int_equal(history.count, 1);
+    rf_history_take(&history, frame, 1, 3, 4);
+    assert_int_equal(history.count, 1);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(majorities),
-        cmocka_unit_test(looks_go_back),
+        cmocka_unit_test(goes_back),
     };
 
-    return cmocka_run_group_tests_name("looks", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("temporal_history", tests, NULL, NULL);
 }
