@@ -5,7 +5,7 @@
 
 #include "commands/depth_stack.h"
 #include "inputs/read_input.h"
-#include "inputs/made.h"
+#include "inputs/estimate.h"
 
 enum depth_view { VIEW_NONE, VIEW_DISPARITY, VIEW_CONFIDENCE };
 

@@ -11,7 +11,7 @@
 #include "inputs/limits.h"
 #include "inputs/orient.h"
 #include "inputs/upsample.h"
-#include "inputs/made_options.h"
+#include "inputs/estimate_options.h"
 
 /* Photos of more than 8 bits that are rendered from all that they hold: none, those with light
  * above white, or all. */

@@ -2,7 +2,7 @@
  * in a thread of its own, while the others are rendered. */
 #include <stdlib.h>
 #include <string.h>
-#include "inputs/made.h"
+#include "inputs/estimate.h"
 #include "inputs/opencv.h"
 #include "line/report.h"
 #include "live/live_estimate.h"

@@ -15,7 +15,7 @@ static struct refocus_disparity map_of(const uint16_t *samples, int width, int h
 int serve_settings(const struct serving *s, const char *bytes, size_t size,
                    struct shot_settings *settings)
 {
-    const int status = serve_lens_read(bytes, size, &s->base, settings);
+    const int status = page_settings_read(bytes, size, &s->base, settings);
 
     return status == EXIT_DONE ? shot_check(settings, false) : status;
 }

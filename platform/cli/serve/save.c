@@ -109,7 +109,7 @@ static int save_picture(struct serving *s, const struct shot_settings *settings,
 
 static int save_settings(const struct shot_settings *settings, struct refocus_blob *bytes)
 {
-    char *const text = settings_dump(&serve_lens, settings);
+    char *const text = settings_dump(&page_settings, settings);
 
     if (!text)
         return report_failure(EXIT_FAILED, "settings", "not enough memory");

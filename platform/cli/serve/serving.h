@@ -83,15 +83,15 @@ void answer_frame(uint32_t number);
 void serve_watch(struct refocus_renderer *renderer);
 bool serve_is_replaced(void);
 
-/* lens.c */
+/* settings.c */
 
 /* The command whose options are the members of settings that come from the page. */
-extern const struct command serve_lens;
+extern const struct command page_settings;
 
 /* Read settings from the page over those of the command line, each by itself: shot_check() is still
  * to come. An exit code, and reports why. */
-int serve_lens_read(const char *bytes, size_t size, const struct shot_settings *base,
-                    struct shot_settings *settings);
+int page_settings_read(const char *bytes, size_t size, const struct shot_settings *base,
+                       struct shot_settings *settings);
 
 /* open.c: these return exit codes and report why it is not EXIT_DONE. */
 int serve_open(struct serving *s);

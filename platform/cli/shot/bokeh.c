@@ -135,17 +135,17 @@ static int parse_figure(const struct figure *figure, const char *shape,
     return EXIT_DONE;
 }
 
-static int report_unknown_shape(const char *shape)
+/* Reports that `option` names no shape; `or_else` is what else it may give. */
+static int report_unknown_shape(const char *option, const char *shape, const char *or_else)
 {
     char names[256] = "";
 
     for (size_t i = 0; i < FIGURES; i++)
-        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s", i ? ", " : "",
-                 figures[i].name);
-    return report_failure(EXIT_WRONG, "--aperture",
-                          "'%s' is not known; give disc, polygon:BLADES, "
-                          "polygon:BLADES:DEGREES, %s or a mask picture",
-                          shape, names);
+        snprintf(names + strlen(names), sizeof names - strlen(names), ", %s", figures[i].name);
+    return report_failure(
+        EXIT_WRONG, option,
+        "'%s' is not known; give disc, polygon:BLADES, polygon:BLADES:DEGREES%s%s", shape, names,
+        or_else);
 }
 
 /* A mask out of a greyscale picture, to be freed. */
@@ -155,7 +155,7 @@ static int read_mask(const char *file, struct refocus_aperture_params *params)
     uint8_t *mask;
 
     if (!strpbrk(file, "./") && access(file, F_OK) != 0)
-        return report_unknown_shape(file);
+        return report_unknown_shape("--aperture", file, " or a mask picture");
     mask = papers_read_grey(file, &width, &height);
     if (!mask)
         return EXIT_FAILED;
@@ -170,10 +170,12 @@ static int read_mask(const char *file, struct refocus_aperture_params *params)
     return EXIT_DONE;
 }
 
-bool bokeh_is_shape(const char *shape)
+int bokeh_check_is_shape(const char *option, const char *shape)
 {
     return strcmp(shape, "disc") == 0 || strncmp(shape, POLYGON, strlen(POLYGON)) == 0 ||
-           find_figure(shape);
+                   find_figure(shape)
+               ? EXIT_DONE
+               : report_unknown_shape(option, shape, "");
 }
 
 static int parse_shape(const char *shape, struct refocus_aperture_params *params)

@@ -28,8 +28,9 @@ const char *bokeh_preset_summary(uint32_t index);
 const char *bokeh_figure_name(uint32_t index);
 const char *bokeh_figure_summary(uint32_t index);
 
-/* Whether --aperture takes it for a shape: anything else names a picture. */
-bool bokeh_is_shape(const char *shape);
+/* Refuse what is no shape by name, and might be a picture: an exit code, and reports why, about the
+ * option of that name. */
+int bokeh_check_is_shape(const char *option, const char *shape);
 
 /* These return exit codes and print why it is not EXIT_DONE. */
 

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "inputs/depth_options.h"
-#include "inputs/made.h"
+#include "inputs/estimate.h"
 #include "inputs/matte.h"
 #include "inputs/painted.h"
 #include "line/interrupt.h"
@@ -78,7 +78,7 @@ int shot_check(struct shot_settings *settings, bool own_focus)
     int status = input_check_depth(&settings->depth);
 
     if (input_depth_is_made(&settings->depth))
-        settings->depth.make = made_depth;
+        settings->depth.make = estimated_depth;
     if (settings->depth.strokes)
         settings->depth.full = settings->depth.optional = true;
     settings->engine.bokeh.f_number = settings->lens.f_number;

@@ -1,4 +1,5 @@
-/* fuzz_lens.c: settings as a page sends them: what is taken is in its range, and names no file. */
+/* fuzz_settings.c: settings as a page sends them: what is taken is in its range, and names no file.
+ */
 #include <stdlib.h>
 #include <string.h>
 #include "serve/serving.h"
@@ -18,7 +19,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     int status;
 
     report_keep(why, sizeof why);
-    status = serve_lens_read((const char *)data, size, &base, &settings);
+    status = page_settings_read((const char *)data, size, &base, &settings);
     if (status != EXIT_DONE && !why[0])
         abort();
     if (status != EXIT_DONE)

@@ -1,8 +1,8 @@
-/* made.c: depth is made of pictures: of a stereo pair, or of one photo by a network. */
+/* estimate.c: depth is estimated of pictures: of a stereo pair, or of one photo by a network. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "inputs/made.h"
+#include "inputs/estimate.h"
 #include "inputs/opencv.h"
 #include "line/report.h"
 
@@ -61,7 +61,7 @@ static int load(const struct opencv **cv, const char *what)
     return *cv ? EXIT_DONE : report_failure(EXIT_FAILED, what, "%s", why);
 }
 
-const struct option_word made_order_words[] = {
+const struct option_word stereo_order_words[] = {
     {"auto", "what only one picture shows tells, else it is the left one"},
     {"left-first", "the left one"},
     {"right-first", "the right one, as where eyes are crossed to see depth"},
@@ -258,14 +258,14 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
     return status == EXIT_DONE ? input_convert(input, settings) : status;
 }
 
-int made_depth(struct input *input, const struct depth_settings *settings)
+int estimated_depth(struct input *input, const struct depth_settings *settings)
 {
     input->depth_name = settings->model ? settings->model : input->photo_name;
     return settings->model ? estimate_depth(input, settings->model, &settings->network, settings)
                            : match(input, settings->right, &settings->stereo, settings);
 }
 
-const struct option_word made_match_words[] = {
+const struct option_word stereo_match_words[] = {
     {"checked", "both ways; what disagrees is filled"},
     {"plain", "OpenCV's semi-global matching as it is"},
     {"wls", "filled by weighted least squares; needs the module refocus-ximgproc"},

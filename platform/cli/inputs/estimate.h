@@ -1,6 +1,6 @@
-/* made.h: depth that is made of pictures: of a stereo pair, or by a network. */
-#ifndef RF_CLI_MADE_H
-#define RF_CLI_MADE_H
+/* estimate.h: depth that is estimated from pictures: of a stereo pair, or by a network. */
+#ifndef RF_CLI_ESTIMATE_H
+#define RF_CLI_ESTIMATE_H
 
 #include "inputs/read_input.h"
 
@@ -15,6 +15,6 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
 
 /* Make the depth of a photo that was read, by the settings' `model` or else `right` and `stereo`:
  * for their `make`. */
-int made_depth(struct input *input, const struct depth_settings *settings);
+int estimated_depth(struct input *input, const struct depth_settings *settings);
 
 #endif

@@ -1,6 +1,6 @@
-/* made_options.h: options that say how depth is made of pictures. */
-#ifndef RF_CLI_MADE_OPTIONS_H
-#define RF_CLI_MADE_OPTIONS_H
+/* estimate_options.h: options that say how depth is estimated from pictures. */
+#ifndef RF_CLI_ESTIMATE_OPTIONS_H
+#define RF_CLI_ESTIMATE_OPTIONS_H
 
 #include <math.h>
 #include <stdbool.h>
@@ -23,11 +23,11 @@ struct network_settings {
 struct stereo_settings {
     bool within; /* both pictures are in the one file */
     int method;  /* enum refocus_stereo_method */
-    int order;   /* index of made_order_words */
+    int order;   /* index of stereo_order_words */
 };
 
 /* Words of --match and --pair-order. */
-extern const struct option_word made_match_words[], made_order_words[];
+extern const struct option_word stereo_match_words[], stereo_order_words[];
 
 /* Rows for tables of options: `model` is a text, `network` and `stereo` are the settings above,
  * short_help is a line of --help or NULL. */
@@ -70,9 +70,9 @@ extern const struct option_word made_match_words[], made_order_words[];
     }
 #define MATCH_OPTION(type, stereo, short_help)                                                     \
     OPTION(OPTION_CHOICE, "--match", "HOW", type, stereo.method),                                  \
-        .brief = short_help, .words = made_match_words, .help = "how a stereo pair is matched"
+        .brief = short_help, .words = stereo_match_words, .help = "how a stereo pair is matched"
 #define PAIR_ORDER_OPTION(type, stereo)                                                            \
     OPTION(OPTION_CHOICE, "--pair-order", "HOW", type, stereo.order),                              \
-        .words = made_order_words, .help = "which picture of a stereo pair is the first one"
+        .words = stereo_order_words, .help = "which picture of a stereo pair is the first one"
 
 #endif
