@@ -6,10 +6,10 @@
 
 #include "image/disparity_map.h"
 
-void rf_hole_colours_load(const struct rf_hole_colours *colours, const struct refocus_image *photo,
-                          int width, int height)
+void rf_hole_colours_load(const struct rf_hole_colours *colours, const struct refocus_image *photo)
 {
     const int bytes = refocus_format_bytes(photo->format);
+    const int width = colours->width, height = colours->height;
     uint8_t *out = colours->own;
 
     for (int y = 0; y < height; y++) {
@@ -23,9 +23,9 @@ void rf_hole_colours_load(const struct rf_hole_colours *colours, const struct re
 }
 
 void rf_hole_colours_settle(const struct rf_hole_colours *colours, const uint16_t *disparity,
-                            ptrdiff_t stride, const uint8_t *state, int width, int height, int x,
-                            int y, int continuous)
+                            ptrdiff_t stride, const uint8_t *state, int x, int y, int continuous)
 {
+    const int width = colours->width, height = colours->height;
     const uint16_t *row = (const uint16_t *)((const char *)disparity + y * stride);
     uint8_t *surface = colours->surface + 3 * ((size_t)y * (size_t)width + (size_t)x);
     int sum[3] = {0}, count = 0;

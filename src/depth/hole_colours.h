@@ -14,20 +14,19 @@ enum { RF_HOLE_COLOUR_BYTES = 6 }; /* six bytes a sample, in both */
 
 /* Colours, three bytes a sample, row after row; NULL: there is no photo. */
 struct rf_hole_colours {
-    uint8_t *own;     /* the photo's, in the middle of the sample */
-    uint8_t *surface; /* the one of the surface whose disparity it has, or took */
+    int width, height; /* samples */
+    uint8_t *own;      /* the photo's, in the middle of the sample */
+    uint8_t *surface;  /* the one of the surface whose disparity it has, or took */
 };
 
 /* Takes the colours of the samples from a packed photo of the same view and of any size. */
-void rf_hole_colours_load(const struct rf_hole_colours *colours, const struct refocus_image *photo,
-                          int width, int height);
+void rf_hole_colours_load(const struct rf_hole_colours *colours, const struct refocus_image *photo);
 
 /* Sets the surface's colour at a known sample: the mean, half up, of those of its eight neighbours
  * and its own that are known and within `continuous` of its disparity. One pixel alone may be
  * mixed, or noise. */
 void rf_hole_colours_settle(const struct rf_hole_colours *colours, const uint16_t *disparity,
-                            ptrdiff_t stride, const uint8_t *state, int width, int height, int x,
-                            int y, int continuous);
+                            ptrdiff_t stride, const uint8_t *state, int x, int y, int continuous);
 
 /* The greatest difference, over the channels, of a sample's own colour and of that of the surface
  * at another. */

@@ -368,7 +368,7 @@ static void settle_colours(const struct holes *holes)
                 for (int i = x > 0 ? x - 1 : 0; i <= x + 1 && i < width; i++)
                     if (state_row(holes, j)[i] == RF_SAMPLE_KNOWN)
                         rf_hole_colours_settle(&holes->colours, holes->disparity, holes->stride,
-                                               holes->state, width, height, i, j, CONTINUOUS);
+                                               holes->state, i, j, CONTINUOUS);
 }
 
 void rf_fill_holes(uint16_t *disparity, ptrdiff_t stride, int width, int height, uint8_t *state,
@@ -385,8 +385,9 @@ void rf_fill_holes(uint16_t *disparity, ptrdiff_t stride, int width, int height,
 
     holes.gap = gap_of(&holes);
     if (photo) {
-        holes.colours = (struct rf_hole_colours){state + samples, state + 4 * samples};
-        rf_hole_colours_load(&holes.colours, photo, width, height);
+        holes.colours =
+            (struct rf_hole_colours){width, height, state + samples, state + 4 * samples};
+        rf_hole_colours_load(&holes.colours, photo);
         settle_colours(&holes);
     }
     spread_all(&holes);
