@@ -1,7 +1,6 @@
 /* live.c: frames of cameras in place of a photo. All clients look at the newest one, each with
  * settings of its own. */
 #include <stdlib.h>
-#include <unistd.h>
 #include <refocus/platform/source.h>
 #include "inputs/painted.h"
 #include "live/live_options.h"
@@ -153,11 +152,7 @@ int serve_live_still(struct serving *s, struct refocus_blob *bytes)
     status = output_write_image(path, &s->taken.photo, &options);
     if (status == EXIT_DONE && refocus_photo_write_depth(path, path, &depth, &reason) != REFOCUS_OK)
         status = report_failure(EXIT_FAILED, s->work->name, "%s", reason.text);
-    if (status == EXIT_DONE)
-        status = serve_read_back(path, bytes);
-    unlink(path);
-    free(path);
-    return status;
+    return serve_take_back(status, path, bytes);
 }
 
 void serve_answer_live_frame(struct serving *s, const struct rf_web_ask *ask, const char *bytes)

@@ -1,7 +1,6 @@
 /* pull.c: a focus pull of the page's key frames: an animation of the reduced photo. */
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #include "settings/keys.h"
 #include "outputs/animation.h"
 #include "outputs/encoder.h"
@@ -107,12 +106,7 @@ static int make(struct serving *s, const struct shot_settings *settings, const s
 
     if (status != EXIT_DONE)
         return status;
-    status = write_frames(s, settings, keys, size, path);
-    if (status == EXIT_DONE)
-        status = serve_read_back(path, bytes);
-    unlink(path);
-    free(path);
-    return status;
+    return serve_take_back(write_frames(s, settings, keys, size, path), path, bytes);
 }
 
 void serve_answer_pull(struct serving *s, const struct rf_web_ask *ask, const char *body)

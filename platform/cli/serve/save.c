@@ -7,13 +7,15 @@
 #include "outputs/outputs.h"
 #include "serve/serving.h"
 
-int serve_read_back(const char *path, struct refocus_blob *bytes)
+int serve_take_back(int status, char *path, struct refocus_blob *bytes)
 {
     struct refocus_reason reason = {""};
 
-    if (refocus_file_read(path, UINT64_MAX, bytes, &reason) != REFOCUS_OK)
-        return report_failure(EXIT_FAILED, path, "%s", reason.text);
-    return EXIT_DONE;
+    if (status == EXIT_DONE && refocus_file_read(path, UINT64_MAX, bytes, &reason) != REFOCUS_OK)
+        status = report_failure(EXIT_FAILED, path, "%s", reason.text);
+    unlink(path);
+    free(path);
+    return status;
 }
 
 int serve_temporary(const char *ending, char **path)
@@ -38,12 +40,7 @@ int serve_encode(const char *ending, const struct refocus_image *image,
     quick.unsynced = 1;
     if (status != EXIT_DONE)
         return status;
-    status = output_write_image(path, image, &quick);
-    if (status == EXIT_DONE)
-        status = serve_read_back(path, bytes);
-    unlink(path);
-    free(path);
-    return status;
+    return serve_take_back(output_write_image(path, image, &quick), path, bytes);
 }
 
 static int encode_depth(const struct serving *s, struct refocus_blob *bytes)
@@ -54,12 +51,8 @@ static int encode_depth(const struct serving *s, struct refocus_blob *bytes)
 
     if (status != EXIT_DONE)
         return status;
-    status = output_write_gray16(path, serve_disparity(s), photo->width, photo->height);
-    if (status == EXIT_DONE)
-        status = serve_read_back(path, bytes);
-    unlink(path);
-    free(path);
-    return status;
+    return serve_take_back(
+        output_write_gray16(path, serve_disparity(s), photo->width, photo->height), path, bytes);
 }
 
 /* The depth that goes into the result: the one that was painted. */
@@ -119,30 +112,31 @@ static int save_settings(const struct shot_settings *settings, struct refocus_bl
 
 void serve_answer_save(struct serving *s, const struct rf_web_ask *ask, const char *bytes)
 {
+    enum { JPEG, PNG, SETTINGS, DEPTH };
     static const struct {
         const char *word, *type, *ending;
-    } formats[] = {{"jpeg", "image/jpeg", "refocused.jpg"},
-                   {"png", "image/png", "refocused.png"},
-                   {"settings", "application/json", "settings.json"},
-                   {"depth", "image/png", "depth.png"}};
+    } formats[] = {[JPEG] = {"jpeg", "image/jpeg", "refocused.jpg"},
+                   [PNG] = {"png", "image/png", "refocused.png"},
+                   [SETTINGS] = {"settings", "application/json", "settings.json"},
+                   [DEPTH] = {"depth", "image/png", "depth.png"}};
     struct refocus_blob file = {0};
     struct shot_settings settings;
-    int status, format = 0;
+    int status, format = JPEG;
 
     if (!serve_has_settings(s, ask, bytes, &settings))
         return;
-    while (format < 3 && strcmp(formats[format].word, ask->word) != 0)
+    while (format < DEPTH && strcmp(formats[format].word, ask->word) != 0)
         format++;
-    if (format == 2)
+    if (format == SETTINGS)
         status = save_settings(&settings, &file);
-    else if (format == 3)
+    else if (format == DEPTH)
         status = encode_depth(s, &file);
     else if (s->feed)
-        status = format == 0 ? serve_live_still(s, &file)
-                             : report_failure(EXIT_WRONG, s->work->name,
-                                              "what is captured is a JPEG; ask for that");
+        status = format == JPEG ? serve_live_still(s, &file)
+                                : report_failure(EXIT_WRONG, s->work->name,
+                                                 "what is captured is a JPEG; ask for that");
     else
-        status = save_picture(s, &settings, format == 0 ? "picture.jpg" : "picture.png", &file);
+        status = save_picture(s, &settings, format == JPEG ? "picture.jpg" : "picture.png", &file);
     if (status == EXIT_DONE)
         answer_bytes(s, formats[format].type, formats[format].ending, file.data, file.size);
     else

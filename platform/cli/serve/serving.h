@@ -168,13 +168,14 @@ json_t *serve_films_json(void);
 
 /* save.c */
 void serve_answer_save(struct serving *s, const struct rf_web_ask *ask, const char *bytes);
-/* Write a picture, or 16-bit samples where it is NULL, into memory; "name.ending" says how. */
+/* Write a picture into memory, in the format of that ending. */
 int serve_encode(const char *ending, const struct refocus_image *image,
                  const struct refocus_write_options *options, struct refocus_blob *bytes);
 
-/* The name of a new file for a short time, to be freed, and the bytes of one. */
+/* The name of a new file for a short time. Whoever has written it, with this status, gives it back
+ * for its bytes, if it was EXIT_DONE; returns the status then. */
 int serve_temporary(const char *ending, char **path);
-int serve_read_back(const char *path, struct refocus_blob *bytes);
+int serve_take_back(int status, char *path, struct refocus_blob *bytes);
 
 /* paint.c: a draft is a stroke under the finger: it is replaced by the next one, or by the stroke
  * that it has become, and answered with what it selects. */
