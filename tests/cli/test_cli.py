@@ -52,14 +52,14 @@ class Usage(Case):
                      '--dry-run --json -h --help --help-all',
             'sheet': self.PAPERS + self.CONTROLS +
                      '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order --strokes '
-                     '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --kind --focuses --blurs --f-numbers --apertures --sigmas '
+                     '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --transfer --white --kind --focuses --blurs --f-numbers --apertures --sigmas '
                      '--cell-width --region --focus --focus-at --focus-rectangle '
                      '--focus-distance --blur --f-number --focal-length --sensor-width --method --rays --iterations '
                      '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin --fill '
                      '--threads --cpu --json --config --preset --settings --save-settings -h --help --help-all',
             'pull': self.PAPERS + self.CONTROLS +
                     '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --behind --behind-depth --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order --strokes '
-                    '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
+                    '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --transfer --white --from --to --blur-from --blur-to --keys --seconds --fps --ease --back '
                     '--wiggle '
                     '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality --aperture --blend '
@@ -76,7 +76,7 @@ class Usage(Case):
             'info': '--depth --depth-unit --near --far --orient-depth --invalid --speckle --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --max-side --max-pixels --raw-preview --max-memory --json -h --help --help-all',
             'compare': self.PAPERS + '-o --output --reference --methods --border --depth '
-                       '--depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --upsample --depth-edges --orient-depth --matte --gain-map --no-dither --focus --focus-at --focus-rectangle '
+                       '--depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --upsample --depth-edges --orient-depth --matte --gain-map --no-dither --transfer --white --focus --focus-at --focus-rectangle '
                        '--focus-distance --blur --f-number --focal-length --sensor-width --rays --iterations '
                        '--quality --aperture --blend --sigma --highlights --mirror --background --no-thin --fill '
                        '--threads --cpu --repeat --json -h --help --help-all',

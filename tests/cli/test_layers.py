@@ -278,8 +278,8 @@ class Layers(Case):
         for file, *more in ('photo.ppm', '--white', '2'), ('deep.png', '--transfer', 'pq', '--grain',
                                                            '1'):
             self.fails(1, more[0] + ': the option is for photos of more than 8 bits, rendered by sweep, '
-                       'search, blur or interpolated in linear light without --sigma, --grain, --star '
-                       'and --view; leave it out',
+                       'search, blur or interpolated in linear light without --sigma, --grain, --star, '
+                       '--view and --wiggle; leave it out',
                        'render', file, '--depth', 'depth.pgm', '-o', 'out.png', *more)
         for name in ('light.pfm', 'flat.pgm', 'out.pfm', 'out.png', 'out.ppm', 'deep.png'):
             os.remove(name)

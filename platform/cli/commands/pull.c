@@ -175,15 +175,13 @@ static int write_frames(struct shot *shot, const struct keys *keys, const struct
     const double seconds = stereo ? given(s->seconds, 2) - 1 / fps : keys_seconds(keys);
     const int there = (int)(seconds * fps + 0.5) + 1;
     const int count = s->back && there > 2 ? 2 * there - 2 : there;
-    const struct refocus_image *photo = shot->input.photo->image;
-    struct refocus_image out = refocus_image_packed(REFOCUS_FORMAT_RGB8, NULL, photo->width,
-                                                    photo->height, (ptrdiff_t)photo->width * 3);
+    const double whole[4] = {NAN};
+    struct refocus_image out;
     struct animation *animation = NULL;
-    int status = EXIT_FAILED, closed;
+    int status = shot_output(shot, whole, stereo ? NULL : s->output, &out), closed;
 
-    out.plane[0] = malloc((size_t)photo->width * 3 * (size_t)photo->height);
-    if (!out.plane[0])
-        return report_failure(EXIT_FAILED, shot->input.photo_name, "not enough memory");
+    if (status != EXIT_DONE)
+        return status;
     status = animation_open(&animation, s->output, out.width, out.height, fps, count);
     for (int i = 0; i < count && status == EXIT_DONE; i++) {
         status = render_frame(shot, keys, stereo, s, i, count, there, &out);
@@ -224,7 +222,8 @@ static int pull(struct shot *shot, const char *photo, struct keys **keys, const 
     if (isnan(s->wiggle) && !input_focus_is_given(&wanted.lens))
         /* each frame has its own: none is found */
         wanted.lens.focus = given(s->from, 1);
-    wanted.depth.light = isnan(s->wiggle);
+    if (isnan(s->wiggle))
+        shot_suit_output(&wanted.depth, s->output);
     status = shot_open(shot, photo, &wanted, most_blur);
     if (status == EXIT_DONE && !isnan(s->wiggle))
         return wiggle(shot, s, frames);

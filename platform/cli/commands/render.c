@@ -8,7 +8,6 @@
 #include "commands/render_one.h"
 #include "inputs/depth_options.h"
 #include "inputs/standard_input.h"
-#include "inputs/transfer.h"
 #include "outputs/outputs.h"
 #include "settings/settings.h"
 #include "shot/shot_options.h"
@@ -41,7 +40,6 @@ static const struct option options[] = {
     GROUP(shot_depth_options, struct render_settings, shot),
     GROUP(behind_options, struct render_settings, shot.behind),
     GROUP(light_options, struct render_settings, shot.depth),
-    GROUP(transfer_options, struct render_settings, shot.depth),
     GROUP(shot_lens_options, struct render_settings, shot),
     GROUP(shot_method_options, struct render_settings, shot),
     GROUP(strips_options, struct render_settings, shot.engine),

@@ -66,39 +66,16 @@ static int print_report(const struct render_settings *settings, const struct eng
     return EXIT_DONE;
 }
 
-/* How much of a deep photo is taken: 8-bit pictures are made of dithered codes, which keeps
- * shallow gradients, unless there is light above white. */
-static int deep_of(const struct render_settings *settings)
-{
-    const struct depth_settings *depth = &settings->shot.depth;
-
-    if (settings->view != VIEW_NONE)
-        return DEEP_NONE;
-    return output_deep_format(settings->output) || depth->transfer || !isnan(depth->white) ||
-                   depth->no_dither
-               ? DEEP_ALL
-               : DEEP_LIGHT;
-}
-
 static int render(struct shot *shot, struct refocus_image *out,
                   const struct render_settings *settings, const char *photo)
 {
-    const uint32_t deep = output_deep_format(settings->output);
-    const struct refocus_image *const from = &shot->input.deep;
     int status = shot_open(shot, photo, &settings->shot, 0);
-    /* With a gain map, a PNG has 8 bits as the photo has, and a PFM all the light. */
-    const bool whole =
-        from->plane[0] && deep && (!shot->input.light || deep == REFOCUS_FORMAT_RGB_FLOAT);
 
     if (status == EXIT_DONE)
-        status = shot_output(shot, settings->region, whole ? deep : REFOCUS_FORMAT_RGB8, out);
+        status = shot_output(shot, settings->region, settings->output, out);
     if (status == EXIT_DONE && settings->shot.engine.in_strips &&
         settings->shot.engine.repeat <= 1 && out->height >= LEAST_SPOOLED)
         shot->engine.spool = spool_open();
-    if (status == EXIT_DONE && out->format == from->format && deep == REFOCUS_FORMAT_RGB16) {
-        out->transfer = from->transfer; /* a PNG is of the photo's kind */
-        out->white = from->white;
-    }
     shot->engine.keeps_light = keep_has_light(&settings->keep, settings->output);
     if (status == EXIT_DONE)
         status = views_render(shot, out, settings->view, settings->parallax,
@@ -145,8 +122,8 @@ int render_one(const struct render_settings *given, const char *photo)
     struct refocus_image out = {0};
     int status;
 
-    used->depth.deep = deep_of(settings);
-    used->depth.light = settings->view == VIEW_NONE;
+    if (settings->view == VIEW_NONE)
+        shot_suit_output(&used->depth, settings->output);
     if (settings->view == VIEW_NONE && !output_deep_format(settings->output) &&
         strips_suit(&used->engine, &used->depth, used->behind.image != NULL))
         used->engine.memory_kib = memory_free_kib() / 4 * 3; /* the rest is for the pictures */

@@ -130,6 +130,7 @@ static int render_cell(struct shot *shot, const struct refocus_settings *usual,
                        const struct sheet_cell *cell, const struct refocus_image *out)
 {
     struct refocus_settings *params = &shot->engine.params;
+    int status;
 
     *params = *usual;
     if (cell->untouched) {
@@ -151,7 +152,8 @@ static int render_cell(struct shot *shot, const struct refocus_settings *usual,
         params->look.star_spikes = cell->look->params.look.star_spikes;
         shot->engine.has_sides = cell->look->has_sides;
     }
-    return engine_render(&shot->engine, out, 1);
+    status = shot_suit(shot);
+    return status == EXIT_DONE ? engine_render(&shot->engine, out, 1) : status;
 }
 
 /* Size of a cell that shows `full` and is no wider than was asked for. */
@@ -171,7 +173,7 @@ static int make_cells(struct shot *shot, const struct sheet *sheet, const struct
     struct refocus_image full = {0};
     struct refocus_settings placed;
     const char *why = NULL;
-    int width, height, status = shot_output(shot, settings->region, REFOCUS_FORMAT_RGB8, &full);
+    int width, height, status = shot_output(shot, settings->region, NULL, &full);
 
     if (status != EXIT_DONE)
         return status;
@@ -204,9 +206,7 @@ static int make(struct shot *shot, struct sheet *sheet, const char *photo,
         wanted.lens.f_number = sheet->least_f_number;
     if (settings->sheet.kind == SHEET_FOCUS && !input_focus_is_given(&wanted.lens))
         wanted.lens.focus = 1; /* each cell has its own: none has to be found */
-    wanted.depth.light = settings->sheet.kind != SHEET_SIGMA;
-    for (int i = 0; i < sheet->looks; i++)
-        wanted.depth.light &= engine_draws_light(&sheet->look[i].params);
+    shot_suit_output(&wanted.depth, NULL);
     status = shot_open(shot, photo, &wanted, isnan(sheet->most_blur) ? 0 : sheet->most_blur);
     if (status == EXIT_DONE)
         status = sheet_fill(sheet, &settings->sheet, &wanted.lens, &shot->input,

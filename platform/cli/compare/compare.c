@@ -17,9 +17,7 @@
 #include "shot/shot_options.h"
 
 struct settings {
-    struct depth_settings depth;
-    struct lens_settings lens;
-    struct engine_settings engine;
+    struct shot_settings shot;
     const char *reference, *methods, *output;
     double border;
 };
@@ -31,14 +29,14 @@ static const struct option options[] = {
      .help = "the picture as it should be, of the photo's size"},
     OUTPUT_OPTION(struct settings, output,
                   "a picture of labelled crops where depth jumps: " OUTPUT_PICTURES),
-    GROUP(depth_file_options, struct settings, depth),
-    GROUP(depth_unit_options, struct settings, depth),
-    GROUP(upsample_options, struct settings, depth),
-    GROUP(limit_options, struct settings, depth.limits),
-    GROUP(depth_edges_options, struct settings, depth),
-    GROUP(orient_depth_options, struct settings, depth),
-    GROUP(matte_options, struct settings, depth),
-    GROUP(light_options, struct settings, depth),
+    GROUP(depth_file_options, struct settings, shot.depth),
+    GROUP(depth_unit_options, struct settings, shot.depth),
+    GROUP(upsample_options, struct settings, shot.depth),
+    GROUP(limit_options, struct settings, shot.depth.limits),
+    GROUP(depth_edges_options, struct settings, shot.depth),
+    GROUP(orient_depth_options, struct settings, shot.depth),
+    GROUP(matte_options, struct settings, shot.depth),
+    GROUP(light_options, struct settings, shot.depth),
     {.kind = OPTION_HEADING, .help = "What is compared"},
     {OPTION(OPTION_TEXT, "--methods", "NAME[:OPTION[=VALUE]...],...", struct settings, methods),
      .brief = "such as sweep,search:rays=full:iterations=1",
@@ -50,33 +48,31 @@ static const struct option options[] = {
      .help = "pixels at each side that do not count, less than half the picture; default the "
              "blur radius"},
     {.kind = OPTION_HEADING, .help = "Focus and blur"},
-    GROUP(focus_options, struct settings, lens),
-    GROUP(lens_options, struct settings, lens),
+    GROUP(focus_options, struct settings, shot.lens),
+    GROUP(lens_options, struct settings, shot.lens),
     {.kind = OPTION_HEADING, .help = "Rendering"},
-    GROUP(ray_options, struct settings, engine),
-    QUALITY_OPTION(struct settings, engine.quality, "standard", NULL),
-    GROUP(rendering_options, struct settings, engine),
+    GROUP(ray_options, struct settings, shot.engine),
+    QUALITY_OPTION(struct settings, shot.engine.quality, "standard", NULL),
+    GROUP(rendering_options, struct settings, shot.engine),
     {.kind = OPTION_HEADING, .help = "Running"},
-    GROUP(run_options, struct settings, engine),
-    GROUP(repeat_options, struct settings, engine),
-    GROUP(paper_options, struct settings, engine),
+    GROUP(run_options, struct settings, shot.engine),
+    GROUP(repeat_options, struct settings, shot.engine),
+    GROUP(paper_options, struct settings, shot.engine),
     {.help = NULL},
 };
 
-static int check(const struct settings *settings, const char *photo)
+static int check(struct settings *settings, const char *photo)
 {
-    const char *const inputs[] = {
-        photo, settings->depth.file, settings->reference, settings->engine.aperture,
-        matte_is_none(settings->depth.matte) ? NULL : settings->depth.matte};
-    int status = input_check_depth(&settings->depth);
+    const char *inputs[SHOT_INPUTS + 1];
+    int count = shot_inputs(&settings->shot, photo, inputs);
+    int status = shot_check(&settings->shot, false);
 
-    if (status == EXIT_DONE)
-        status = input_check_lens(&settings->lens);
+    inputs[count++] = settings->reference;
     if (status == EXIT_DONE && !settings->reference)
         status = report_failure(EXIT_WRONG, "--reference",
                                 "there is nothing to compare with; give --reference GT");
     if (status == EXIT_DONE && settings->output)
-        status = output_check(settings->output, OUTPUT_PICTURE, NULL, inputs, 5);
+        status = output_check(settings->output, OUTPUT_PICTURE, NULL, inputs, count);
     return status;
 }
 
@@ -109,9 +105,10 @@ static uint8_t *packed(const struct refocus_image *image, bool copy)
     return rgb;
 }
 
-static uint64_t memory_of(const struct engine *engine, const struct refocus_image *photo,
-                          uint32_t method)
+static uint64_t memory_of(const struct shot *shot, uint32_t method)
 {
+    const struct engine *engine = &shot->engine;
+    const struct refocus_image *photo = shot->input.photo->image;
     struct refocus_renderer_params params = refocus_renderer_params_default(
         photo->width, photo->height, engine->params.render.max_blur_radius);
 
@@ -119,7 +116,7 @@ static uint64_t memory_of(const struct engine *engine, const struct refocus_imag
     params.papers = refocus_papers();
     params.methods = REFOCUS_METHOD_BIT(method);
     params.thin = engine->params.thin.enabled || engine->has_matte;
-    params.deep = engine->deep;
+    params.deep = shot->deep;
     params.textured = engine->params.render.inpaint == REFOCUS_INPAINT_TEXTURED;
     return refocus_renderer_memory(&params);
 }
@@ -169,11 +166,12 @@ static void warm_up(const struct engine *engine)
     refocus_render_settings(engine->renderer, &params, &pixel);
 }
 
-static int render_all(struct engine *engine, struct comparison *c, const struct variants *variants,
-                      const struct input *input, const struct settings *settings)
+static int render_all(struct shot *shot, struct comparison *c, const struct variants *variants,
+                      const struct settings *settings)
 {
+    struct engine *engine = &shot->engine;
     const struct refocus_settings lens = engine->params;
-    const struct refocus_image *photo = input->photo->image;
+    const struct refocus_image *photo = shot->input.photo->image;
 
     for (int i = 0; i < variants->count; i++) {
         const struct variant *variant = &variants->variant[i];
@@ -190,17 +188,20 @@ static int render_all(struct engine *engine, struct comparison *c, const struct 
             status = papers_place(&variant->settings.papers, params, photo->width, photo->height);
         if (status != EXIT_DONE)
             return status;
-        shot_suit_papers(input, &settings->lens, &variant->settings.papers, params);
+        shot_suit_papers(&shot->input, &settings->shot.lens, &variant->settings.papers, params);
         out.plane[0] = c->item[c->count - 1].rgb;
         out.stride[0] = (ptrdiff_t)photo->width * 3;
         report_progress(refocus_method_name(params->render.method), (i + 0.5) / variants->count);
+        status = shot_suit(shot);
+        if (status != EXIT_DONE)
+            return status;
         warm_up(engine);
-        status = engine_render(engine, &out, (int)settings->engine.repeat);
+        status = engine_render(engine, &out, (int)settings->shot.engine.repeat);
         if (status != EXIT_DONE)
             return status;
         c->item[c->count - 1].ms = engine->render_ms;
         c->item[c->count - 1].cpu_ms = engine->cpu_ms;
-        c->item[c->count - 1].memory = memory_of(engine, photo, params->render.method);
+        c->item[c->count - 1].memory = memory_of(shot, params->render.method);
     }
     return EXIT_DONE;
 }
@@ -215,43 +216,64 @@ static int write_crops(const struct comparison *c, const uint16_t *disparity, co
     return status;
 }
 
-static int compare(struct engine *engine, struct input *input, struct comparison *c,
-                   const struct settings *settings, const struct variants *variants)
+/* The variant that takes most of the photo: of the others some may take 8 bits. */
+static const struct variant *deepest(const struct variants *variants)
 {
-    const struct refocus_image *photo = input->photo->image;
-    const struct refocus_disparity disparity = refocus_disparity16(
-        input->disparity, input->width, input->height, (ptrdiff_t)input->width * 2);
-    struct refocus_scene scene = input_scene(input, &disparity);
+    const struct variant *best = &variants->variant[0];
+
+    for (int i = 1; i < variants->count; i++) {
+        const struct refocus_settings *params = &variants->variant[i].engine.params;
+
+        if (engine_takes_deep(params) + engine_draws_light(params) >
+            engine_takes_deep(&best->engine.params) + engine_draws_light(&best->engine.params))
+            best = &variants->variant[i];
+    }
+    return best;
+}
+
+/* All methods are compared on the same photo by one renderer, made for what any of them asks for.
+ * Sets the largest blur that all can render. */
+static void settle_methods(struct shot *shot, struct variants *variants,
+                           const struct settings *settings)
+{
+    struct engine *engine = &shot->engine;
+
+    shot->input.most_blur = REFOCUS_MAX_BLUR_RADIUS;
+    for (int i = 0; i < variants->count; i++) {
+        struct variant *variant = &variants->variant[i];
+        struct refocus_settings *params = &variant->engine.params;
+
+        engine->methods |= variant->engine.methods;
+        engine->params.thin.enabled |= params->thin.enabled;
+        if (params->render.inpaint == REFOCUS_INPAINT_TEXTURED)
+            engine->params.render.inpaint = REFOCUS_INPAINT_TEXTURED;
+        params->render.dither =
+            settings->shot.depth.no_dither ? REFOCUS_DITHER_OFF : REFOCUS_DITHER_ORDERED;
+        shot->input.most_blur = fmin(shot->input.most_blur, engine_most_blur(&variant->settings));
+    }
+}
+
+/* The photo is prepared: render, score and report. */
+static int compare(struct shot *shot, struct comparison *c, const struct settings *settings,
+                   const struct variants *variants)
+{
+    const struct refocus_image *photo = shot->input.photo->image;
+    const struct refocus_render_params *lens = &shot->engine.params.render;
+    const double focus = (double)lens->focus_disparity, blur = (double)lens->max_blur_radius;
+    const int border = isnan(settings->border) ? (int)ceil(blur) : (int)settings->border;
     const size_t pixels = (size_t)photo->width * (size_t)photo->height;
     uint16_t *prepared = malloc(pixels * 2);
     uint8_t *mask = malloc(pixels);
-    double blur = 0, focus = 0;
-    int status, border = 0;
+    int status = prepared && mask ? check_border(c, border)
+                                  : report_failure(EXIT_FAILED, "compare", "not enough memory");
 
-    engine->places_edges = input_has_edges_placed(input, &settings->depth);
-    scene.depth_edges = engine->places_edges;
-    engine->has_matte = input->matte.samples != NULL;
-    engine->deep = input->deep.plane[0] != NULL;
-    engine->light = input->light;
-    status = prepared && mask ? input_blur(input, &settings->lens, &blur)
-                              : report_failure(EXIT_FAILED, "compare", "not enough memory");
     if (status == EXIT_DONE)
-        status = engine_create(engine, &settings->engine, photo->width, photo->height, blur);
-    if (status == EXIT_DONE)
-        status = engine_prepare(engine, &scene);
-    if (status == EXIT_DONE) {
-        refocus_get_view(engine->renderer, REFOCUS_VIEW_DISPARITY, prepared,
+        refocus_get_view(shot->engine.renderer, REFOCUS_VIEW_DISPARITY, prepared,
                          (ptrdiff_t)photo->width * 2);
-        status = input_focus(input, &settings->lens, prepared, &focus);
-        engine->params.render.focus_disparity = (float)focus;
-        border = isnan(settings->border) ? (int)ceil(blur) : (int)settings->border;
-    }
-    if (status == EXIT_DONE)
-        status = check_border(c, border);
     if (status == EXIT_DONE)
         status = add(c, "photo", photo, true);
     if (status == EXIT_DONE)
-        status = render_all(engine, c, variants, input, settings);
+        status = render_all(shot, c, variants, settings);
     if (status == EXIT_DONE &&
         quality_edge_mask(prepared, c->width, c->height, focus, blur, mask) != 0)
         status = report_failure(EXIT_FAILED, "compare", "not enough memory");
@@ -261,84 +283,66 @@ static int compare(struct engine *engine, struct input *input, struct comparison
     if (status == EXIT_DONE && settings->output)
         status = write_crops(c, prepared, settings->output);
     if (status == EXIT_DONE)
-        status = compare_report(c, engine, input->photo_name, settings->reference, border,
-                                settings->engine.json);
+        status = compare_report(c, &shot->engine, shot->input.photo_name, settings->reference,
+                                border, settings->shot.engine.json);
     free(prepared);
     free(mask);
     return status;
 }
 
-/* All methods are compared on the same photo by one renderer, made for what any of them asks for.
- * Returns the largest blur that all can render. */
-static double settle_methods(struct engine *engine, struct settings *settings,
-                             struct variants *variants)
+/* The photo and the reference are read, and the photo is prepared for all methods. */
+static int open_photo(struct shot *shot, const char *photo, struct comparison *c,
+                      struct refocus_photo **reference, const struct settings *settings,
+                      struct variants *variants)
 {
-    double most_blur = REFOCUS_MAX_BLUR_RADIUS;
+    struct shot_settings wanted = settings->shot;
+    int status;
 
-    settings->depth.light = true;
-    for (int i = 0; i < variants->count; i++) {
-        struct variant *variant = &variants->variant[i];
-        struct refocus_settings *params = &variant->engine.params;
-
-        engine->methods |= variant->engine.methods;
-        engine->params.thin.enabled |= params->thin.enabled;
-        if (params->render.inpaint == REFOCUS_INPAINT_TEXTURED)
-            engine->params.render.inpaint = REFOCUS_INPAINT_TEXTURED;
-        settings->depth.light &= engine_draws_light(params);
-        params->render.dither =
-            settings->depth.no_dither ? REFOCUS_DITHER_OFF : REFOCUS_DITHER_ORDERED;
-        most_blur = fmin(most_blur, engine_most_blur(&variant->settings));
+    wanted.engine = deepest(variants)->settings;
+    shot_suit_output(&wanted.depth, NULL);
+    status = shot_begin(shot, photo, &wanted);
+    if (status == EXIT_DONE)
+        status = read_reference(reference, settings->reference, shot->input.photo->image);
+    if (status == EXIT_DONE) {
+        c->width = shot->input.photo->image->width;
+        c->height = shot->input.photo->image->height;
+        status = add(c, "reference", (*reference)->image, true);
     }
-    return most_blur;
+    settle_methods(shot, variants, settings);
+    return status == EXIT_DONE ? shot_prepare(shot, &wanted, 0) : status;
 }
 
 static int run(int argc, char **argv)
 {
-    struct settings settings = {.depth = DEPTH_SETTINGS_NONE,
-                                .lens = LENS_SETTINGS_NONE,
-                                .engine = ENGINE_SETTINGS_NONE(QUALITY_STANDARD, 1),
-                                .border = NAN};
+    struct settings settings = {.shot = SHOT_SETTINGS_NONE, .border = NAN};
     struct comparison comparison = {0};
     struct refocus_photo *reference = NULL;
-    struct engine engine;
-    struct input input = {0};
+    struct shot shot = {.engine = {.spool = -1}};
     struct variants variants = {0};
     const char *files[2];
-    double most_blur;
     int status;
 
-    settings.engine.method = -1; /* several: options of any may be given */
+    settings.shot.engine.quality = QUALITY_STANDARD;
+    settings.shot.engine.bokeh.grain = 0; /* the reference's is another */
+    settings.shot.engine.method = -1;     /* several: options of any may be given */
     status = options_parse(&compare_command, argc, argv, &settings, files);
-    settings.engine.method = REFOCUS_METHOD_SWEEP;
+    settings.shot.engine.method = REFOCUS_METHOD_SWEEP;
     if (status != OPTIONS_PARSED)
         return status;
     status = check(&settings, files[0]);
     if (status != EXIT_DONE)
         return status;
-    status = engine_begin(&engine, &settings.engine);
-    engine.name = files[0];
+    status = variants_begin(&variants, settings.methods, &settings.shot.engine);
     if (status == EXIT_DONE)
-        status = variants_begin(&variants, settings.methods, &settings.engine);
-    most_blur = settle_methods(&engine, &settings, &variants);
+        status = open_photo(&shot, files[0], &comparison, &reference, &settings, &variants);
     if (status == EXIT_DONE)
-        status = input_read(&input, files[0], &settings.depth);
-    input.most_blur = most_blur;
-    if (status == EXIT_DONE)
-        status = read_reference(&reference, settings.reference, input.photo->image);
-    if (status == EXIT_DONE) {
-        comparison.width = input.photo->image->width;
-        comparison.height = input.photo->image->height;
-        status = add(&comparison, "reference", reference->image, true);
-    }
-    if (status == EXIT_DONE)
-        status = compare(&engine, &input, &comparison, &settings, &variants);
+        status = compare(&shot, &comparison, &settings, &variants);
     report_progress_end();
     for (int i = 0; i < comparison.count; i++)
         free(comparison.item[i].rgb);
     refocus_photo_free(&reference);
     variants_end(&variants);
-    engine_end(&engine);
-    input_free(&input);
+    shot_close(&shot);
     return status;
 }
 
@@ -349,7 +353,9 @@ const struct command compare_command = {
     .notes = "PSNR and RMSE are of the 8-bit values, SSIM of their luma; the edge PSNR "
              "is of the pixels within reach of a depth edge of two pixels of blur or "
              "more. The row 'photo' is the untouched photo. The times are of rendering "
-             "alone; MiB is all that a renderer for the one method takes.",
+             "alone; MiB is all that a renderer for the one method takes. Pictures are those of "
+             "render with --grain off; of a photo of more than 8 bits each method takes what it "
+             "can.",
     .table = options,
     .files_least = 1,
     .files_most = 1,

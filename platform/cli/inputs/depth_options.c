@@ -2,6 +2,7 @@
 #include "inputs/depth_options.h"
 
 #include "inputs/read_input.h"
+#include "inputs/transfer.h"
 
 const struct option depth_file_options[] = {
     {OPTION(OPTION_TEXT, "--depth", "FILE", struct depth_settings, file),
@@ -65,6 +66,13 @@ const struct option light_options[] = {
      .help = "the gain map of a photo (Ultra HDR, ISO 21496-1, Apple); default use"},
     {OPTION(OPTION_FLAG, "--no-dither", NULL, struct depth_settings, no_dither),
      .help = "photos of more than 8 bits, or with a gain map: 8 bits of the result are rounded"},
+    {OPTION(OPTION_CHOICE, "--transfer", "CURVE", struct depth_settings, transfer),
+     .words = transfer_words, .rare = true,
+     .help = "how a photo of more than 8 bits stores light; default auto"},
+    {OPTION(OPTION_NUMBER, "--white", "LIGHT", struct depth_settings, white), .least = 1 / 65536.0,
+     .greatest = 65536,
+     .help = "light of such a photo that is shown as white, cd/m2 with pq; what is brighter keeps "
+             "its light out of focus; default 1, 203 with pq, 0.265 with hlg"},
     {.help = NULL},
 };
 

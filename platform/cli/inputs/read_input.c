@@ -200,7 +200,7 @@ static int choose_bits(struct input *input, const struct depth_settings *setting
         return report_failure(EXIT_FAILED, settings->transfer ? "--transfer" : "--white",
                               "the option is for photos of more than 8 bits, rendered by sweep, "
                               "search, blur or interpolated in linear light without --sigma, "
-                              "--grain, --star and --view; leave it out");
+                              "--grain, --star, --view and --wiggle; leave it out");
     if (!deep->plane[0] || settings->deep == DEEP_NONE ||
         (settings->deep == DEEP_LIGHT && deep->format != REFOCUS_FORMAT_RGB_FLOAT)) {
         input_tell_bits(input->photo, input->photo_name);

@@ -2,18 +2,6 @@
 #include "inputs/transfer.h"
 
 #include <refocus/image.h>
-#include "inputs/input.h"
-
-const struct option transfer_options[] = {
-    {OPTION(OPTION_CHOICE, "--transfer", "CURVE", struct depth_settings, transfer),
-     .words = transfer_words, .rare = true,
-     .help = "how a photo of more than 8 bits stores light; default auto"},
-    {OPTION(OPTION_NUMBER, "--white", "LIGHT", struct depth_settings, white), .least = 1 / 65536.0,
-     .greatest = 65536,
-     .help = "light of such a photo that is shown as white, cd/m2 with pq; what is brighter keeps "
-             "its light out of focus; default 1, 203 with pq, 0.265 with hlg"},
-    {.help = NULL},
-};
 
 const struct option_word transfer_words[] = {
     [REFOCUS_TRANSFER_DEFAULT] = {"auto", "sRGB of 16 bits, linear of floats"},

@@ -8,7 +8,4 @@
 /* Words of --transfer. */
 extern const struct option_word transfer_words[];
 
-/* The options of struct depth_settings. */
-extern const struct option transfer_options[];
-
 #endif

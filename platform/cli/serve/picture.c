@@ -178,8 +178,7 @@ int serve_render(struct serving *s, const struct shot_settings *settings, bool k
     out->plane[0] = NULL;
     engine->name = s->work->name;
     engine->has_matte = s->input.matte.samples != NULL;
-    engine->deep = s->input.deep.plane[0] &&
-                   (s->input.light ? engine_draws_light : engine_takes_deep)(&engine->params);
+    engine->deep = shot_takes_deep(&s->input, &engine->params);
     engine_add_grain(engine, &settings->engine);
     engine->places_edges = has_own_depth(s) && input_has_edges_placed(&s->input, &s->base.depth);
     engine->light = engine->deep ? s->input.light : NULL;

@@ -7,6 +7,7 @@
 #include "inputs/painted.h"
 #include "line/interrupt.h"
 #include "line/report.h"
+#include "outputs/outputs.h"
 #include "shot/shot.h"
 #include "shot/spool.h"
 #include "shot/strips.h"
@@ -134,25 +135,85 @@ static int read_files(struct shot *shot, const char *photo, const struct shot_se
                : status;
 }
 
-/* The scene; `map` is its depth, of the photo's size where that was made already. */
-static struct refocus_scene scene_of(const struct shot *shot, struct refocus_disparity *map)
+void shot_suit_output(struct depth_settings *depth, const char *output)
+{
+    const bool all = (output && output_deep_format(output)) || depth->transfer ||
+                     !isnan(depth->white) || depth->no_dither;
+
+    depth->deep = all ? DEEP_ALL : DEEP_LIGHT;
+    depth->light = true;
+}
+
+bool shot_takes_deep(const struct input *input, const struct refocus_settings *params)
+{
+    return input->deep.plane[0] &&
+           (input->light ? engine_draws_light(params) : engine_takes_deep(params));
+}
+
+/* The scene with all that the photo holds, or with its 8 bits. */
+static struct refocus_scene scene_of(const struct shot *shot)
 {
     const struct input *input = &shot->input;
-    const struct refocus_image *image = input->photo->image;
-    struct refocus_scene scene;
+    struct refocus_scene scene = input_scene(input, &shot->map);
 
-    *map = refocus_disparity16(input->disparity, input->width, input->height,
-                               (ptrdiff_t)input->width * 2);
-    scene = input_scene(input, map);
+    if (!shot->deep)
+        scene.photo = input->photo->image;
     scene.depth_edges = shot->engine.places_edges;
     if (shot->full) {
-        *map = refocus_disparity16(shot->full, image->width, image->height,
-                                   2 * (ptrdiff_t)image->width);
         scene.depth_edges = REFOCUS_DEPTH_EDGES_AS_GIVEN;
         scene.confidence = NULL;
     }
     behind_add(&shot->behind, &scene);
     return scene;
+}
+
+/* Choose what of the photo the engine's settings take. The grain of 8-bit pictures follows it. */
+static bool choose_bits(struct shot *shot)
+{
+    struct refocus_settings *params = &shot->engine.params;
+    bool deep;
+
+    if (shot->adds_grain)
+        params->look.grain = 0; /* so that deep photos are taken */
+    deep = shot_takes_deep(&shot->input, params);
+    if (shot->adds_grain && !deep)
+        params->look.grain = 1;
+    return deep;
+}
+
+static int prepare_bits(struct shot *shot, bool deep)
+{
+    const struct input *input = &shot->input;
+    struct refocus_scene scene;
+
+    shot->deep = deep;
+    shot->engine.light = deep ? input->light : NULL;
+    if (!deep && input->deep.plane[0] && !input->light && !shot->told) {
+        input_tell_bits(input->photo, input->photo_name);
+        shot->told = true;
+    }
+    scene = scene_of(shot);
+    return engine_prepare(&shot->engine, &scene);
+}
+
+int shot_suit(struct shot *shot)
+{
+    const bool deep = choose_bits(shot);
+
+    return deep == shot->deep ? EXIT_DONE : prepare_bits(shot, deep);
+}
+
+/* The depth of the scene, of the photo's size where that was made already. */
+static struct refocus_disparity map_of(const struct shot *shot)
+{
+    const struct input *input = &shot->input;
+    const struct refocus_image *image = input->photo->image;
+
+    if (shot->full)
+        return refocus_disparity16(shot->full, image->width, image->height,
+                                   2 * (ptrdiff_t)image->width);
+    return refocus_disparity16(input->disparity, input->width, input->height,
+                               (ptrdiff_t)input->width * 2);
 }
 
 /* Makes the renderer for what was read, and prepares it. */
@@ -161,39 +222,37 @@ static int prepare(struct shot *shot, const struct shot_settings *settings, doub
 {
     struct engine *engine = &shot->engine;
     const struct refocus_image *image = shot->input.photo->image;
-    struct refocus_disparity map;
-    const struct refocus_scene scene = scene_of(shot, &map);
     int status;
 
+    shot->map = map_of(shot);
+    shot->adds_grain = isnan(settings->engine.bokeh.grain);
     engine->has_matte = shot->input.matte.samples != NULL;
     engine->behind = settings->behind.image != NULL;
     engine->deep = shot->input.deep.plane[0] != NULL;
-    engine_add_grain(engine, &settings->engine);
-    engine->light = shot->input.light;
     engine->params.render.dither =
         settings->depth.no_dither ? REFOCUS_DITHER_OFF : REFOCUS_DITHER_ORDERED;
     status = engine_create(engine, &settings->engine, image->width, image->height,
                            fmax(blur, most_blur));
     engine->params.render.max_blur_radius = (float)blur;
     shot_suit_papers(&shot->input, &settings->lens, &settings->engine.papers, &engine->params);
-    return status == EXIT_DONE ? engine_prepare(engine, &scene) : status;
+    return status == EXIT_DONE ? prepare_bits(shot, choose_bits(shot)) : status;
 }
 
-int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings,
-              double most_blur)
+int shot_begin(struct shot *shot, const char *photo, const struct shot_settings *settings)
 {
-    double blur = 0;
     int status;
 
-    memset(&shot->input, 0, sizeof shot->input);
-    memset(&shot->behind, 0, sizeof shot->behind);
-    shot->full = NULL;
+    memset(shot, 0, sizeof *shot);
     status = engine_begin(&shot->engine, &settings->engine);
     shot->engine.name = photo;
-    if (status == EXIT_DONE)
-        status = read_files(shot, photo, settings);
-    if (status == EXIT_DONE)
-        status = input_blur(&shot->input, &settings->lens, &blur);
+    return status == EXIT_DONE ? read_files(shot, photo, settings) : status;
+}
+
+int shot_prepare(struct shot *shot, const struct shot_settings *settings, double most_blur)
+{
+    double blur = 0;
+    int status = input_blur(&shot->input, &settings->lens, &blur);
+
     if (status != EXIT_DONE)
         return status;
     report_progress("preparing", 0.15);
@@ -204,6 +263,14 @@ int shot_open(struct shot *shot, const char *photo, const struct shot_settings *
     if (status == EXIT_DONE)
         status = prepare(shot, settings, blur, most_blur);
     return status == EXIT_DONE ? choose_focus(shot, &settings->lens) : status;
+}
+
+int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings,
+              double most_blur)
+{
+    const int status = shot_begin(shot, photo, settings);
+
+    return status == EXIT_DONE ? shot_prepare(shot, settings, most_blur) : status;
 }
 
 int shot_rendered(struct shot *shot, const struct refocus_image *out)
@@ -224,9 +291,21 @@ void shot_close(struct shot *shot)
     input_free(&shot->input);
 }
 
-int shot_output(struct shot *shot, const double region[4], uint32_t format,
+/* With a gain map, a PNG has 8 bits as the photo has, and a PFM all the light. */
+static uint32_t format_of(const struct shot *shot, const char *output)
+{
+    const uint32_t format = output ? output_deep_format(output) : REFOCUS_FORMAT_NONE;
+
+    return format && shot->deep && (!shot->input.light || format == REFOCUS_FORMAT_RGB_FLOAT)
+               ? format
+               : REFOCUS_FORMAT_RGB8;
+}
+
+int shot_output(struct shot *shot, const double region[4], const char *output,
                 struct refocus_image *out)
 {
+    const struct refocus_image *deep = &shot->input.deep;
+    const uint32_t format = format_of(shot, output);
     const int bytes = refocus_format_bytes(format);
     const struct refocus_image *photo = shot->input.photo->image;
     struct refocus_settings *params = &shot->engine.params;
@@ -244,6 +323,10 @@ int shot_output(struct shot *shot, const double region[4], uint32_t format,
         params->render.region_height = height = (int32_t)region[3];
     }
     *out = refocus_image_packed(format, NULL, width, height, (ptrdiff_t)width * bytes);
+    if (format == REFOCUS_FORMAT_RGB16 && deep->format == format) {
+        out->transfer = deep->transfer; /* a PNG is of the photo's kind */
+        out->white = deep->white;
+    }
     if ((uint64_t)width * (uint64_t)bytes * (uint64_t)height <= SIZE_MAX)
         out->plane[0] = malloc((size_t)width * (size_t)bytes * (size_t)height);
     if (!out->plane[0])

@@ -33,6 +33,10 @@ struct shot {
     uint16_t *full; /* disparities of the photo's size that are rendered in strips, or NULL */
     struct behind behind;
     struct engine engine;
+    struct refocus_disparity map; /* the depth of the scene */
+    bool adds_grain; /* pictures of 8 bits have grain, which no option gives or refuses */
+    bool deep;       /* all that the photo holds is prepared, not its 8 bits */
+    bool told;       /* a line has said that 8 bits are taken */
 };
 
 /* These return exit codes and print why it is not EXIT_DONE. */
@@ -62,15 +66,34 @@ int shot_aim(const struct input *input, const struct lens_settings *lens,
  * shot_close() is still to come. */
 int shot_rendered(struct shot *shot, const struct refocus_image *out);
 
+/* Take of deep photos, and of gain maps, what a picture of that name is made of: `render` and the
+ * other commands then make the same pixels. 8-bit pictures are made of dithered codes, which keeps
+ * shallow gradients, unless there is light above white. NULL: a picture of 8 bits. */
+void shot_suit_output(struct depth_settings *depth, const char *output);
+
+/* Whether a picture of these settings is made of all that the photo holds, or of its 8 bits. */
+bool shot_takes_deep(const struct input *input, const struct refocus_settings *params);
+
 /* most_blur: what the renderer is made for, where that is more than the settings' blur;
  * 0: that. Ended by shot_close(), whatever it returned. */
 int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings,
               double most_blur);
 void shot_close(struct shot *shot);
 
+/* The two halves of shot_open(), for several methods on one photo: files are read for the settings
+ * that take most of it, and the engine is widened to all methods before the photo is prepared. */
+int shot_begin(struct shot *shot, const char *photo, const struct shot_settings *settings);
+int shot_prepare(struct shot *shot, const struct shot_settings *settings, double most_blur);
+
+/* Called before engine_render() with settings that may take the photo otherwise than those before
+ * them: it is prepared anew where a picture takes all that it holds and the last one took 8 bits.
+ */
+int shot_suit(struct shot *shot);
+
 /* A picture to render into, of the whole photo or, where region[0] is not NAN, of X, Y,
- * width and height in it; plane[0] is to be freed. */
-int shot_output(struct shot *shot, const double region[4], uint32_t format,
+ * width and height in it; plane[0] is to be freed. It is as deep as the photo and a file of that
+ * name are; NULL: of 8 bits. */
+int shot_output(struct shot *shot, const double region[4], const char *output,
                 struct refocus_image *out);
 
 #endif
