@@ -142,6 +142,15 @@ int refocus_sink_set_mode(struct refocus_sink *sink, const struct refocus_source
     return REFOCUS_OK;
 }
 
+int refocus_sink_set_cancelled(struct refocus_sink *sink, int (*cancelled)(void *user), void *user)
+{
+    if (!sink)
+        return REFOCUS_ERR_ARGUMENT;
+    sink->cancelled = cancelled;
+    sink->user = user;
+    return REFOCUS_OK;
+}
+
 int refocus_sink_start_image(struct refocus_sink *sink, const struct refocus_image *like,
                              double fps, struct refocus_reason *reason)
 {

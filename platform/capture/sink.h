@@ -16,6 +16,8 @@ struct refocus_sink {
     uint32_t format, matrix, range; /* format of the pictures to come */
     int32_t aspect[2];              /* width to height of a pixel; 0 and 0: not known */
     uint32_t chroma_place;          /* enum refocus_chroma_place */
+    int (*cancelled)(void *user);   /* NULL: never */
+    void *user;
 };
 
 /* Reasons are never NULL here; open, start and close may be, where there is nothing to do. */

@@ -355,6 +355,8 @@ static int write_picture(struct refocus_sink *sink, const struct refocus_image *
         return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "the name is too long");
     sequence->next++;
     options.unsynced = 1; /* The next frame does not wait for the disk. */
+    options.cancelled = sink->cancelled;
+    options.user = sink->user;
     return refocus_image_write(name, image, &options, reason);
 }
 

@@ -168,7 +168,7 @@ static void run(struct writer *writer)
     if ((rows->format == REFOCUS_FORMAT_NONE || rows->format == REFOCUS_FORMAT_RGB16) &&
         *(const uint8_t *)&one == 1)
         png_set_swap(writer->png);
-    for (int32_t y = 0; y < rows->height && writer->store->error == 0; y++)
+    for (int32_t y = 0; y < rows->height && rf_store_goes_on(writer->store); y++)
         png_write_row(writer->png, rows->top + y * rows->stride);
     if (writer->store->error == 0)
         png_write_end(writer->png, NULL); /* all that the info has stands before the pixels */

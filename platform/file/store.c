@@ -201,9 +201,16 @@ int rf_store_open(struct rf_store *store, const char *path, struct refocus_reaso
     return status;
 }
 
+bool rf_store_goes_on(struct rf_store *store)
+{
+    if (store->error == 0 && store->cancelled && store->cancelled(store->user) != 0)
+        store->error = ECANCELED;
+    return store->error == 0;
+}
+
 void rf_store_write(struct rf_store *store, const void *bytes, size_t size)
 {
-    if (store->error == 0 && size > 0) {
+    if (size > 0 && rf_store_goes_on(store)) {
         errno = 0;
         if (fwrite(bytes, 1, size, store->stream) != size)
             store->error = errno ? errno : EIO;
@@ -238,7 +245,7 @@ int rf_store_close(struct rf_store *store, int status, struct refocus_reason *re
     const bool good = status == REFOCUS_OK;
 
     errno = 0;
-    if (good && store->error == 0 && fflush(store->stream) != 0)
+    if (good && rf_store_goes_on(store) && fflush(store->stream) != 0)
         store->error = errno ? errno : EIO;
     if (good && store->error == 0 && !store->unsynced)
         store->error = sync_file(fileno(store->stream));
@@ -251,7 +258,9 @@ int rf_store_close(struct rf_store *store, int status, struct refocus_reason *re
         unlink(store->temporary);
     else if (!store->unsynced)
         sync_folder(store->path);
-    if (good && store->error != 0)
+    if (good && store->error == ECANCELED)
+        status = rf_fail(reason, REFOCUS_ERR_CANCELLED, "cancelled");
+    else if (good && store->error != 0)
         status = rf_fail_errno(reason, store->error, "cannot write it");
     free(store->temporary);
     free(store->path);

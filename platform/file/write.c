@@ -24,7 +24,10 @@ static int write_rows(const char *path, const struct rf_format *format, const st
     if (status != REFOCUS_OK)
         return status;
     store.unsynced = options->unsynced;
-    status = format->write(&store, rows, options, reason);
+    store.cancelled = options->cancelled;
+    store.user = options->user;
+    if (rf_store_goes_on(&store))
+        status = format->write(&store, rows, options, reason);
     return rf_store_close(&store, status, reason);
 }
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What saving leaves behind: nothing after any signal that ends the command, and the mode, the
 owner and the links of what is replaced. Usage: test_saving.py REFOCUS [unittest arguments]"""
+import json
 import os
 import resource
 import shutil
@@ -66,6 +67,34 @@ class Saving(Case):
                 process.send_signal(number)
                 self.assertIn('interrupted; nothing was written', self.ended(process, number))
                 self.assertEqual(self.listing(), before, name)
+
+    @unittest.skipIf('REFOCUS_SLOW' in os.environ, 'sanitizers come before what is preloaded')
+    def test_a_signal_within_a_png(self):
+        """Its rows end soon after it, however many there are, and no part of it stays."""
+        side = 8000
+        with open('tall.ppm', 'wb') as file:
+            file.write(b'P6\n8 %d\n255\n' % side + bytes(range(24)) * side)
+        pictures.pgm('flat.pgm', 2, 2, lambda x, y: 128)
+        before = self.listing()
+        env = {**os.environ, 'LD_PRELOAD': os.environ['REFOCUS_SIGNAL_IN_PNG']}
+        still = ('tall.ppm', '--depth', 'flat.pgm', '--blur', '1')
+        live = ('live', '--json', '--camera', 'file:tall.ppm', '--depth', 'file:flat.pgm', '--loop',
+                '--no-commands', '--blur', '1', '--out', 'l%03d.png')
+        for status, *command in ((1, 'render', *still, '--focus', '1', '-o', 'out.png'),
+                                 (1, 'pull', *still, '--seconds', '3600', '-o', 'f%03d.png'),
+                                 (1, 'pull', *still, '--seconds', '3600', '-o', 'f.apng'),
+                                 (0, *live)):
+            process = self.start(*command, '--threads', '1', env=env)
+            out, error = process.communicate(timeout=300)
+            self.assertEqual(process.returncode, status, (command, error))
+            if status:
+                self.assertRegex(error, r'^refocus: \S+: interrupted; nothing was written\n$')
+            else:
+                self.assertEqual((error, json.loads(out)['frames_out']), ('', 0))
+            self.assertLess(os.stat('rows').st_size, side / 2)  # four seconds for the signal
+            os.remove('rows')
+            self.assertEqual(self.listing(), before, command)
+        os.remove('tall.ppm')
 
     def test_first_signal_of_two(self):
         """Ctrl-C ends with status 1, as ever; a second one, of any kind, at once."""

@@ -380,6 +380,11 @@ struct refocus_write_options {
      * the least, and lies behind the picture: an Ultra HDR photo, by ISO 21496-1 and by XMP. NULL =
      * none. */
     const struct refocus_image *light;
+    /** Asked before each row of a PNG, PPM and PFM, and where an encoder takes the whole picture
+     *  (JPEG, HEIC, TIFF, OpenEXR) before and behind that, in the thread of the call: other than 0
+     *  ends it with REFOCUS_ERR_CANCELLED, as any error does. NULL = never */
+    int (*cancelled)(void *user);
+    void *user; /**< handed to `cancelled` */
 };
 
 static inline struct refocus_write_options refocus_write_options_default(void)
@@ -413,7 +418,7 @@ static inline struct refocus_write_options refocus_write_options_default(void)
  * the picture editable; else empty. May be NULL
  * @return REFOCUS_OK, REFOCUS_ERR_ARGUMENT, REFOCUS_ERR_UNSUPPORTED (an ending it does
  *         not know, or a HEIC where libheif has no encoder of HEVC), REFOCUS_ERR_IO,
- * REFOCUS_ERR_MEMORY. Thread-safe.
+ *         REFOCUS_ERR_MEMORY, REFOCUS_ERR_CANCELLED (by `cancelled`). Thread-safe.
  */
 REFOCUS_API int refocus_image_write(const char *path, const struct refocus_image *image,
                                     const struct refocus_write_options *options,

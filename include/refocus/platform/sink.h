@@ -79,6 +79,17 @@ REFOCUS_API int refocus_sink_set_mode(struct refocus_sink *sink,
                                       const struct refocus_source_mode *mode);
 
 /**
+ * Set what is asked while a picture of a sequence is written, as `cancelled` of struct
+ * refocus_write_options: other than 0 ends refocus_sink_write() with REFOCUS_ERR_CANCELLED, and of
+ * this picture no file is left. Other sinks write a frame whole.
+ *
+ * @param cancelled  called in the thread of refocus_sink_write(); NULL = nobody is asked
+ * @return REFOCUS_OK; REFOCUS_ERR_ARGUMENT: there is no sink
+ */
+REFOCUS_API int refocus_sink_set_cancelled(struct refocus_sink *sink, int (*cancelled)(void *user),
+                                           void *user);
+
+/**
  * Say what will come: before the first frame, and whenever the size changes.
  *
  * @param fps  frames a second, of which 10000 at most count; 0 = 30
@@ -114,8 +125,8 @@ REFOCUS_API int refocus_sink_start_image(struct refocus_sink *sink,
  *         closed the pipe, the device is unplugged), REFOCUS_ERR_TIMEOUT (the device took
  *         none for a second, or of `pipewire:` not yet the ones before: the frame is
  *         dropped), REFOCUS_ERR_END (the user closed the
- *         window, or pressed Escape or q), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY. Never
- *         raises SIGPIPE.
+ *         window, or pressed Escape or q), REFOCUS_ERR_IO, REFOCUS_ERR_MEMORY,
+ *         REFOCUS_ERR_CANCELLED (refocus_sink_set_cancelled()). Never raises SIGPIPE.
  */
 REFOCUS_API int refocus_sink_write(struct refocus_sink *sink, const struct refocus_image *image,
                                    struct refocus_reason *reason);

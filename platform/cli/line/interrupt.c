@@ -254,6 +254,12 @@ bool interrupt_came(void)
     return result;
 }
 
+int interrupt_cancels(void *unused)
+{
+    (void)unused;
+    return interrupt_came();
+}
+
 void interrupt_hold(bool hold)
 {
     pthread_mutex_lock(&lock);

@@ -33,8 +33,9 @@ bool interrupt_wait_child(bool *all_know);
 int interrupt_wait_file(void);
 void interrupt_take(void);
 
-/* Whether a signal has come. */
+/* Whether a signal has come; also as libraries ask it. */
 bool interrupt_came(void);
+int interrupt_cancels(void *unused);
 
 /* Whether it will end the process: a reader that has gone need not be told anything. */
 bool interrupt_ends(void);

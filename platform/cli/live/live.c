@@ -94,6 +94,7 @@ static int open_all(struct live *live)
     if (status != REFOCUS_OK)
         return report_failure(input_exit_code(status), settings->out, "%s", reason.text);
     refocus_sink_set_mode(live->sink, &live->mode);
+    refocus_sink_set_cancelled(live->sink, interrupt_cancels, NULL);
     return EXIT_DONE;
 }
 

@@ -53,7 +53,7 @@ static bool write_picture(struct live *live, const struct live_picture *picture,
     *last = *image;
     if (status == REFOCUS_OK)
         status = refocus_sink_write(live->sink, image, &reason);
-    if (status == REFOCUS_ERR_TIMEOUT) {
+    if (status == REFOCUS_ERR_TIMEOUT || status == REFOCUS_ERR_CANCELLED) {
         live->sink_dropped++;
         return true;
     }

@@ -164,13 +164,15 @@ int animation_open(struct animation **animation, const char *path, int width, in
 static int write_picture(struct animation *a, const struct refocus_image *image,
                          struct refocus_reason *reason)
 {
+    struct refocus_write_options options = refocus_write_options_default();
     char name[PATH_MAX];
 
     if (!frame_name(a, a->frames, name)) {
         snprintf(reason->text, sizeof reason->text, "the name is too long; give a shorter one");
         return REFOCUS_ERR_ARGUMENT;
     }
-    return refocus_image_write(name, image, NULL, reason);
+    options.cancelled = interrupt_cancels;
+    return refocus_image_write(name, image, &options, reason);
 }
 
 int animation_write(struct animation *a, const struct refocus_image *image)
@@ -199,6 +201,8 @@ int animation_write(struct animation *a, const struct refocus_image *image)
     }
     a->frames += status == REFOCUS_OK;
     interrupt_hold(false);
+    if (status == REFOCUS_ERR_CANCELLED)
+        return report_failure(EXIT_FAILED, a->path, "interrupted; nothing was written");
     return status == REFOCUS_OK ? EXIT_DONE : lost(a, &reason);
 }
 

@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include "line/interrupt.h"
 
 enum { SIGNATURE = 8, HEADER = 25, CHUNK_REST = 12 };
 
@@ -161,8 +162,10 @@ static bool put_pixels(struct apng *a, const uint8_t *png, size_t size)
 int apng_write(struct apng *a, const struct refocus_image *image, struct refocus_reason *reason)
 {
     struct refocus_blob png = {NULL, 0};
-    const struct refocus_write_options options = {
-        .struct_size = sizeof(struct refocus_write_options), .unsynced = 1};
+    const struct refocus_write_options options = {.struct_size =
+                                                      sizeof(struct refocus_write_options),
+                                                  .unsynced = 1,
+                                                  .cancelled = interrupt_cancels};
     char *picture;
     int status = refocus_file_temporary(a->beside, &picture, reason);
 

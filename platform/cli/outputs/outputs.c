@@ -202,12 +202,13 @@ int output_write_image(const char *path, const struct refocus_image *image,
 int output_write_image_as(const char *path, const char *name, const struct refocus_image *image,
                           const struct refocus_write_options *options)
 {
+    struct refocus_write_options own = options ? *options : refocus_write_options_default();
     struct refocus_reason reason = {""};
     int status;
 
+    own.cancelled = interrupt_cancels;
     interrupt_hold(true);
-    status = interrupt_came() ? REFOCUS_ERR_CANCELLED
-                              : refocus_image_write(path, image, options, &reason);
+    status = refocus_image_write(path, image, &own, &reason);
     interrupt_hold(false);
     if (status == REFOCUS_ERR_CANCELLED)
         return report_failure(EXIT_FAILED, name, "interrupted; nothing was written");

@@ -140,6 +140,7 @@ static void sinks_of_nothing(void **state)
     }
     mode = refocus_source_mode_default();
     assert_status(refocus_sink_set_mode(NULL, &mode), REFOCUS_ERR_ARGUMENT);
+    assert_status(refocus_sink_set_cancelled(NULL, NULL, NULL), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_sink_overwrites(NULL, "x"), 0);
     assert_int_equal(refocus_sink_overwrites("y4m:x", NULL), 0);
     for (int f = 0; f < 5; f++) {

@@ -419,6 +419,73 @@ static void full_disk_leaves_the_old_file(void **state)
 #endif
 }
 
+/* How often somebody was asked, and the question that is answered with yes. */
+struct asked {
+    int count, yes;
+};
+
+static int is_cancelled(void *user)
+{
+    struct asked *const asked = user;
+
+    return ++asked->count == asked->yes;
+}
+
+/* A picture of 200 rows that is cancelled: nobody is asked again, the old file stays, and nothing
+ * is beside it. */
+static void a_cancelled_picture_is_left_out(void **state)
+{
+    static const struct {
+        const char *name;
+        int least; /* how often it is asked at the least */
+    } formats[] = {{"c.ppm", 200},
+#ifdef RF_HAVE_PNG
+                   {"c.png", 200},
+#endif
+#ifdef RF_HAVE_JPEG
+                   {"c.jpg", 2},
+#endif
+                   {"c.pfm", 200}};
+    struct picture picture = make_picture(REFOCUS_FORMAT_RGB8, 150, 200, false);
+    const int before = count_files();
+
+    (void)state;
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        struct asked asked = {0, 0};
+        struct refocus_write_options options = refocus_write_options_default();
+        struct refocus_reason reason;
+        struct refocus_blob old, now;
+        int times;
+
+        options.cancelled = is_cancelled;
+        options.user = &asked;
+        assert_int_equal(
+            refocus_image_write(in_folder(formats[i].name), &picture.image, &options, &reason),
+            REFOCUS_OK);
+        times = asked.count;
+        assert_true(times >= formats[i].least);
+        assert_int_equal(refocus_file_read(in_folder(formats[i].name), UINT64_MAX, &old, NULL),
+                         REFOCUS_OK);
+        for (int yes = 1; yes <= times; yes += yes + 6 < times ? 6 : 1) {
+            asked = (struct asked){0, yes};
+            assert_int_equal(
+                refocus_image_write(in_folder(formats[i].name), &picture.image, &options, &reason),
+                REFOCUS_ERR_CANCELLED);
+            assert_string_equal(reason.text, "cancelled");
+            assert_int_equal(asked.count, yes);
+            assert_int_equal(count_files(), before + 1);
+        }
+        assert_int_equal(refocus_file_read(in_folder(formats[i].name), UINT64_MAX, &now, NULL),
+                         REFOCUS_OK);
+        assert_int_equal(now.size, old.size);
+        assert_memory_equal(now.data, old.data, old.size);
+        free(old.data);
+        free(now.data);
+        remove(in_folder(formats[i].name));
+    }
+    free(picture.memory);
+}
+
 static void a_folder_is_in_the_way(void **state)
 {
     struct picture picture = make_picture(REFOCUS_FORMAT_RGB8, 4, 3, false);
@@ -520,6 +587,7 @@ int main(void)
 #endif
         cmocka_unit_test(refusals),
         cmocka_unit_test(full_disk_leaves_the_old_file),
+        cmocka_unit_test(a_cancelled_picture_is_left_out),
         cmocka_unit_test(a_folder_is_in_the_way),
         cmocka_unit_test(umask_is_honoured),
         cmocka_unit_test(a_name_without_folder),
