@@ -30,8 +30,7 @@ int live_look_check(struct live_settings *settings)
     if (live_look_needs_metres(settings) && live_estimate_is_meant(settings->depth.file))
         return report_failure(EXIT_WRONG, settings->depth.file, "%s", live_look_no_metres);
     settings->engine.bokeh.f_number = lens->f_number;
-    /* Stills alone have the time for these two; refocus() has silhouettes in the best of Y, U, V.
-     */
+    /* Photos alone have the time for these two; refocus() has silhouettes in the best frames. */
     settings->engine.no_thin = true;
     settings->engine.fill = FILL_SMOOTH;
     return EXIT_DONE;

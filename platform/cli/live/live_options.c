@@ -20,11 +20,13 @@ static const char *format_name(uint32_t index)
 }
 
 /* Frames of a camera have no thin structures splatted, nor texture continued. The best of Y, U and
- * V have silhouettes without a halo. */
+ * V have silhouettes without a halo, and a still what `render` has but for texture. */
 static const char *quality_summary(uint32_t index)
 {
     static const char *const rays[] = {
-        "32 rays", "64 rays", "128 rays; of Y, U and V also no halo beside what is in focus"};
+        "32 rays", "64 rays",
+        "128 rays; of Y, U and V also no halo beside what is in focus, of a single picture (file:) "
+        "that and thin structures splatted"};
     return index < sizeof rays / sizeof *rays ? rays[index] : engine_quality_words[index].summary;
 }
 

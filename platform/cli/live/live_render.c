@@ -171,8 +171,10 @@ static int refocus(struct live *live, const struct live_picture *picture,
     params.render.max_blur_radius = (float)live->blur;
     engine_suit_rays(live->engine, &params);
     params.highlights.steady = STEADY_LIGHT;
+    /* Y, U and V have silhouettes alone; R, G and B would have thin structures, too, which flicker
+     * under the noise of video. */
     params.thin.enabled = live->settings->engine.quality == QUALITY_BEST &&
-                          refocus_format_is_yuv(picture->image.format); /* silhouettes alone */
+                          (picture->still || refocus_format_is_yuv(picture->image.format));
     params.look.grain_seed +=
         (uint32_t)(live->frames_rendered - 1); /* Grain that stands is dirt. */
     if (live_look_aim(live, &picture->image, &params) != EXIT_DONE)
