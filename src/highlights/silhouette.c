@@ -2,6 +2,7 @@
  * to. */
 #include "highlights/known.h"
 
+#include <limits.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,17 +28,30 @@ enum {
     SIDE = 2 * AROUND + 1,
     LANES = 16, /* columns that are looked at to count in SIDE of them */
     COLUMNS = RUN + LANES,
+    KEPT = 16,  /* rows, of which SIDE are in use */
+    STRIP = 16, /* rows of RUNS runs are gone through together */
+    RUNS = 16,
 };
 
 /* A run of pixels from x0 on, from column AROUND on, with those around it: the light of the
- * brightest channel, which is DARK outside of the window, and disparities by signed16(). */
+ * brightest channel, which is DARK outside of the window, and disparities by signed16(). As it goes
+ * down the photo, each row is copied and compared with its neighbours once: row y of the window is
+ * row y % KEPT here, and rows first to next - 1 are there. */
 struct run {
-    int x0;
+    int x0, first, next;
     int16_t light[SIDE][COLUMNS];
-    int16_t disparity[SIDE][COLUMNS];
-    int16_t noisy[COLUMNS]; /* pixels of a column that lie off the lines through their neighbours */
-    uint16_t off[COLUMNS];  /* the sum of how far they lie off these lines, a quarter of it */
+    int16_t disparity[KEPT][COLUMNS + 2];
+    /* How far pixels lie off the lines through their neighbours, a quarter of it. */
+    int16_t off_line[KEPT][COLUMNS + 2];
+    /* They are counted and added in each column, from row first + 1 to next - 2. */
+    int16_t noisy[COLUMNS + 2];
+    uint16_t off[COLUMNS + 2];
 };
+
+static inline int kept(int y)
+{
+    return (int)((unsigned)y % KEPT);
+}
 
 /* Disparity as a signed number: baseline x86 has no unsigned extremes of 16 bits. */
 static inline int16_t signed16(int disparity)
@@ -131,7 +145,7 @@ static bool has_far(const struct rf_silhouette_window *w, struct rf_rect in, int
 
 /* Whether of the pixels at that depth at least half as many are dark as are bright, and some bright
  * ones are farther; pixel `at` of the run has it. */
-static bool may_belong_to_background(const struct run *run, int at, int own)
+static bool may_belong_to_background(const struct run *run, int at, int y, int own)
 {
     const int16_t least = signed16(own < JUMP ? 0 : own - JUMP);
     const int16_t most = signed16(own + JUMP < UINT16_MAX ? own + JUMP : UINT16_MAX);
@@ -139,7 +153,8 @@ static bool may_belong_to_background(const struct run *run, int at, int own)
     int darks = 0, brights = 0, fars = 0;
 
     for (int j = 0; j < SIDE; j++) {
-        const int16_t *const light = run->light[j] + at, *const d = run->disparity[j] + at;
+        const int16_t *const light = run->light[j] + at;
+        const int16_t *const d = run->disparity[kept(y + j - AROUND)] + at;
 
         for (int i = 0; i < LANES; i++) {
             const int alike = (d[i] >= least) & (d[i] <= most);
@@ -205,7 +220,7 @@ static bool belongs_to_background(const struct rf_silhouette_window *w, const st
         return false;
     if (w->known && is_outshone(w, x, y, own, disparity))
         return true;
-    if (!may_belong_to_background(run, x - run->x0, own))
+    if (!may_belong_to_background(run, x - run->x0, y, own))
         return false;
     for (int py = in.y0; py < in.y1; py++)
         for (int px = in.x0; px < in.x1; px++) {
@@ -323,42 +338,52 @@ static inline int16_t off_middle(int16_t value, int16_t before, int16_t after)
     return max16(off, (int16_t)-off);
 }
 
-/* Adds a row to the columns: the pixels that lie off both lines, across and down, and how far. */
-static void add_noise(struct run *run, const int16_t above[COLUMNS], const int16_t row[COLUMNS],
-                      const int16_t below[COLUMNS])
+/* Finds how far the pixels of a row lie off both lines through their neighbours, across and down:
+ * in noise nearly all do, at silhouettes and wires few. */
+static void find_off_lines(struct run *run, int y)
 {
-    for (int i = 1; i < COLUMNS - 1; i++) {
-        const int16_t off = min16(off_middle(row[i], row[i - 1], row[i + 1]),
-                                  off_middle(row[i], above[i], below[i]));
+    const int16_t *const above = run->disparity[kept(y - 1)], *const row = run->disparity[kept(y)];
+    const int16_t *const below = run->disparity[kept(y + 1)];
+    int16_t *const off_line = run->off_line[kept(y)];
 
-        run->noisy[i] = (int16_t)(run->noisy[i] + (off > OFF_LINE / 4));
-        run->off[i] = (uint16_t)(run->off[i] + min16(off, MOST_OFF));
+    for (int i = 1; i <= COLUMNS; i++) { /* a quarter of disparities, whose differences fit */
+        const int16_t own = (int16_t)(row[i] >> 2);
+        const int16_t across =
+            off_middle(own, (int16_t)(row[i - 1] >> 2), (int16_t)(row[i + 1] >> 2));
+        const int16_t down = off_middle(own, (int16_t)(above[i] >> 2), (int16_t)(below[i] >> 2));
+
+        off_line[i] = min16(min16(across, down), MOST_OFF);
     }
 }
 
-/* Counts the pixels of each column that lie off both lines through their neighbours, across and
- * down: in noise nearly all do, at silhouettes and wires few. */
-static void count_noise(struct run *run)
+static void add_row(struct run *run, int y)
 {
-    int16_t quarter[SIDE][COLUMNS]; /* disparities by 4, whose differences fit */
+    const int16_t *const off_line = run->off_line[kept(y)];
 
-    for (int j = 0; j < SIDE; j++)
-        for (int i = 0; i < COLUMNS; i++)
-            quarter[j][i] = (int16_t)(run->disparity[j][i] >> 2);
-    memset(run->noisy, 0, sizeof run->noisy);
-    memset(run->off, 0, sizeof run->off);
-    for (int j = 1; j < SIDE - 1; j++)
-        add_noise(run, quarter[j - 1], quarter[j], quarter[j + 1]);
+    for (int i = 1; i <= COLUMNS; i++) {
+        run->noisy[i] = (int16_t)(run->noisy[i] + (off_line[i] > OFF_LINE / 4));
+        run->off[i] = (uint16_t)(run->off[i] + off_line[i]);
+    }
+}
+
+static void subtract_row(struct run *run, int y)
+{
+    const int16_t *const off_line = run->off_line[kept(y)];
+
+    for (int i = 1; i <= COLUMNS; i++) {
+        run->noisy[i] = (int16_t)(run->noisy[i] - (off_line[i] > OFF_LINE / 4));
+        run->off[i] = (uint16_t)(run->off[i] - off_line[i]);
+    }
 }
 
 /* Whether what is much farther beside a pixel of the run is noise of the map, which is all around:
  * that is off the lines through its neighbours by 1.3 standard deviations in the mean, and the
  * least of nine pixels is hardly ever four times as far below one of them. Where it is a quarter of
  * all disparities or more, nothing stands out of it. */
-static bool is_noise(const struct run *run, int at)
+static bool is_noise(const struct run *run, int at, int y)
 {
     enum { INNER = SIDE - 2, PIXELS = INNER * INNER };
-    const int16_t own = run->disparity[AROUND][at + AROUND];
+    const int16_t own = run->disparity[kept(y)][at + AROUND];
     int16_t least = own;
     int noisy = 0, off = 0;
 
@@ -368,19 +393,19 @@ static bool is_noise(const struct run *run, int at)
     }
     if (noisy < NOISY)
         return false;
-    for (int j = AROUND - 1; j <= AROUND + 1; j++)
+    for (int j = y - 1; j <= y + 1; j++)
         for (int i = AROUND - 1; i <= AROUND + 1; i++)
-            least = min16(least, run->disparity[j][at + i]);
+            least = min16(least, run->disparity[kept(j)][at + i]);
     return 2 * off > PIXELS * MOST_OFF || own - least <= 4 * 4 * off / PIXELS;
 }
 
 /* The pixels of a run that are not noise, of those given, a bit each. */
-static uint32_t without_noise(const struct run *run, uint32_t pixels)
+static uint32_t without_noise(const struct run *run, int y, uint32_t pixels)
 {
     uint32_t left = pixels;
 
     for (; pixels; pixels &= pixels - 1)
-        if (is_noise(run, __builtin_ctz(pixels)))
+        if (is_noise(run, __builtin_ctz(pixels), y))
             left &= ~(pixels & -pixels);
     return left;
 }
@@ -399,19 +424,38 @@ static struct part part_of(const struct rf_silhouette_window *w, int x0, int y)
                          from, rf_smaller(x0 + RUN + AROUND, w->view->width), from - (x0 - AROUND)};
 }
 
-/* Copies disparities of a run and around it. */
-static void copy_disparity(const struct rf_silhouette_window *w, int x0, int y, struct run *run)
+/* Copies disparities of a row of a run and beside it. */
+static void copy_disparity(const struct rf_silhouette_window *w, int y, struct run *run)
 {
-    const struct part part = part_of(w, x0, y);
+    const struct part part = part_of(w, run->x0, y);
+    int16_t *const row = run->disparity[kept(y)];
 
-    run->x0 = x0;
-    if (part.y1 - part.y0 < SIDE || part.end - part.from < RUN + 2 * AROUND)
-        memset(run->disparity, 0, sizeof run->disparity);
-    for (int j = part.y0; j < part.y1; j++) {
-        const uint16_t *const d = w->disparity.at + (y + j - AROUND) * w->light.stride + part.from;
+    if (y < 0 || y >= w->view->height || part.end - part.from < RUN + 2 * AROUND)
+        memset(row, 0, sizeof run->disparity[0]);
+    if (y >= 0 && y < w->view->height) {
+        const uint16_t *const d = w->disparity.at + y * w->light.stride + part.from;
 
         for (int i = 0; i < part.end - part.from; i++)
-            run->disparity[j][part.first + i] = signed16(d[i]);
+            row[part.first + i] = signed16(d[i]);
+    }
+}
+
+/* Brings the run to row y, with the AROUND rows above and below it. */
+static void go_to(const struct rf_silhouette_window *w, int y, struct run *run)
+{
+    if (y - AROUND + 2 >= run->next) { /* nothing of what is there is wanted */
+        run->first = run->next = y - AROUND;
+        memset(run->noisy, 0, sizeof run->noisy);
+        memset(run->off, 0, sizeof run->off);
+    }
+    for (; run->first < y - AROUND; run->first++)
+        subtract_row(run, run->first + 1);
+    for (; run->next <= y + AROUND; run->next++) {
+        copy_disparity(w, run->next, run);
+        if (run->next >= run->first + 2) {
+            find_off_lines(run, run->next - 1);
+            add_row(run, run->next - 1);
+        }
     }
 }
 
@@ -434,36 +478,60 @@ static void copy_light(const struct rf_silhouette_window *w, int y, struct run *
     }
 }
 
+/* The bright pixels of a run that have something much farther beside them, a bit each. */
+static uint32_t candidates(const struct rf_executor *exec, const struct rf_silhouette_window *w,
+                           int x0, int y, int n)
+{
+    uint16_t *const *const light = w->light.channel;
+    const ptrdiff_t at = y * w->light.stride + x0;
+
+    if (exec->kernels->brightest(light[0] + at, light[1] + at, light[2] + at, n) < LEVEL)
+        return 0;
+    return bright_of(w, at, find_jumps(w, x0, y) & (UINT32_MAX >> (RUN - n)));
+}
+
+/* Finds the silhouettes of a run in rows from y0 on, of which `bits` has the candidates. */
+static void find_in_run(const struct rf_executor *exec, const struct rf_silhouette_window *w,
+                        struct run *run, int y0, const uint32_t *bits, struct rf_silhouettes *list)
+{
+    run->next = INT_MIN;
+    for (int y = y0; y < y0 + STRIP && !rf_cancelled(exec); y++) {
+        uint32_t left = bits[y - y0];
+
+        if (!left)
+            continue;
+        go_to(w, y, run);
+        left = without_noise(run, y, left);
+        if (left)
+            copy_light(w, y, run);
+        for (; left; left &= left - 1)
+            find_around(w, run, run->x0 + __builtin_ctz(left), y, list);
+    }
+}
+
 void rf_find_silhouettes(const struct rf_executor *exec, const struct rf_silhouette_window *w,
                          struct rf_rect part, struct rf_silhouettes *silhouettes)
 {
-    uint16_t *const *const light = w->light.channel;
-    struct run run;
+    struct run run = {.next = 0};
 
-    for (int y = part.y0; y < part.y1; y++) {
-        const ptrdiff_t row = y * w->light.stride;
+    for (int y0 = part.y0; y0 < part.y1; y0 += STRIP)
+        for (int x0 = part.x0; x0 < part.x1; x0 += RUN * RUNS) {
+            const int runs = rf_smaller((part.x1 - x0 + RUN - 1) / RUN, RUNS);
+            uint32_t bits[RUNS][STRIP] = {{0}}, any[RUNS] = {0};
 
-        if (rf_cancelled(exec))
-            return;
-        for (int x0 = part.x0; x0 < part.x1; x0 += RUN) {
-            const int n = part.x1 - x0 < RUN ? part.x1 - x0 : RUN;
-            const ptrdiff_t at = row + x0;
-            uint32_t bits;
-
-            if (exec->kernels->brightest(light[0] + at, light[1] + at, light[2] + at, n) < LEVEL)
-                continue;
-            bits = bright_of(w, at, find_jumps(w, x0, y) & (UINT32_MAX >> (RUN - n)));
-            if (!bits)
-                continue;
             if (rf_cancelled(exec))
                 return;
-            copy_disparity(w, x0, y, &run);
-            count_noise(&run);
-            bits = without_noise(&run, bits);
-            if (bits)
-                copy_light(w, y, &run);
-            for (; bits; bits &= bits - 1)
-                find_around(w, &run, x0 + __builtin_ctz(bits), y, silhouettes);
+            for (int y = y0; y < rf_smaller(y0 + STRIP, part.y1); y++)
+                for (int k = 0; k < runs; k++) {
+                    const int x = x0 + RUN * k;
+
+                    bits[k][y - y0] = candidates(exec, w, x, y, rf_smaller(part.x1 - x, RUN));
+                    any[k] |= bits[k][y - y0];
+                }
+            for (int k = 0; k < runs; k++) {
+                run.x0 = x0 + RUN * k;
+                if (any[k])
+                    find_in_run(exec, w, &run, y0, bits[k], silhouettes);
+            }
         }
-    }
 }

@@ -73,9 +73,13 @@ static int bin_of(struct rf_bin_scale scale, int blur)
 
 static bool has_any(const uint64_t word[RF_BINS / 64], int first, int end)
 {
-    for (int b = first; b < end; b++)
-        if (word[b / 64] >> b % 64 & 1)
+    for (int k = first / 64; 64 * k < end; k++) {
+        const uint64_t from = k == first / 64 ? UINT64_MAX << first % 64 : UINT64_MAX;
+        const uint64_t to = 64 * (k + 1) > end ? UINT64_MAX >> (64 * (k + 1) - end) : UINT64_MAX;
+
+        if (word[k] & from & to)
             return true;
+    }
     return false;
 }
 
