@@ -8,6 +8,9 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
+extern const char fuzz_replays; /* with_failures.c looks for it */
+const char fuzz_replays = 1;
+
 /* The copy ends where the memory ends, so that sanitizers see every byte too far. */
 static int run_file(const char *path)
 {

@@ -12,6 +12,18 @@
 
 enum { MOST_FAILURES = 30 };
 
+/* Of replay.c; a search has none. */
+extern const char fuzz_replays __attribute__((weak));
+
+static int is_chosen(const uint8_t *data, size_t size)
+{
+    uint32_t hash = 2166136261u; /* FNV-1a */
+
+    for (size_t i = 0; i < size; i++)
+        hash = (hash ^ data[i]) * 16777619u;
+    return &fuzz_replays || (hash ^ hash >> 16) % 8 == 0;
+}
+
 int fuzz_open(const uint8_t *data, size_t size, char name[64])
 {
     const int fd = memfd_create("fuzz", MFD_CLOEXEC);
@@ -36,10 +48,13 @@ static int next_descriptor(void)
 void fuzz_run_failing(void (*run)(const uint8_t *data, size_t size), const uint8_t *data,
                       size_t size)
 {
-    const int descriptor = next_descriptor();
+    const long most = is_chosen(data, size) ? MOST_FAILURES : 0;
+    static int descriptor;
     long all = 0;
 
-    for (long k = 0; k <= all && k <= MOST_FAILURES; k++) {
+    if (!descriptor)
+        descriptor = next_descriptor();
+    for (long k = 0; k <= all && k <= most; k++) {
         failing.fail_at = k;
         failing.calls = failing.live = 0;
         run(data, size);

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <refocus/platform/convert.h>
 
-enum { MOST_FRAMES = 24, MOST_BYTES = 1 << 20 };
+enum { MOST_FRAMES = 12, MOST_BYTES = 1 << 20 };
 
 /* Every byte that the frame promises, for the sanitizers. */
 static void read_frame(const struct refocus_frame *frame)
@@ -57,7 +57,7 @@ static void take_frames(struct refocus_source *source)
             read_frame(frame);
             if (i < 2)
                 convert(converter, frame);
-            if (i % 5 != 4) /* some stay out until the end */
+            if (i % 3 != 2) /* some stay out until the end */
                 refocus_source_release(source, frame);
         } else if (status == REFOCUS_ERR_END ||
                    refocus_source_restart(source, NULL, NULL) != REFOCUS_OK) {

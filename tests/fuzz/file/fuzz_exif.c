@@ -6,7 +6,8 @@
 /* A block that was made of a TIFF is one itself, of which no more is made. */
 static void check_copies(struct rf_bytes tiff)
 {
-    uint8_t *const copy = malloc(RF_EXIF_COPY_ROOM), *const again = malloc(RF_EXIF_COPY_ROOM);
+    /* Sanitizers take 20 times as long over blocks of this size as the parser does. */
+    static uint8_t copy[RF_EXIF_COPY_ROOM], again[RF_EXIF_COPY_ROOM];
     const size_t size = rf_exif_of_tiff(tiff, copy);
     char text[64];
 
@@ -21,8 +22,6 @@ static void check_copies(struct rf_bytes tiff)
     if (rf_exif_directory(tiff, 0x8769, 8, again) > RF_EXIF_COPY_ROOM ||
         (rf_exif_text(tiff, 0x10f, text, sizeof text) && strlen(text) >= sizeof text))
         abort();
-    free(copy);
-    free(again);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -35,7 +35,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     if (size > MANY)
         return 0;
-    for (int i = 0; i < 3 * W * H; i++)
+    for (int i = 0; !pixels[3 * W * H - 1] && i < 3 * W * H; i++)
         pixels[i] = (uint8_t)(i / 3 % W > 15 ? i * 7 : 200 - i % 5);
     must(refocus_strokes_create(&strokes, &photo, NULL) == REFOCUS_OK);
     must(refocus_strokes_create(&again, &photo, NULL) == REFOCUS_OK);
