@@ -5,8 +5,8 @@
 #include <limits.h>
 #include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "highlights/silhouette_run.h"
 #include "kernels/kernels.h"
 #include "support/compare.h"
 #include "support/places.h"
@@ -15,59 +15,10 @@ enum {
     JUMP = 65535 / 32,             /* disparities this far apart are two surfaces */
     LEVEL = RF_LIGHT_MAX * 9 / 10, /* clipped, or nearly */
     CONTRAST = RF_LIGHT_MAX / 2,   /* least |N - F| */
-    DARK = RF_LIGHT_MAX / 2,
-    AROUND = 6, /* pixels on each side that tell whose light it is */
     FAR = 3,
-    OFF_LINE = 262, /* 0.4 %: noise lies farther off the lines through its neighbours */
-    NOISY = 90,     /* so many of 11 x 11 pixels: the map is noise */
-    MOST_OFF = 4095,
-};
-
-enum {
-    RUN = 32, /* pixels that are looked at together: most hold nothing bright at a jump */
-    SIDE = 2 * AROUND + 1,
-    LANES = 16, /* columns that are looked at to count in SIDE of them */
-    COLUMNS = RUN + LANES,
-    KEPT = 16,  /* rows, of which SIDE are in use */
     STRIP = 16, /* rows of RUNS runs are gone through together */
     RUNS = 16,
 };
-
-/* A run of pixels from x0 on, from column AROUND on, with those around it: the light of the
- * brightest channel, which is DARK outside of the window, and disparities by signed16(). As it goes
- * down the photo, each row is copied and compared with its neighbours once: row y of the window is
- * row y % KEPT here, and rows first to next - 1 are there. */
-struct run {
-    int x0, first, next;
-    int16_t light[SIDE][COLUMNS];
-    int16_t disparity[KEPT][COLUMNS + 2];
-    /* How far pixels lie off the lines through their neighbours, a quarter of it. */
-    int16_t off_line[KEPT][COLUMNS + 2];
-    /* They are counted and added in each column, from row first + 1 to next - 2. */
-    int16_t noisy[COLUMNS + 2];
-    uint16_t off[COLUMNS + 2];
-};
-
-static inline int kept(int y)
-{
-    return (int)((unsigned)y % KEPT);
-}
-
-/* Disparity as a signed number: baseline x86 has no unsigned extremes of 16 bits. */
-static inline int16_t signed16(int disparity)
-{
-    return (int16_t)(disparity - 32768);
-}
-
-static inline int16_t min16(int16_t a, int16_t b)
-{
-    return a < b ? a : b;
-}
-
-static inline int16_t max16(int16_t a, int16_t b)
-{
-    return a > b ? a : b;
-}
 
 static bool is_bright(const struct rf_silhouette_window *w, ptrdiff_t at)
 {
@@ -145,26 +96,26 @@ static bool has_far(const struct rf_silhouette_window *w, struct rf_rect in, int
 
 /* Whether of the pixels at that depth at least half as many are dark as are bright, and some bright
  * ones are farther; pixel `at` of the run has it. */
-static bool may_belong_to_background(const struct run *run, int at, int y, int own)
+static bool may_belong_to_background(const struct rf_silhouette_run *run, int at, int y, int own)
 {
-    const int16_t least = signed16(own < JUMP ? 0 : own - JUMP);
-    const int16_t most = signed16(own + JUMP < UINT16_MAX ? own + JUMP : UINT16_MAX);
-    int16_t dark[LANES] = {0}, bright[LANES] = {0}, farther[LANES] = {0};
+    const int16_t least = rf_signed16(own < JUMP ? 0 : own - JUMP);
+    const int16_t most = rf_signed16(own + JUMP < UINT16_MAX ? own + JUMP : UINT16_MAX);
+    int16_t dark[RF_RUN_LANES] = {0}, bright[RF_RUN_LANES] = {0}, farther[RF_RUN_LANES] = {0};
     int darks = 0, brights = 0, fars = 0;
 
-    for (int j = 0; j < SIDE; j++) {
+    for (int j = 0; j < RF_RUN_SIDE; j++) {
         const int16_t *const light = run->light[j] + at;
-        const int16_t *const d = run->disparity[kept(y + j - AROUND)] + at;
+        const int16_t *const d = run->disparity[rf_run_row(y + j - RF_RUN_AROUND)] + at;
 
-        for (int i = 0; i < LANES; i++) {
+        for (int i = 0; i < RF_RUN_LANES; i++) {
             const int alike = (d[i] >= least) & (d[i] <= most);
 
-            dark[i] = (int16_t)(dark[i] + ((light[i] < DARK) & alike));
+            dark[i] = (int16_t)(dark[i] + ((light[i] < RF_RUN_DARK) & alike));
             bright[i] = (int16_t)(bright[i] + ((light[i] >= LEVEL) & alike));
             farther[i] = (int16_t)(farther[i] + ((light[i] >= LEVEL) & (d[i] < least)));
         }
     }
-    for (int i = 0; i < SIDE; i++) {
+    for (int i = 0; i < RF_RUN_SIDE; i++) {
         darks += dark[i];
         brights += bright[i];
         fars += farther[i];
@@ -205,15 +156,16 @@ static bool is_outshone(const struct rf_silhouette_window *w, int x, int y, int 
                 *disparity = (uint16_t)d;
             }
         }
-    return far > light && least < DARK && 2 * (light - least) * far >= light * (far - least);
+    return far > light && least < RF_RUN_DARK && 2 * (light - least) * far >= light * (far - least);
 }
 
 /* Whether the bright pixel (x, y) belongs to a farther surface, whose disparity it gets. */
-static bool belongs_to_background(const struct rf_silhouette_window *w, const struct run *run,
-                                  int x, int y, uint16_t *disparity)
+static bool belongs_to_background(const struct rf_silhouette_window *w,
+                                  const struct rf_silhouette_run *run, int x, int y,
+                                  uint16_t *disparity)
 {
     const int own = w->disparity.at[y * w->light.stride + x];
-    const struct rf_rect in = rf_around(w->view, x, y, AROUND);
+    const struct rf_rect in = rf_around(w->view, x, y, RF_RUN_AROUND);
     int far = 0, nearest = 0;
 
     if (!has_far(w, rf_around(w->view, x, y, 1), own))
@@ -264,8 +216,8 @@ static bool has_other(const struct rf_silhouette_window *w, int x, int y, ptrdif
 
 /* Adds the silhouette around a bright pixel beside something much farther: the pixels of which no
  * other bright pixel comes first. */
-static void find_around(const struct rf_silhouette_window *w, const struct run *run, int x, int y,
-                        struct rf_silhouettes *list)
+static void find_around(const struct rf_silhouette_window *w, const struct rf_silhouette_run *run,
+                        int x, int y, struct rf_silhouettes *list)
 {
     const ptrdiff_t n = y * w->light.stride + x;
     const struct rf_rect in = rf_around(w->view, x, y, 1);
@@ -283,38 +235,38 @@ static void find_around(const struct rf_silhouette_window *w, const struct run *
 }
 
 /* Copies disparities of a row in a run, and one on each side. */
-static void copy_row(const struct rf_silhouette_window *w, int x0, int y, int16_t row[RUN + 2])
+static void copy_row(const struct rf_silhouette_window *w, int x0, int y, int16_t row[RF_RUN + 2])
 {
     const uint16_t *d = w->disparity.at + rf_within(y, w->view->height - 1) * w->light.stride;
 
-    if (x0 > 0 && x0 + RUN < w->view->width)
-        for (int i = 0; i < RUN + 2; i++)
-            row[i] = signed16(d[x0 - 1 + i]);
+    if (x0 > 0 && x0 + RF_RUN < w->view->width)
+        for (int i = 0; i < RF_RUN + 2; i++)
+            row[i] = rf_signed16(d[x0 - 1 + i]);
     else
-        for (int i = 0; i < RUN + 2; i++)
-            row[i] = signed16(d[rf_within(x0 - 1 + i, w->view->width - 1)]);
+        for (int i = 0; i < RF_RUN + 2; i++)
+            row[i] = rf_signed16(d[rf_within(x0 - 1 + i, w->view->width - 1)]);
 }
 
 /* Pixels of a run that have something much farther beside them, a bit each. */
 static uint32_t find_jumps(const struct rf_silhouette_window *w, int x0, int y)
 {
-    int16_t above[RUN + 2], own[RUN + 2], below[RUN + 2], least[RUN + 2];
-    uint8_t jump[RUN];
+    int16_t above[RF_RUN + 2], own[RF_RUN + 2], below[RF_RUN + 2], least[RF_RUN + 2];
+    uint8_t jump[RF_RUN];
     uint32_t bits = 0, any = 0;
 
     copy_row(w, x0, y - 1, above);
     copy_row(w, x0, y, own);
     copy_row(w, x0, y + 1, below);
-    for (int i = 0; i < RUN + 2; i++)
-        least[i] = min16(own[i], min16(above[i], below[i]));
-    for (int i = 0; i < RUN; i++) {
-        const int16_t l = min16(least[i + 1], min16(least[i], least[i + 2]));
+    for (int i = 0; i < RF_RUN + 2; i++)
+        least[i] = rf_min16(own[i], rf_min16(above[i], below[i]));
+    for (int i = 0; i < RF_RUN; i++) {
+        const int16_t l = rf_min16(least[i + 1], rf_min16(least[i], least[i + 2]));
 
         jump[i] = (uint16_t)(own[i + 1] - l) > JUMP;
     }
-    for (int i = 0; i < RUN; i++)
+    for (int i = 0; i < RF_RUN; i++)
         any |= jump[i];
-    for (int i = 0; any && i < RUN; i++)
+    for (int i = 0; any && i < RF_RUN; i++)
         bits |= (uint32_t)jump[i] << i;
     return bits;
 }
@@ -330,154 +282,6 @@ static uint32_t bright_of(const struct rf_silhouette_window *w, ptrdiff_t at, ui
     return bright;
 }
 
-/* How far a value is from the middle of two others, twice. */
-static inline int16_t off_middle(int16_t value, int16_t before, int16_t after)
-{
-    const int16_t off = (int16_t)(2 * value - before - after);
-
-    return max16(off, (int16_t)-off);
-}
-
-/* Finds how far the pixels of a row lie off both lines through their neighbours, across and down:
- * in noise nearly all do, at silhouettes and wires few. */
-static void find_off_lines(struct run *run, int y)
-{
-    const int16_t *const above = run->disparity[kept(y - 1)], *const row = run->disparity[kept(y)];
-    const int16_t *const below = run->disparity[kept(y + 1)];
-    int16_t *const off_line = run->off_line[kept(y)];
-
-    for (int i = 1; i <= COLUMNS; i++) { /* a quarter of disparities, whose differences fit */
-        const int16_t own = (int16_t)(row[i] >> 2);
-        const int16_t across =
-            off_middle(own, (int16_t)(row[i - 1] >> 2), (int16_t)(row[i + 1] >> 2));
-        const int16_t down = off_middle(own, (int16_t)(above[i] >> 2), (int16_t)(below[i] >> 2));
-
-        off_line[i] = min16(min16(across, down), MOST_OFF);
-    }
-}
-
-static void add_row(struct run *run, int y)
-{
-    const int16_t *const off_line = run->off_line[kept(y)];
-
-    for (int i = 1; i <= COLUMNS; i++) {
-        run->noisy[i] = (int16_t)(run->noisy[i] + (off_line[i] > OFF_LINE / 4));
-        run->off[i] = (uint16_t)(run->off[i] + off_line[i]);
-    }
-}
-
-static void subtract_row(struct run *run, int y)
-{
-    const int16_t *const off_line = run->off_line[kept(y)];
-
-    for (int i = 1; i <= COLUMNS; i++) {
-        run->noisy[i] = (int16_t)(run->noisy[i] - (off_line[i] > OFF_LINE / 4));
-        run->off[i] = (uint16_t)(run->off[i] - off_line[i]);
-    }
-}
-
-/* Whether what is much farther beside a pixel of the run is noise of the map, which is all around:
- * that is off the lines through its neighbours by 1.3 standard deviations in the mean, and the
- * least of nine pixels is hardly ever four times as far below one of them. Where it is a quarter of
- * all disparities or more, nothing stands out of it. */
-static bool is_noise(const struct run *run, int at, int y)
-{
-    enum { INNER = SIDE - 2, PIXELS = INNER * INNER };
-    const int16_t own = run->disparity[kept(y)][at + AROUND];
-    int16_t least = own;
-    int noisy = 0, off = 0;
-
-    for (int i = 1; i <= INNER; i++) {
-        noisy += run->noisy[at + i];
-        off += run->off[at + i];
-    }
-    if (noisy < NOISY)
-        return false;
-    for (int j = y - 1; j <= y + 1; j++)
-        for (int i = AROUND - 1; i <= AROUND + 1; i++)
-            least = min16(least, run->disparity[kept(j)][at + i]);
-    return 2 * off > PIXELS * MOST_OFF || own - least <= 4 * 4 * off / PIXELS;
-}
-
-/* The pixels of a run that are not noise, of those given, a bit each. */
-static uint32_t without_noise(const struct run *run, int y, uint32_t pixels)
-{
-    uint32_t left = pixels;
-
-    for (; pixels; pixels &= pixels - 1)
-        if (is_noise(run, __builtin_ctz(pixels), y))
-            left &= ~(pixels & -pixels);
-    return left;
-}
-
-/* The part of a run that lies in the window is its rows y0 to y1 - 1 and, from its column `first`
- * on, columns `from` to `end` - 1 of the window. */
-struct part {
-    int y0, y1, from, end, first;
-};
-
-static struct part part_of(const struct rf_silhouette_window *w, int x0, int y)
-{
-    const int from = rf_larger(x0 - AROUND, 0);
-
-    return (struct part){rf_larger(AROUND - y, 0), rf_smaller(w->view->height - y + AROUND, SIDE),
-                         from, rf_smaller(x0 + RUN + AROUND, w->view->width), from - (x0 - AROUND)};
-}
-
-/* Copies disparities of a row of a run and beside it. */
-static void copy_disparity(const struct rf_silhouette_window *w, int y, struct run *run)
-{
-    const struct part part = part_of(w, run->x0, y);
-    int16_t *const row = run->disparity[kept(y)];
-
-    if (y < 0 || y >= w->view->height || part.end - part.from < RUN + 2 * AROUND)
-        memset(row, 0, sizeof run->disparity[0]);
-    if (y >= 0 && y < w->view->height) {
-        const uint16_t *const d = w->disparity.at + y * w->light.stride + part.from;
-
-        for (int i = 0; i < part.end - part.from; i++)
-            row[part.first + i] = signed16(d[i]);
-    }
-}
-
-/* Brings the run to row y, with the AROUND rows above and below it. */
-static void go_to(const struct rf_silhouette_window *w, int y, struct run *run)
-{
-    if (y - AROUND + 2 >= run->next) { /* nothing of what is there is wanted */
-        run->first = run->next = y - AROUND;
-        memset(run->noisy, 0, sizeof run->noisy);
-        memset(run->off, 0, sizeof run->off);
-    }
-    for (; run->first < y - AROUND; run->first++)
-        subtract_row(run, run->first + 1);
-    for (; run->next <= y + AROUND; run->next++) {
-        copy_disparity(w, run->next, run);
-        if (run->next >= run->first + 2) {
-            find_off_lines(run, run->next - 1);
-            add_row(run, run->next - 1);
-        }
-    }
-}
-
-/* Copies the light of a run and around it, which is DARK outside of the window. */
-static void copy_light(const struct rf_silhouette_window *w, int y, struct run *run)
-{
-    const struct part part = part_of(w, run->x0, y);
-
-    for (int j = 0; j < SIDE; j++)
-        for (int i = 0; i < COLUMNS; i++)
-            run->light[j][i] = DARK;
-    for (int j = part.y0; j < part.y1; j++) {
-        const ptrdiff_t at = (y + j - AROUND) * w->light.stride + part.from;
-        const uint16_t *const r = w->light.channel[0] + at, *const g = w->light.channel[1] + at;
-        const uint16_t *const b = w->light.channel[2] + at;
-
-        for (int i = 0; i < part.end - part.from; i++)
-            run->light[j][part.first + i] =
-                max16(max16((int16_t)r[i], (int16_t)g[i]), (int16_t)b[i]);
-    }
-}
-
 /* The bright pixels of a run that have something much farther beside them, a bit each. */
 static uint32_t candidates(const struct rf_executor *exec, const struct rf_silhouette_window *w,
                            int x0, int y, int n)
@@ -487,12 +291,13 @@ static uint32_t candidates(const struct rf_executor *exec, const struct rf_silho
 
     if (exec->kernels->brightest(light[0] + at, light[1] + at, light[2] + at, n) < LEVEL)
         return 0;
-    return bright_of(w, at, find_jumps(w, x0, y) & (UINT32_MAX >> (RUN - n)));
+    return bright_of(w, at, find_jumps(w, x0, y) & (UINT32_MAX >> (RF_RUN - n)));
 }
 
 /* Finds the silhouettes of a run in rows from y0 on, of which `bits` has the candidates. */
 static void find_in_run(const struct rf_executor *exec, const struct rf_silhouette_window *w,
-                        struct run *run, int y0, const uint32_t *bits, struct rf_silhouettes *list)
+                        struct rf_silhouette_run *run, int y0, const uint32_t *bits,
+                        struct rf_silhouettes *list)
 {
     run->next = INT_MIN;
     for (int y = y0; y < y0 + STRIP && !rf_cancelled(exec); y++) {
@@ -500,10 +305,10 @@ static void find_in_run(const struct rf_executor *exec, const struct rf_silhouet
 
         if (!left)
             continue;
-        go_to(w, y, run);
-        left = without_noise(run, y, left);
+        rf_run_go_to(w, y, run);
+        left = rf_run_without_noise(run, y, left);
         if (left)
-            copy_light(w, y, run);
+            rf_run_take_light(w, y, run);
         for (; left; left &= left - 1)
             find_around(w, run, run->x0 + __builtin_ctz(left), y, list);
     }
@@ -512,24 +317,24 @@ static void find_in_run(const struct rf_executor *exec, const struct rf_silhouet
 void rf_find_silhouettes(const struct rf_executor *exec, const struct rf_silhouette_window *w,
                          struct rf_rect part, struct rf_silhouettes *silhouettes)
 {
-    struct run run = {.next = 0};
+    struct rf_silhouette_run run = {.next = 0};
 
     for (int y0 = part.y0; y0 < part.y1; y0 += STRIP)
-        for (int x0 = part.x0; x0 < part.x1; x0 += RUN * RUNS) {
-            const int runs = rf_smaller((part.x1 - x0 + RUN - 1) / RUN, RUNS);
+        for (int x0 = part.x0; x0 < part.x1; x0 += RF_RUN * RUNS) {
+            const int runs = rf_smaller((part.x1 - x0 + RF_RUN - 1) / RF_RUN, RUNS);
             uint32_t bits[RUNS][STRIP] = {{0}}, any[RUNS] = {0};
 
             if (rf_cancelled(exec))
                 return;
             for (int y = y0; y < rf_smaller(y0 + STRIP, part.y1); y++)
                 for (int k = 0; k < runs; k++) {
-                    const int x = x0 + RUN * k;
+                    const int x = x0 + RF_RUN * k;
 
-                    bits[k][y - y0] = candidates(exec, w, x, y, rf_smaller(part.x1 - x, RUN));
+                    bits[k][y - y0] = candidates(exec, w, x, y, rf_smaller(part.x1 - x, RF_RUN));
                     any[k] |= bits[k][y - y0];
                 }
             for (int k = 0; k < runs; k++) {
-                run.x0 = x0 + RUN * k;
+                run.x0 = x0 + RF_RUN * k;
                 if (any[k])
                     find_in_run(exec, w, &run, y0, bits[k], silhouettes);
             }

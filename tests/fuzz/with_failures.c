@@ -12,7 +12,7 @@
 
 enum { MOST_FAILURES = 30 };
 
-/* Of replay.c; a search has none. */
+/* replay.c has one, a search has none. */
 extern const char fuzz_replays __attribute__((weak));
 
 static int is_chosen(const uint8_t *data, size_t size)
