@@ -1,6 +1,7 @@
-/* gain_make.c: the gain map of a picture that was refocused in light beyond white. A sample is the
- * gain from the mean of the picture to the mean of the light in a block of two by two pixels, as
- * gain_apply.c takes it apart again. */
+/* gain_make.c: the gain map of a picture that was refocused in light beyond white. Each pixel has
+ * its own gain, as light is lost at once where a highlight ends. If one of picture and light is
+ * larger, a sample is the gain between their means in its block, as gain_apply.c takes it apart
+ * again. */
 #include "gain_make.h"
 
 #include <math.h>
@@ -102,7 +103,7 @@ static double gain_at(const struct work *work, int x, int c)
 {
     const double base = work->sums[x][0][c] / work->counts[x][0];
     const double light = work->sums[x][1][c] / work->counts[x][1];
-    const double gain = log2((light + offset) / (base + offset));
+    const double gain = (double)log2f((float)((light + offset) / (base + offset)));
 
     return fmin(fmax(gain, -RF_GAIN_MOST_STOPS), RF_GAIN_MOST_STOPS);
 }
@@ -136,9 +137,9 @@ static void fill(struct work *work, double least, double greatest, uint8_t *samp
     }
 }
 
-static int half_of(int32_t a, int32_t b)
+static int smaller(int32_t a, int32_t b)
 {
-    return ((a < b ? a : b) + 1) / 2;
+    return a < b ? a : b;
 }
 
 /* Set the values of a map whose gains go evenly from one to another. */
@@ -206,14 +207,13 @@ int rf_gain_make(struct rf_gain_map *map, const struct rf_rows *base,
 {
     struct work work = {.base = base,
                         .light = light,
-                        .width = half_of(base->width, light->width),
-                        .height = half_of(base->height, light->height)};
+                        .width = smaller(base->width, light->width),
+                        .height = smaller(base->height, light->height)};
     int status = REFOCUS_ERR_MEMORY;
 
     memset(map, 0, sizeof *map);
     work.sums = malloc((size_t)work.width * sizeof *work.sums);
     work.counts = malloc((size_t)work.width * sizeof *work.counts);
-    /* a quarter of the bytes that the picture takes */
     map->samples.pixels = malloc(3 * (size_t)work.width * (size_t)work.height);
     if (work.sums && work.counts && map->samples.pixels) {
         double least, greatest;

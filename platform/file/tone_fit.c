@@ -17,6 +17,8 @@ enum {
     FEW = 100,         /* one pixel in so many of a cell is as much as what is around counts */
 };
 
+#define WHITE 0.97F /* Noise and JPEG leave what clips above this. */
+
 /* Sums over the pixels of a cell with the light of a knot, or nearly so: their number, their true
  * light and that of the base rendition. */
 struct knot {
@@ -130,25 +132,42 @@ static void add_up(const struct rf_tone *tone, const struct level *fine, const s
     }
 }
 
-/* Light of the base rendition at a knot: the mean of its pixels, brought from their mean light to
- * that of the knot. */
-static float shown_at(const struct knot *knot, int i)
+static bool is_white(const struct knot *knot)
+{
+    return knot->base > WHITE * knot->count;
+}
+
+/* Light of the base rendition at a knot: the mean of its pixels, brought in proportion from their
+ * mean light to that of the knot. Where the photo clips, the curve does not go on like that: it
+ * comes up to white on the line through the knot below, and is level from there: a knot whose
+ * pixels have more light than it has is on that line. `below` has the sums of the knot below, or
+ * none. */
+static float shown_at(const struct knot *below, const struct knot *own, int i)
 {
     const float light = rf_half_value((uint16_t)(i * RF_TONE_STEP));
+    const float mean = own->base / own->count;
+    const bool has_more = own->light > light * own->count;
 
-    return knot->base * (i && knot->light > 0 ? light / knot->light : 1 / knot->count);
+    if (is_white(own) && !has_more)
+        return mean;
+    if ((is_white(own) || (i + 1 < RF_TONE_KNOTS && is_white(own + 1))) && has_more &&
+        below->light > 0)
+        return fminf(below->base * light / below->light, mean);
+    return i && own->light > 0 ? own->base * light / own->light : mean;
 }
 
 /* The whole photo's curve: straight between the knots that have pixels, on from 0, and level behind
  * the last. */
 static void draw_whole(struct knot *curve)
 {
+    struct knot below = {0}, own;
     int last = -1;
 
-    for (int i = 0; i < RF_TONE_KNOTS; i++) {
-        if (curve[i].count <= 0)
+    for (int i = 0; i < RF_TONE_KNOTS; i++, below = own) {
+        own = curve[i];
+        if (own.count <= 0)
             continue;
-        curve[i].shown = shown_at(&curve[i], i);
+        curve[i].shown = shown_at(&below, &curve[i], i);
         for (int k = last + 1; k < i; k++) {
             const int from = last < 0 ? 0 : last;
             const float before = last < 0 ? 0 : curve[last].shown;
@@ -164,15 +183,18 @@ static void draw_whole(struct knot *curve)
 
 static void draw(struct knot *curve, const struct knot *around)
 {
+    struct knot below = {0}, knot;
     float pixels = 0;
 
     for (int i = 0; i < RF_TONE_KNOTS; i++)
         pixels += curve[i].count;
-    for (int i = 0; i < RF_TONE_KNOTS; i++) {
+    for (int i = 0; i < RF_TONE_KNOTS; i++, below = knot) {
         const float own = curve[i].count, other = pixels / FEW + 1e-3f;
 
-        curve[i].shown = ((own > 0 ? own * shown_at(&curve[i], i) : 0) + other * around[i].shown) /
-                         (own + other);
+        knot = curve[i];
+        curve[i].shown =
+            ((own > 0 ? own * shown_at(&below, &curve[i], i) : 0) + other * around[i].shown) /
+            (own + other);
     }
 }
 

@@ -376,9 +376,8 @@ struct refocus_write_options {
     /** A JPEG of a picture in RGB8 only, else REFOCUS_ERR_UNSUPPORTED or REFOCUS_ERR_ARGUMENT: the
      *  light that the picture shows, as refocus_light_to_base() brought it into its tones, in
      *  REFOCUS_FORMAT_RGB_HALF or _FLOAT, linear, 1 = white, of any size. A gain map is made of
-     * both, in half of the sides of the smaller one and with the headroom of the photo `keep` at
-     * the least, and lies behind the picture: an Ultra HDR photo, by ISO 21496-1 and by XMP. NULL =
-     * none. */
+     *  both, as large as the smaller one and with the headroom of the photo `keep` at the least,
+     *  and lies behind the picture: an Ultra HDR photo, by ISO 21496-1 and by XMP. NULL = none. */
     const struct refocus_image *light;
     /** Asked before each row of a PNG, PPM and PFM, and where an encoder takes the whole picture
      *  (JPEG, HEIC, TIFF, OpenEXR) before and behind that, in the thread of the call: other than 0

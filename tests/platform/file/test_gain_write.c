@@ -130,6 +130,43 @@ static struct bytes without(struct bytes file, const char *word)
     return copy;
 }
 
+/* Light of a pixel of the written photo over that of the scene, in stops. */
+static double stops_off(const struct scene *scene, const struct refocus_light *light, int i)
+{
+    const struct refocus_image *const own = refocus_light_image(light);
+    uint16_t half;
+
+    memcpy(&half, own->plane[0] + i / (3 * W) * own->stride[0] + 2 * (i % (3 * W)), 2);
+    return log2((double)rf_half_value(half) / (double)rf_half_value(scene->halves[i]));
+}
+
+/* A highlight has its light up to its last pixel, and what is beside it nothing of that. */
+static void each_pixel_has_its_light(void **state)
+{
+    struct scene *const scene = make_scene();
+    struct refocus_photo *photo;
+    struct refocus_light *light;
+    double sum = 0;
+    int count = 0;
+
+    (void)state;
+    photo = read_photo(write_scene(scene, NULL), REFOCUS_OK);
+    assert_int_equal(refocus_light_create(&light, photo), REFOCUS_OK);
+    for (int i = 0; i < 3 * W * H; i += 3) {
+        const int x = i / 3 % W, y = i / 3 / W;
+
+        /* The brightest channel of a pixel that has one of the other kind beside it. */
+        if (x > 0 && is_lit(x, y) != is_lit(x - 1, y)) {
+            sum += fabs(stops_off(scene, light, i));
+            count++;
+        }
+    }
+    assert_true(sum / count < 0.09);
+    refocus_light_destroy(&light);
+    refocus_photo_free(&photo);
+    free(scene);
+}
+
 static void either_metadata(void **state)
 {
     struct scene *const scene = make_scene();
@@ -413,12 +450,17 @@ static void refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(refused),          cmocka_unit_test(floats),
+        cmocka_unit_test(refused),
+        cmocka_unit_test(floats),
 #ifdef RF_HAVE_PNG
-        cmocka_unit_test(original_of_heic), cmocka_unit_test(channels_that_differ),
+        cmocka_unit_test(original_of_heic),
+        cmocka_unit_test(channels_that_differ),
 #endif
-        cmocka_unit_test(either_metadata),  cmocka_unit_test(places),
-        cmocka_unit_test(headroom),         cmocka_unit_test(other_light),
+        cmocka_unit_test(each_pixel_has_its_light),
+        cmocka_unit_test(either_metadata),
+        cmocka_unit_test(places),
+        cmocka_unit_test(headroom),
+        cmocka_unit_test(other_light),
     };
 
     return cmocka_run_group_tests(tests, make_name, remove_it);

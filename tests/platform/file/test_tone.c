@@ -161,6 +161,31 @@ static void few_pixels_take_the_photo_s(void **state)
     free(tone);
 }
 
+/* Where the photo clips, its curve comes up to white and bends there, as light between the knots
+ * does: noise and JPEG leave white a code or two short. */
+static void clipped_light_is_white(void **state)
+{
+    struct rf_tone *tone;
+
+    (void)state;
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            const int i = (7 * x + 11 * y) % 97;
+            const uint16_t light = rf_half_of(0.5f + (float)i / 64);
+            const double value = (double)rf_half_value(light);
+
+            set(x, y, light, value < 1 ? value : i & 1 ? 1 : 0.98);
+        }
+    tone = fit(false);
+    is_shown(tone, 48, 48, HALF + 256, 0.625);
+    is_shown(tone, 48, 48, HALF + 512, 0.75);
+    is_shown(tone, 48, 48, ONE, 0.985);
+    is_shown(tone, 48, 48, ONE + 128, 0.99);
+    is_shown(tone, 48, 48, ONE + 512, 0.99);
+    is_shown(tone, 48, 48, ONE + 1024, 0.99);
+    free(tone);
+}
+
 /* More light is never shown darker. */
 static void tones_do_not_fall(void **state)
 {
@@ -363,6 +388,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tones_are_of_their_place),
         cmocka_unit_test(few_pixels_take_the_photo_s),
+        cmocka_unit_test(clipped_light_is_white),
         cmocka_unit_test(tones_do_not_fall),
         cmocka_unit_test(by_the_brightest),
         cmocka_unit_test(shown_as_the_photo_shows_it),
