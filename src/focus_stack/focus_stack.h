@@ -29,6 +29,7 @@ enum {
     RF_STACK_STRIDE = 13,    /* samples from one that is looked at to the next, in statistics */
     RF_STACK_NOISE = 1600,   /* squared sharpness of 20 codes: texture that noise hides */
     RF_STACK_WHITE = 250,    /* codes from which on a pixel is clipped */
+    RF_STACK_NEAR = 242,     /* Noise and JPEG leave what is clipped above this. */
     RF_STACK_CLIPPED = 1 << 15, /* all of the pixels that a tap stands for */
 };
 

@@ -14,12 +14,13 @@
  *     x += (sum of B_k M_k (F_k - A_k (L + x))) / (n + LITTLE),  n = sum of B_k M_k A_k c
  *
  * over all frames, c being the share of a cell that is clipped. M_k are the cells that frame k
- * tells of: those that are not clipped there, and those that are where less than white is
- * predicted. B_k is c times the transpose of A_k, times the square of the area of the circle of
- * confusion: an error of the radius is one of the light in proportion to the light, so that errors
- * count in parts of what a cell spreads there; else frames with little blur would outweigh the
- * others. Sums are first smoothed along each clipped surface, the less the later the round is
- * (normalised convolution, as in smooth.c), as its middle reaches no cell that is not clipped.
+ * tells of: those that are not clipped there, and those that may be where less than it has is
+ * predicted. White with noise counts as clipped, or else it would tell of light of 1. B_k is c
+ * times the transpose of A_k, times the square of the area of the circle of confusion: an error of
+ * the radius is one of the light in proportion to the light, so that errors count in parts of what
+ * a cell spreads there; else frames with little blur would outweigh the others. Sums are first
+ * smoothed along each clipped surface, the less the later the round is (normalised convolution, as
+ * in smooth.c), as its middle reaches no cell that is not clipped.
  *
  * Two frames leave x as 0: wherever depth is wrong, some light explains the one in which it is
  * blurred.
@@ -45,7 +46,7 @@ enum {
     BRIGHT = 230,       /* a channel may be white from here on, beside one that is clipped */
     LENGTH = 16,        /* cells over which the first round hands 1 / e on */
     RESIDUAL = 1 << 14, /* stands for light of 1; differences are from -1 to 1 */
-    CLIPPED = 1,        /* bit of a residual: the frame is clipped there */
+    CLIPPED = 1,        /* bit of a residual: the frame may be clipped there */
     UNUSED = INT16_MIN, /* the frame does not show it */
 };
 
@@ -136,7 +137,7 @@ static void find_residual(const struct rf_lights *l, int x, int y, int16_t out[L
             if (!rf_stack_pixel(s, l->frame, i, j, rgb))
                 return;
             for (int c = 0; c < 3; c++) {
-                clipped[c] |= rgb[c] >= RF_STACK_WHITE;
+                clipped[c] |= rgb[c] > RF_STACK_NEAR;
                 sum[c] += s->transfer->to_light[rgb[c]];
             }
         }

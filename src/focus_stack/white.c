@@ -14,9 +14,8 @@
 #include "focus_stack/focus_stack.h"
 
 enum {
-    NEAR = 242, /* codes of this and less are no white */
     AROUND = 2,
-    SURE = RF_STACK_WHITE - NEAR,
+    SURE = RF_STACK_WHITE - RF_STACK_NEAR,
     ALL = 3, /* by so much the mean is above RF_STACK_WHITE where all is clipped */
 };
 
@@ -36,12 +35,12 @@ static uint8_t whiten(const struct refocus_stack *s, int x, int y, int c)
             const size_t at = row + (size_t)rf_stack_clamp(u, s->width - 1);
             const int code = s->before[3 * at + (size_t)c];
 
-            if (code > NEAR) {
+            if (code > RF_STACK_NEAR) {
                 sum += code - RF_STACK_WHITE;
                 count++;
             }
         }
-    part = rf_stack_clamp(sum, ALL * count) * rf_stack_clamp(own - NEAR, SURE);
+    part = rf_stack_clamp(sum, ALL * count) * rf_stack_clamp(own - RF_STACK_NEAR, SURE);
     all = ALL * count * SURE;
     return (uint8_t)(own + ((255 - own) * part + all / 2) / all);
 }
@@ -55,7 +54,7 @@ static void whiten_row(void *context, int y, int worker)
     (void)worker;
     for (int x = 0; x < s->width; x++)
         for (int c = 0; c < 3; c++)
-            if (row[3 * x + c] > NEAR)
+            if (row[3 * x + c] > RF_STACK_NEAR)
                 row[3 * x + c] = whiten(s, x, y, c);
 }
 

@@ -194,6 +194,36 @@ static void is_the_same(void **state)
     assert_memory_equal(photo, alone, sizeof photo);
 }
 
+/* Whites that noise and JPEG leave some codes short do not tell of light of 1. The second highlight
+ * is clipped wherever it is blurred, but for its edge. */
+static void noisy_white_is_clipped(void **state)
+{
+    const struct refocus_image floats =
+        refocus_image_packed(REFOCUS_FORMAT_RGB_FLOAT, other, W, H, sizeof *other);
+    struct refocus_stack *stack;
+    uint32_t seed = 5;
+
+    (void)state;
+    for (int k = 0; k < FRAMES; k++)
+        for (int i = 0; i < 3 * W * H; i++) {
+            seed = seed * 1664525 + 1013904223;
+            if (frame[k][i] == 255)
+                frame[k][i] = (uint8_t)(255 - (seed >> 24) % 11);
+        }
+    stack = stacked(2);
+    assert_int_equal(finish(stack, alone, &floats), REFOCUS_OK);
+    refocus_stack_destroy(&stack);
+    for (int i = 0; i < COUNT; i++) {
+        double sum = 0;
+
+        for (int y = 0; y < SIDE; y++)
+            for (int x = 0; x < SIDE; x++)
+                sum += (double)other[70 + y][left_of(i) + x][0];
+        print_message("%.3f of %.3f\n", sum / (SIDE * SIDE), (double)lamps[i][0]);
+        assert_true(fabs(sum / (SIDE * SIDE) / (double)lamps[i][0] - 1) < 0.25);
+    }
+}
+
 static void wrong_images_are_refused(void **state)
 {
     struct refocus_stack *stack = stacked(1);
@@ -225,6 +255,7 @@ int main(void)
         cmocka_unit_test(borders_are_no_lamps),
         cmocka_unit_test(is_the_same),
         cmocka_unit_test(wrong_images_are_refused),
+        cmocka_unit_test(noisy_white_is_clipped),
     };
 
     return cmocka_run_group_tests(tests, set_up, NULL);
