@@ -20,6 +20,23 @@
  * and a speck on something bright, on a petal or on a cheek, gets nothing.
  * What is large, or hardly brighter than white by the model, is left as it is. A fixed gain goes to
  * what is left.
+ *
+ * By night the darkest of what is around a highlight shows little light but its glare, which a mean
+ * does not tell from lit surroundings. Of what is clipped, had it lost nothing, a lens would make a
+ * glare that falls off with the cube of the distance, a share of
+ *
+ *     g = sum of C_k / 2^(k - 1), k = 1 to 6.
+ *
+ * So the harmonic mean h of light / g, weighted by g, is the gain times that share or, where
+ * something is lit, more. The share is taken as 2^-3.5, more than that of most lenses, so that too
+ * little is added rather than too much:
+ *
+ *     log2(gain) >= min(log2(h) + 3.5, 2.5),
+ *
+ * by night alone: where the surroundings are dark, t^2 of it; in photos whose mean log2 of
+ * luminance is above -2.5 nothing, and all from -3.5 down. Nor is there any of it where highlights
+ * crowd, as text does: their glare is not told from what lies between, so it ends as C_5 goes from
+ * 0.15 to 0.35 of C_2.
  */
 #include <math.h>
 
@@ -28,11 +45,13 @@
 #include "support/log2.h"
 
 enum { BLOCK = 32 /* cells at once, side by side for vectors */ };
-#define MOST_STOPS    4.0 /* a gain of 16 */
-#define DAY_STOPS     0.75
-#define NIGHT_STOPS   5.5
-#define LEAST_CLIPPED 0.005f /* the least part of a cell that is clipped, for an estimate */
-#define ALL_LARGE     0.9f   /* where this part of what is around is clipped, nothing is added */
+#define MOST_STOPS       4.0 /* a gain of 16 */
+#define DAY_STOPS        0.75
+#define NIGHT_STOPS      5.5
+#define GLARE_STOPS      3.5
+#define MOST_GLARE_STOPS 2.5
+#define LEAST_CLIPPED    0.005f /* the least part of a cell that is clipped, for an estimate */
+#define ALL_LARGE        0.9f   /* where this part of what is around is clipped, nothing is added */
 
 /* A feature is log2 of a mean of the grid at a scale: C_k, U_k, X_k. The others are means
  * themselves: log2 of luminance, of the photo and of what is around, and the looks of the clipped
@@ -66,6 +85,7 @@ struct means {
     float clipped[RF_GRID_SCALES][BLOCK], unclipped[RF_GRID_SCALES][BLOCK];
     float photo[BLOCK], around[BLOCK]; /* log2 of luminance */
     float grey[BLOCK], saturation[BLOCK], plateau[BLOCK], white[BLOCK];
+    float glare[BLOCK]; /* log2 of the light around, as times g */
 };
 
 static double within(double v, double least, double most)
@@ -101,6 +121,13 @@ static void read_looks(const struct rf_light_grid *grid, const struct rf_grid_pl
     means->white[i] = rf_grid_at(grid, RF_GRID_WHITE, place) / clipped;
 }
 
+/* The harmonic mean of light / g around clipped pixels, by its weight g: dark pixels count most. */
+static float glare_at(const struct rf_light_grid *grid, const struct rf_grid_place *place)
+{
+    return rf_log2f((rf_grid_at(grid, RF_GRID_GLARE, place) + 1e-9f) /
+                    (rf_grid_at(grid, RF_GRID_DARK, place) + 1e-9f));
+}
+
 static void read_means(const struct rf_light_grid *grid, const struct rf_grid_row *row,
                        const int *x, int count, struct means *means)
 {
@@ -115,6 +142,8 @@ static void read_means(const struct rf_light_grid *grid, const struct rf_grid_ro
                 means->unclipped[k][i] = rf_unclipped_at(grid, RF_GRID_UNCLIPPED, &place);
             if (k == 1)
                 read_looks(grid, &place, means, i);
+            if (k == 3)
+                means->glare[i] = glare_at(grid, &place);
             if (k >= 5)
                 means->around[i] += 0.5f * rf_grid_at(grid, RF_GRID_LOG, &place);
         }
@@ -202,6 +231,19 @@ static double part_of(double stops, double night)
     return smoothstep((float)stops, 1 - 0.5 * night, 1.8 - 0.8 * night);
 }
 
+/* Returns what a cell has lost, `lost` by the model, where its surroundings are dark to this part.
+ */
+static double with_glare(const struct means *means, int i, double lost, double dark)
+{
+    const double by_night = 1 - smoothstep(means->photo[i], -3.5, -2.5);
+    const double alone =
+        1 - smoothstep(means->clipped[5][i] / (means->clipped[2][i] + 0.004f), 0.15, 0.35);
+    const double own = rf_log2(1 + lost);
+    const double glare = fmin((double)means->glare[i] + GLARE_STOPS, MOST_GLARE_STOPS);
+
+    return rf_exp2(own + dark * by_night * alone * fmax(glare - own, 0)) - 1;
+}
+
 /* Returns how much light a cell has lost, as times its own, whose features add up to z. For a fixed
  * gain that is RF_MOST_GAIN - 1 wherever the model has 1.5 stops and more, day or night, and a part
  * of it from 0.5 on. */
@@ -219,7 +261,7 @@ static double lost_of(const struct means *means, int i, float z, bool fixed)
         return (RF_MOST_GAIN - 1) * smoothstep((float)stops, 0.5, 1.5) * (1 - large);
     part = part_of(stops, night) * (1 - large) * (1 - (1 - night) * speck);
     stops = fmin(fmin(stops, DAY_STOPS + (NIGHT_STOPS - DAY_STOPS) * night), MOST_STOPS);
-    return (rf_exp2(stops) - 1) * part;
+    return with_glare(means, i, (rf_exp2(stops) - 1) * part, night * (1 - large));
 }
 
 static void estimate_block(const struct rf_light_grid *grid, const struct rf_grid_row *row,

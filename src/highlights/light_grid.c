@@ -13,6 +13,7 @@ static const struct {
     [RF_GRID_CLIPPED] = {0, 6}, [RF_GRID_UNCLIPPED] = {1, 6}, [RF_GRID_LOG] = {1, 6},
     [RF_GRID_GREY] = {1, 1},    [RF_GRID_PLATEAU] = {1, 1},   [RF_GRID_WHITE] = {1, 1},
     [RF_GRID_RED] = {1, 4},     [RF_GRID_GREEN] = {1, 4},     [RF_GRID_BLUE] = {1, 4},
+    [RF_GRID_DARK] = {1, 3},    [RF_GRID_GLARE] = {1, 6},
 };
 
 static void lay_out(struct rf_light_grid *grid, struct rf_arena *arena)
@@ -97,6 +98,7 @@ static void set_tables(struct rf_light_grid *grid, const struct rf_transfer *lin
         t->plateau[i] = (uint16_t)part(code, 250, 255);
         t->white[i] = (uint16_t)part(code, 246, 255);
         t->log[i] = (uint16_t)floor((rf_log2(i / 4095.0 + 0.003) + 9) * 256 + 0.5);
+        t->dark[i] = (uint16_t)(128 / (i / 4095.0 + 0.002) + 0.5);
         if (t->soft[i] == 0)
             t->clipped = i;
     }
@@ -126,7 +128,7 @@ static void add_unclipped(const struct rf_light_grid *grid, int y, int row)
         sum[i] = grid->plane[i].scale[1] + (ptrdiff_t)row * across;
     for (int cx = 0; cx < across; cx++) {
         const int end = t->first[rf_smaller(2 * cx + 2, grid->width)];
-        int light[3] = {0}, luminance = 0, log = 0;
+        int light[3] = {0}, luminance = 0, log = 0, dark = 0;
 
         for (; x < end; x += step) {
             int colour[3], left = 256, own;
@@ -146,9 +148,11 @@ static void add_unclipped(const struct rf_light_grid *grid, int y, int row)
             own = (218 * colour[0] + 732 * colour[1] + 74 * colour[2]) >> 10;
             luminance += (left * own) >> 8;
             log += t->log[own];
+            dark += (left * t->dark[own]) >> 8;
         }
         sum[RF_GRID_UNCLIPPED][cx] += (float)luminance;
         sum[RF_GRID_LOG][cx] += (float)log;
+        sum[RF_GRID_DARK][cx] += (float)dark;
         for (int c = 0; c < 3; c++)
             sum[RF_GRID_RED + c][cx] += (float)light[c];
     }
@@ -254,8 +258,9 @@ static void measure_rows(void *context, int item, int worker)
     divide(grid, RF_GRID_GREY, item, 4096, false);
     divide(grid, RF_GRID_PLATEAU, item, 256, false);
     divide(grid, RF_GRID_WHITE, item, 256, false);
-    for (int i = RF_GRID_RED; i < RF_GRID_MEASURES; i++)
+    for (int i = RF_GRID_RED; i <= RF_GRID_BLUE; i++)
         divide(grid, (unsigned)i, item, 4095, true);
+    divide(grid, RF_GRID_DARK, item, 128, true);
 }
 
 static void blur_plane(void *context, int item, int worker)
@@ -270,6 +275,36 @@ static void blur_plane(void *context, int item, int worker)
     for (int k = plane->first; k <= plane->last && !rf_cancelled(grid->exec); k++)
         rf_pyramid_smooth(plane->scale[k], rf_grid_size(grid->width, k),
                           rf_grid_size(grid->height, k));
+}
+
+/* Weights what is not clipped, (1 - s) and (1 - s) / (Y + 0.002) of scale 1, by g and g^2: the
+ * glare g = sum of C_k / 2^(k - 1) is added up from the widest scale on. */
+static void add_glare(const struct rf_light_grid *grid)
+{
+    float *const *clipped = grid->plane[RF_GRID_CLIPPED].scale;
+    float *const *glare = grid->plane[RF_GRID_GLARE].scale;
+    float *dark = grid->plane[RF_GRID_DARK].scale[1];
+    const int last = grid->plane[RF_GRID_GLARE].last;
+    const int cells = rf_grid_size(grid->width, 1) * rf_grid_size(grid->height, 1);
+
+    for (int k = last; k >= 1; k--) {
+        const int across = rf_grid_size(grid->width, k), down = rf_grid_size(grid->height, k);
+
+        memcpy(glare[k], clipped[k], (size_t)across * (size_t)down * sizeof(float));
+        if (k < last)
+            rf_pyramid_add_doubled(glare[k + 1], 0.5f, across, down, glare[k]);
+    }
+    for (int i = 0; i < cells; i++) {
+        const float g = glare[1][i];
+
+        dark[i] *= g * g;
+        glare[1][i] = (1 - clipped[1][i]) * g;
+    }
+}
+
+static void blur_glare(void *context, int item, int worker)
+{
+    blur_plane(context, RF_GRID_DARK + item, worker);
 }
 
 static bool any_clipped(const struct rf_light_grid *grid)
@@ -301,7 +336,11 @@ bool rf_light_grid_measure(struct rf_light_grid *grid, const struct rf_transfer 
         return false;
     grid->mean_log =
         mean_of(grid->plane[RF_GRID_LOG].scale[1], rf_grid_size(grid->width, 1) * down) - 9;
-    rf_pool_run(grid->exec->pool, blur_plane, grid, RF_GRID_MEASURES);
+    rf_pool_run(grid->exec->pool, blur_plane, grid, RF_GRID_GLARE);
+    if (rf_cancelled(grid->exec))
+        return false;
+    add_glare(grid);
+    rf_pool_run(grid->exec->pool, blur_glare, grid, 2);
     return !rf_cancelled(grid->exec);
 }
 

@@ -35,6 +35,8 @@ enum rf_grid_measure {
     RF_GRID_RED,       /* (1 - s) R, G, B */
     RF_GRID_GREEN,
     RF_GRID_BLUE,
+    RF_GRID_DARK,  /* (1 - s) g^2 / (Y + 0.002), g the glare that s would have around it */
+    RF_GRID_GLARE, /* (1 - s) g */
     RF_GRID_MEASURES
 };
 
@@ -49,9 +51,10 @@ struct rf_grid_tables {
     uint16_t linear[RF_CODES_OF_LIGHT];                            /* linear light, Q12 */
     uint16_t soft[RF_CODES_OF_LIGHT];                              /* s of a greatest channel, Q8 */
     uint16_t plateau[RF_CODES_OF_LIGHT], white[RF_CODES_OF_LIGHT]; /* Q8 */
-    uint16_t log[RF_CODES_OF_LIGHT]; /* by linear light: (log2(light + 0.003) + 9), Q8 */
-    int clipped;                     /* s is 0 of light up to this one */
-    int first[RF_GRID_SIDE + 1];     /* the first pixel of each column of cells, and the end */
+    uint16_t log[RF_CODES_OF_LIGHT];  /* by linear light: (log2(light + 0.003) + 9), Q8 */
+    uint16_t dark[RF_CODES_OF_LIGHT]; /* by linear light: 1 / (light + 0.002), Q7 */
+    int clipped;                      /* s is 0 of light up to this one */
+    int first[RF_GRID_SIDE + 1];      /* the first pixel of each column of cells, and the end */
 };
 
 struct rf_light_grid {

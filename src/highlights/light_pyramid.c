@@ -22,6 +22,29 @@ void rf_pyramid_halve(const float *fine, int width, int height, float *out)
     }
 }
 
+/* The mean beside the one that value i of the finer level lies in, on its own side. */
+static int beside(int i, int means)
+{
+    return rf_larger(rf_smaller(i / 2 + (i % 2 ? 1 : -1), means - 1), 0);
+}
+
+void rf_pyramid_add_doubled(const float *next, float part, int width, int height, float *fine)
+{
+    const int across = (width + 1) / 2, down = (height + 1) / 2;
+
+    for (int y = 0; y < height; y++) {
+        const float *a = next + (ptrdiff_t)(y / 2) * across;
+        const float *b = next + (ptrdiff_t)beside(y, down) * across;
+
+        for (int x = 0; x < width; x++) {
+            const int x0 = x / 2, x1 = beside(x, across);
+            const float upper = 3 * a[x0] + a[x1], lower = 3 * b[x0] + b[x1];
+
+            fine[(ptrdiff_t)y * width + x] += part * (3 * upper + lower) * (1.0f / 16);
+        }
+    }
+}
+
 void rf_pyramid_smooth(float *at, int width, int height)
 {
     float above[RF_PYRAMID_SIDE], own[RF_PYRAMID_SIDE];

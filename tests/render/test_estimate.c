@@ -95,6 +95,23 @@ static void lamps(void **state)
     }
 }
 
+/* A lamp by night gets more the more glare it has; on a lit wall that counts for little. */
+static void glare(void **state)
+{
+    static const double wall[3] = {0.3, 0.3, 0.3};
+    const struct thing lamp = {ELLIPSE, 8, 8, {24, 24, 24}};
+    double faint[3], strong[3], by_day[3];
+
+    (void)state;
+    added(black, &lamp, 0, 0.002, 1, faint);
+    added(black, &lamp, 0, 0.05, 1, strong);
+    added(wall, &lamp, 0, 0.05, 1, by_day);
+    if (strong[1] < 1.3 * faint[1] || by_day[1] > 0.3)
+        fail_msg("a lamp with hardly any glare gets %.2f of its light, with much of it %.2f, by "
+                 "day %.2f",
+                 faint[1], strong[1], by_day[1]);
+}
+
 static void day(void **state)
 {
     static const struct thing thing[] = {
@@ -448,19 +465,13 @@ static void same_bytes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lamps),
-        cmocka_unit_test(day),
-        cmocka_unit_test(petals),
-        cmocka_unit_test(colours),
-        cmocka_unit_test(colours_of_white),
-        cmocka_unit_test(painted),
-        cmocka_unit_test(scales),
-        cmocka_unit_test(little),
-        cmocka_unit_test(steady),
-        cmocka_unit_test(crowded),
-        cmocka_unit_test(held_no_more),
-        cmocka_unit_test(unclipped),
-        cmocka_unit_test(same_bytes),
+        cmocka_unit_test(lamps),     cmocka_unit_test(glare),
+        cmocka_unit_test(day),       cmocka_unit_test(petals),
+        cmocka_unit_test(colours),   cmocka_unit_test(colours_of_white),
+        cmocka_unit_test(painted),   cmocka_unit_test(scales),
+        cmocka_unit_test(little),    cmocka_unit_test(steady),
+        cmocka_unit_test(crowded),   cmocka_unit_test(held_no_more),
+        cmocka_unit_test(unclipped), cmocka_unit_test(same_bytes),
         cmocka_unit_test(video),
     };
 
