@@ -34,7 +34,7 @@
  *     log2(gain) >= min(log2(h) + 3.5, 2.5),
  *
  * by night alone: where the surroundings are dark, t^2 of it; in photos whose mean log2 of
- * luminance is above -2.5 nothing, and all from -3.5 down. Nor is there any of it where highlights
+ * luminance is above -3 nothing, and all from -4 down. Nor is there any of it where highlights
  * crowd, as text does: their glare is not told from what lies between, so it ends as C_5 goes from
  * 0.15 to 0.35 of C_2.
  */
@@ -235,7 +235,7 @@ static double part_of(double stops, double night)
  */
 static double with_glare(const struct means *means, int i, double lost, double dark)
 {
-    const double by_night = 1 - smoothstep(means->photo[i], -3.5, -2.5);
+    const double by_night = 1 - smoothstep(means->photo[i], -4, -3);
     const double alone =
         1 - smoothstep(means->clipped[5][i] / (means->clipped[2][i] + 0.004f), 0.15, 0.35);
     const double own = rf_log2(1 + lost);
