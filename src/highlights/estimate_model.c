@@ -34,9 +34,10 @@
  *     log2(gain) >= min(log2(h) + 3.5, 2.5),
  *
  * by night alone: where the surroundings are dark, t^2 of it; in photos whose mean log2 of
- * luminance is above -3 nothing, and all from -4 down. Nor is there any of it where highlights
- * crowd, as text does: their glare is not told from what lies between, so it ends as C_5 goes from
- * 0.15 to 0.35 of C_2.
+ * luminance is above -3 nothing, and all from -4 down. What the model leaves as it is, such as snow
+ * in a dark photo, whose surroundings are lit, stays so: all of it is from half a stop on. Nor is
+ * there any of it where highlights crowd, as text does: their glare is not told from what lies
+ * between, so it ends as C_5 goes from 0.15 to 0.35 of C_2.
  */
 #include <math.h>
 
@@ -240,8 +241,9 @@ static double with_glare(const struct means *means, int i, double lost, double d
         1 - smoothstep(means->clipped[5][i] / (means->clipped[2][i] + 0.004f), 0.15, 0.35);
     const double own = rf_log2(1 + lost);
     const double glare = fmin((double)means->glare[i] + GLARE_STOPS, MOST_GLARE_STOPS);
+    const double agrees = smoothstep((float)own, 0, 0.5);
 
-    return rf_exp2(own + dark * by_night * alone * fmax(glare - own, 0)) - 1;
+    return rf_exp2(own + agrees * dark * by_night * alone * fmax(glare - own, 0)) - 1;
 }
 
 /* Returns how much light a cell has lost, as times its own, whose features add up to z. For a fixed
