@@ -41,6 +41,10 @@ void rf_background_pull(const struct rf_executor *exec, const struct rf_viewport
  * quarter of the largest blur, which is a quarter of the range of disparities, with any lens. With
  * a tenth, one of the scenes with exact maps loses 0.28 dB, where a surface between the foreground
  * and the background is hidden, too.
+ *
+ * How far an inpainted surface goes on before a deeper one is not known: it would end with the cell
+ * of a coarse level, in a straight edge that is seen where the deeper one is in focus. There pull
+ * mixes both.
  */
 static inline int16_t rf_layers_apart(float max_blur_radius, int unit)
 {

@@ -23,6 +23,10 @@ static_assert(RF_CONE_DIAGONAL * RF_CONE_DIAGONAL < 2 * RF_CONE_STEP * RF_CONE_S
 /* Unknown pixels of the background have this blur, which no known one has. */
 enum { RF_NO_BLUR = INT16_MIN };
 
+/* The lowest bit of a blur in the pyramid: push clears it in parents, of which something is known,
+ * and pull sets it in what it inpaints. Blurs that differ in it alone are those of one surface. */
+enum { RF_INPAINTED = 1 };
+
 /*
  * spread_row: grey dilation of a row by the cone to both sides, of values at most
  * `reach` cone steps apart, reach at most 2 M - 1, M = rf_spread_margin(unit). Values are s +
@@ -44,9 +48,9 @@ typedef void rf_dilate_from_fn(uint16_t *row, const uint16_t *before, int unit, 
 typedef void rf_mark_foreground_fn(int16_t *background_blur, const int16_t *blur,
                                    const uint16_t *dilated, int n);
 
-/* push: n parents of 2 x 2 children: the mean of the known ones, half up, and their farthest blur;
- * 0 and RF_NO_BLUR if none is known. Those that are more than `apart` in front of the farthest do
- * not count, none with INT16_MAX. */
+/* push: n parents of 2 x 2 children: the mean of the known ones, half up, and their farthest blur
+ * without its lowest bit; 0 and RF_NO_BLUR if none is known. Those that are more than `apart` in
+ * front of the farthest do not count, none with INT16_MAX. */
 static_assert(4 * 4 * RF_LIGHT_MAX + 2 <= UINT16_MAX, "four children of push fit 16 bits");
 typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur, const uint16_t *const upper[3],
                         const uint16_t *const lower[3], const int16_t *blur0, const int16_t *blur1,
@@ -55,11 +59,13 @@ typedef void rf_push_fn(uint16_t *const out[3], int16_t *out_blur, const uint16_
 /*
  * pull: unknown ones of 2 x pairs children take 3 and 1 quarters of the nearest parents, down and
  * then across, each half up. Of two parents whose blurs are more than `apart` apart, the deeper
- * one counts alone; with INT16_MAX none is. pull_blur: they take the nearest parent's blur, or such
- * a deeper one. Each row of `mixed` is scratch of pairs + 2.
+ * one counts alone unless the other one is inpainted; with INT16_MAX none is. pull_blur: they take
+ * the nearest parent's blur, or such a deeper one, and RF_INPAINTED. Each row of `mixed` is scratch
+ * of pairs + 2.
  *
  * An example with `apart` 1280: parents of light 100 and 900 and of blurs -5120 and 0 make a child
- * of light 900 and blur 0, of blurs -1024 and 0 one of 300 and -1024.
+ * of light 900 and blur 1, of blurs -5119 and 0 one of 300 and 1, and of blurs -1024 and 0 one of
+ * 300 and -1023.
  */
 static_assert((3 + 1) * 4 * RF_LIGHT_MAX + 2 <= UINT16_MAX, "a sum of pull fits 16 bits");
 struct rf_parents {

@@ -16,6 +16,6 @@ void rf_pull_blur_c(int16_t *out, const struct rf_parents *parents, int16_t *mix
         const int near = i / 2, far = near + (i % 2 ? 1 : -1);
 
         if (out[i] == RF_NO_BLUR)
-            out[i] = rf_mix_blur((struct rf_two_blurs){blur[near], blur[far]}, apart);
+            out[i] = rf_inpainted_blur((struct rf_two_blurs){blur[near], blur[far]}, apart);
     }
 }

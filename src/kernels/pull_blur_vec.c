@@ -23,6 +23,7 @@ static inline void mix_rows(int16_t *blur, const struct rf_parents *parents, int
 void RF_VEC(rf_pull_blur)(int16_t *out, const struct rf_parents *parents, int16_t *mixed, int pairs)
 {
     const vec_u16 apart = vec_u16_set((uint16_t)parents->apart);
+    const vec_u16 inpainted = vec_u16_set(RF_INPAINTED);
     int16_t *const blur = mixed + 1; /* blur[-1] and blur[pairs] repeat the ends */
     int x = 0;
 
@@ -35,8 +36,8 @@ void RF_VEC(rf_pull_blur)(int16_t *out, const struct rf_parents *parents, int16_
         if (!vec_u16_any(vec_u16_or(left, right)))
             continue;
         near = vec_u16_load(blur + x);
-        even = rf_mix_blur_vec(near, vec_u16_load(blur + x - 1), apart);
-        odd = rf_mix_blur_vec(near, vec_u16_load(blur + x + 1), apart);
+        even = vec_u16_or(rf_mix_blur_vec(near, vec_u16_load(blur + x - 1), apart), inpainted);
+        odd = vec_u16_or(rf_mix_blur_vec(near, vec_u16_load(blur + x + 1), apart), inpainted);
         rf_put_where(out + 2 * x, left, vec_u16_zip_low(even, odd));
         rf_put_where(out + 2 * x + (int)VEC_U16, right, vec_u16_zip_high(even, odd));
     }
@@ -44,6 +45,7 @@ void RF_VEC(rf_pull_blur)(int16_t *out, const struct rf_parents *parents, int16_
         const int near = i / 2, far = near + (i % 2 ? 1 : -1);
 
         if (out[i] == RF_NO_BLUR)
-            out[i] = rf_mix_blur((struct rf_two_blurs){blur[near], blur[far]}, parents->apart);
+            out[i] =
+                rf_inpainted_blur((struct rf_two_blurs){blur[near], blur[far]}, parents->apart);
     }
 }

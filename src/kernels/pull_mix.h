@@ -17,12 +17,18 @@ static inline bool rf_is_deeper(int blur, int other, int16_t apart)
     return apart < INT16_MAX && blur - other > apart;
 }
 
+/* Whether the other one's light does not count: it is known, and not merely continued. */
+static inline bool rf_is_alone(int blur, int other, int16_t apart)
+{
+    return rf_is_deeper(blur, other, apart) && !(other & RF_INPAINTED);
+}
+
 static inline uint16_t rf_mix_light(unsigned near, unsigned far, struct rf_two_blurs blur,
                                     int16_t apart)
 {
-    if (rf_is_deeper(blur.near, blur.far, apart))
+    if (rf_is_alone(blur.near, blur.far, apart))
         return (uint16_t)near;
-    if (rf_is_deeper(blur.far, blur.near, apart))
+    if (rf_is_alone(blur.far, blur.near, apart))
         return (uint16_t)far;
     return (uint16_t)((3 * near + far + 2) >> 2);
 }
@@ -30,6 +36,11 @@ static inline uint16_t rf_mix_light(unsigned near, unsigned far, struct rf_two_b
 static inline int16_t rf_mix_blur(struct rf_two_blurs blur, int16_t apart)
 {
     return rf_is_deeper(blur.far, blur.near, apart) ? blur.far : blur.near;
+}
+
+static inline int16_t rf_inpainted_blur(struct rf_two_blurs blur, int16_t apart)
+{
+    return (int16_t)(rf_mix_blur(blur, apart) | RF_INPAINTED);
 }
 
 #endif

@@ -11,11 +11,15 @@ static inline vec_u16 rf_mix_light_vec(vec_u16 near, vec_u16 far, vec_u16 near_b
                                        vec_u16 far_blur, vec_u16 apart)
 {
     const vec_u16 differ = vec_s16_less(apart, vec_s16_apart(near_blur, far_blur));
+    const vec_u16 is_farther = vec_s16_less(far_blur, near_blur); /* the near one */
+    const vec_u16 other = vec_u16_select(is_farther, far_blur, near_blur);
+    const vec_u16 is_known =
+        vec_u16_at_most(vec_u16_and(other, vec_u16_set(RF_INPAINTED)), vec_u16_set(0));
     const vec_u16 sum = vec_u16_add(vec_u16_add(near, near), vec_u16_add(near, far));
     const vec_u16 mean = vec_u16_half(vec_u16_half(vec_u16_add(sum, vec_u16_set(2))));
-    const vec_u16 farther = vec_u16_select(vec_s16_less(far_blur, near_blur), near, far);
+    const vec_u16 farther = vec_u16_select(is_farther, near, far);
 
-    return vec_u16_select(differ, farther, mean);
+    return vec_u16_select(vec_u16_and(differ, is_known), farther, mean);
 }
 
 static inline vec_u16 rf_mix_blur_vec(vec_u16 near_blur, vec_u16 far_blur, vec_u16 apart)

@@ -50,7 +50,7 @@ rf_push_plane(uint16_t *restrict out, int16_t *restrict out_blur, const uint16_t
 
         out[x] = count == 4 ? quarter : count == 3 ? third : count == 2 ? half : sum;
         if (first)
-            out_blur[x] = farthest;
+            out_blur[x] = (int16_t)(farthest & ~RF_INPAINTED);
     }
 }
 

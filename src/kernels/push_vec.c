@@ -86,7 +86,7 @@ void RF_VEC(rf_push)(uint16_t *const out[3], int16_t *out_blur, const uint16_t *
         for (int i = 1; i < 4; i++)
             farthest = vec_u16_max(farthest, vec_u16_xor(blur[i], sign));
         farthest = vec_u16_xor(farthest, sign);
-        vec_u16_store(out_blur + x, farthest);
+        vec_u16_store(out_blur + x, vec_u16_without(farthest, vec_u16_set(RF_INPAINTED)));
         use = use_of(blur, farthest, vec_u16_set(rf_push_apart(apart)));
         for (int c = 0; c < 3; c++)
             push_light(out[c] + x, upper[c] + 2 * x, lower[c] + 2 * x, &use);

@@ -27,7 +27,7 @@ enum { RF_STRIP = 8, RF_STRIP_LANES = RF_TILE * RF_STRIP };
  * greatest blur is marked as foreground.
  *
  * foreground: one row of n cells, as cells: the greatest blur of those pixels whose background has
- * another, or RF_NO_BLUR.
+ * another, which differs by more than RF_INPAINTED (background.h), or RF_NO_BLUR.
  * mark_in_background: of one row of windows, from RF_WINDOW_Y rows of such cells, as windows;
  * RF_IN_BACKGROUND becomes what it should be. The scratch is n + 2 border + RF_WINDOW_X - 1 long.
  */

@@ -117,7 +117,9 @@ static bool check_foreground(const struct subject *subject, struct stage *s, int
     int16_t *most = make_row(&s->most[0], n, place, &seed);
 
     for (int i = 0; i < size; i++)
-        background[i] = noise(&seed) % (uint32_t)often ? blur[i] : background[i];
+        background[i] = noise(&seed) % (uint32_t)often
+                            ? (int16_t)(blur[i] ^ (int)(noise(&seed) & RF_INPAINTED))
+                            : background[i];
     subject->kernels.foreground(most, blur, background, stride, n);
     for (int x = 0; x < n; x++) {
         int high = RF_NO_BLUR;
@@ -125,7 +127,9 @@ static bool check_foreground(const struct subject *subject, struct stage *s, int
         for (int i = 0; i < RF_CELL * RF_CELL; i++) {
             const ptrdiff_t at = i / RF_CELL * stride + x * RF_CELL + i % RF_CELL;
 
-            high = blur[at] != background[at] && blur[at] > high ? blur[at] : high;
+            high = (blur[at] | RF_INPAINTED) != (background[at] | RF_INPAINTED) && blur[at] > high
+                       ? blur[at]
+                       : high;
         }
         if (most[x] != high)
             return fail(subject, "foreground", first, n, x, most[x], high);

@@ -131,7 +131,7 @@ void expect_push(void *const *row, int parameter, int n)
                 light[i] = ((const uint16_t *)row[i < 2 ? upper[c] : lower[c]])[2 * x + i % 2];
             ((uint16_t *)row[c])[x] = expected_mean(light, blur, parameter, &farthest);
         }
-        ((int16_t *)row[3])[x] = (int16_t)farthest;
+        ((int16_t *)row[3])[x] = (int16_t)(farthest & ~RF_INPAINTED);
     }
 }
 
@@ -150,13 +150,13 @@ struct parent {
 
 static struct parent mix(struct parent near, struct parent far, int apart)
 {
-    const int deeper = far.blur - near.blur;
+    const int deeper = far.blur - near.blur, mean = (3 * near.light + far.light + 2) / 4;
 
     if (apart != INT16_MAX && deeper > apart)
-        return far;
+        return (struct parent){near.blur & RF_INPAINTED ? mean : far.light, far.blur};
     if (apart != INT16_MAX && -deeper > apart)
-        return near;
-    return (struct parent){(3 * near.light + far.light + 2) / 4, near.blur};
+        return (struct parent){far.blur & RF_INPAINTED ? mean : near.light, near.blur};
+    return (struct parent){mean, near.blur};
 }
 
 /* The mixture for child i of a row. */
@@ -198,7 +198,7 @@ void expect_pull_blur(void *const *row, int parameter, int n)
 
     for (int i = 0; i < 2 * n; i++)
         if (out[i] == RF_NO_BLUR)
-            out[i] = (int16_t)expected_parent(light, blur, parameter, i, n).blur;
+            out[i] = (int16_t)(expected_parent(light, blur, parameter, i, n).blur | RF_INPAINTED);
 }
 
 void run_push1(const struct rf_kernels *k, void *const *row, int parameter, int n)
@@ -216,6 +216,6 @@ void expect_push1(void *const *row, int parameter, int n)
             blur[i] = ((const int16_t *)row[4 + i / 2])[2 * x + i % 2];
         }
         ((uint16_t *)row[0])[x] = expected_mean(light, blur, parameter, &farthest);
-        ((int16_t *)row[1])[x] = (int16_t)farthest;
+        ((int16_t *)row[1])[x] = (int16_t)(farthest & ~RF_INPAINTED);
     }
 }

@@ -122,12 +122,15 @@ static void mark_mixed(struct twin *t)
 struct level {
     int width, height;
     double *plane[4];
+    bool *inpainted; /* none of it is known; NULL in level 0 */
 };
 
 static struct level coarser(const struct level *fine)
 {
-    struct level coarse = {(fine->width + 1) / 2, (fine->height + 1) / 2, {0}};
+    struct level coarse = {(fine->width + 1) / 2, (fine->height + 1) / 2, {0}, NULL};
 
+    coarse.inpainted = calloc((size_t)coarse.width * (size_t)coarse.height, sizeof(bool));
+    assert_non_null(coarse.inpainted);
     for (int c = 0; c < 4; c++) {
         coarse.plane[c] = malloc((size_t)coarse.width * (size_t)coarse.height * sizeof(double));
         assert_non_null(coarse.plane[c]);
@@ -181,21 +184,25 @@ static int beside(int child, int parents)
     return other < 0 || other >= parents ? child / 2 : other;
 }
 
-/* Light and blur of two parents, 3 and 1 quarters of the light; the deeper one's alone, and its
- * blur, where they are more than a quarter of the largest blur apart. */
+/* Light and blur of two parents, 3 and 1 quarters of the light; the deeper one's alone, unless the
+ * other one is inpainted, and its blur, where they are more than a quarter of the largest blur
+ * apart. */
 struct parents {
     double light[3], blur;
+    bool inpainted;
 };
 
 static struct parents mix(struct parents near, struct parents far, double apart)
 {
-    if (near.blur - far.blur > apart)
+    struct parents mixed = far.blur - near.blur > apart ? far : near;
+
+    if (near.blur - far.blur > apart && !far.inpainted)
         return near;
-    if (far.blur - near.blur > apart)
+    if (far.blur - near.blur > apart && !near.inpainted)
         return far;
     for (int c = 0; c < 3; c++)
-        near.light[c] = (3 * near.light[c] + far.light[c]) / 4;
-    return near;
+        mixed.light[c] = (3 * near.light[c] + far.light[c]) / 4;
+    return mixed;
 }
 
 static struct parents parent(const struct level *coarse, int x, int y)
@@ -203,7 +210,8 @@ static struct parents parent(const struct level *coarse, int x, int y)
     const int p = y * coarse->width + x;
 
     return (struct parents){{coarse->plane[0][p], coarse->plane[1][p], coarse->plane[2][p]},
-                            coarse->plane[3][p]};
+                            coarse->plane[3][p],
+                            coarse->inpainted[p]};
 }
 
 /* Unknown children: of the four nearest parents, down and then across. */
@@ -223,6 +231,8 @@ static void pull(struct level *fine, const struct level *coarse, double apart)
             for (int c = 0; c < 3; c++)
                 fine->plane[c][p] = both.light[c];
             fine->plane[3][p] = both.blur;
+            if (fine->inpainted)
+                fine->inpainted[p] = true;
         }
     }
 }
@@ -232,7 +242,8 @@ void twin_background(struct twin *t)
     struct level level[32] = {
         {t->width,
          t->height,
-         {t->background[0], t->background[1], t->background[2], t->background_blur}}};
+         {t->background[0], t->background[1], t->background[2], t->background_blur},
+         NULL}};
     int levels = 1;
 
     mark(t);
@@ -246,5 +257,6 @@ void twin_background(struct twin *t)
         pull(&level[levels - 1], &level[levels], t->K / 4);
         for (int c = 0; c < 4; c++)
             free(level[levels].plane[c]);
+        free(level[levels].inpainted);
     }
 }

@@ -5,7 +5,7 @@
 /* The blur of a pixel that is foreground. */
 static inline int16_t in_front(int16_t blur, int16_t background_blur)
 {
-    return (int16_t)(blur == background_blur ? RF_NO_BLUR : blur);
+    return (int16_t)((uint16_t)(blur ^ background_blur) <= RF_INPAINTED ? RF_NO_BLUR : blur);
 }
 
 static void foreground_run(int16_t *restrict most, const int16_t *restrict blur,
