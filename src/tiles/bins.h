@@ -18,6 +18,7 @@ struct rf_bins {
     uint16_t brightest;      /* an upper bound of the light of either layer, as it is summed */
     int16_t noise;           /* blurs vary so far from pixel to pixel; 0: the map is clean */
     int16_t middle;          /* the mean of its blurs; only if `flat` */
+    bool steep;              /* a surface of the tile is so steep that rays can pass it */
     bool flat;               /* the tile is one level surface, but for its noise */
     bool subtracted;         /* highlights are subtracted from its light, highlights/subtract.c */
 };

@@ -88,6 +88,11 @@ static inline void add_kept(struct rf_bins_in_reach *reach, const struct rf_bins
     word = noisy ? sum->word : reach->sure;
     for (int k = 0; k < RF_BINS / 64; k++)
         word[k] |= bins->word[k] & kept->word[k];
+    if (bins->steep) {
+        sum->steep = true;
+        for (int k = 0; k < RF_BINS / 64; k++)
+            reach->steep[k] |= bins->word[k] & kept->word[k];
+    }
     if (noisy) {
         reach->noise += bins->noise;
         reach->noisy++;

@@ -9,14 +9,16 @@
 #include "tiles/surfaces.h"
 
 enum {
-    HALF = 128,           /* 1/256 pixel, as all of these */
-    OVERLAP = 32,         /* a slab reaches so far into each of those beside it */
-    CLOSED = 2 * OVERLAP, /* so that the slab of what is sharp overlaps them as much in all */
-    CRACKED = 2 * 256,    /* up to this blur cracks between slabs are closed */
-    MOST_NOISY = 8 * 256, /* by this, at the most, noise widens the slab that closes a crack */
-    CLOSABLE = 12 * 256,  /* two slabs that are wider together are surfaces of much noise */
-    WIDE = 16 * 256,      /* where slabs begin to be wider than a pixel */
-    MOST_SPREAD = 60416,  /* blurs within it hit no slab of up to 20 pixels modulo 2^16 */
+    HALF = 128,            /* 1/256 pixel, as all of these */
+    OVERLAP = 32,          /* a slab reaches so far into each of those beside it */
+    CLOSED = 2 * OVERLAP,  /* so that the slab of what is sharp overlaps them as much in all */
+    STEEP = 192,           /* where surfaces are steep, it reaches so far into the nearer one, */
+    MOST_STEEP = 16 * 256, /* up to this blur */
+    CRACKED = 2 * 256,     /* up to this blur cracks between slabs are closed */
+    MOST_NOISY = 8 * 256,  /* by this, at the most, noise widens the slab that closes a crack */
+    CLOSABLE = 12 * 256,   /* two slabs that are wider together are surfaces of much noise */
+    WIDE = 16 * 256,       /* where slabs begin to be wider than a pixel */
+    MOST_SPREAD = 60416,   /* blurs within it hit no slab of up to 20 pixels modulo 2^16 */
 };
 
 /* The widest slab begins in the first bin of whole pixels. In bins of whole pixels; it is cut to
@@ -130,13 +132,26 @@ static int end_of_noise(const struct rf_bins_in_reach *reach, struct rf_bin_scal
     return rf_larger(until, end);
 }
 
+/* Whether a steep surface may have blurs in bins first to end - 1, which are a slab. */
+static bool is_steep(const struct rf_bins_in_reach *in_reach, struct rf_bin_scale scale, int first,
+                     int end)
+{
+    if (!in_reach->all.steep || abs(rf_edge_of(scale, first)) > MOST_STEEP >> scale.unit)
+        return false;
+    for (int bin = first; bin < end && bin < RF_BINS; bin++)
+        if (has(in_reach->steep, bin))
+            return true;
+    return false;
+}
+
 /* Adds a slab of the blurs low to high, none of which is sharp, that overlaps those beside it. */
 static void add_blurred_slab(struct rf_tile_plan *plan, struct rf_bin_scale scale, int low,
-                             int high)
+                             int high, bool steep)
 {
     const int half = HALF >> scale.unit, closed = CLOSED >> scale.unit;
     const int centre = low + (high - low + 1) / 2; /* exact for a single blur */
     const int overlap = rf_larger(OVERLAP >> scale.unit, (high - low) / 8);
+    const int nearer = rf_larger((steep ? STEEP : OVERLAP) >> scale.unit, overlap);
 
     plan->sharp = false;
     plan->reach = rf_larger(plan->reach, rf_larger(-low, high));
@@ -144,11 +159,11 @@ static void add_blurred_slab(struct rf_tile_plan *plan, struct rf_bin_scale scal
         plan->least = low;
     if (high < 0 && -high < plan->least)
         plan->least = -high;
-    low = rf_larger(low - overlap, INT16_MIN);
+    low = rf_larger(low - nearer, INT16_MIN);
     high = rf_smaller(high + overlap, INT16_MAX);
     if (centre < 0 && high >= -half)
         high = -half - 1;
-    if (centre > 0 && low < half)
+    if (centre > 0 && low < half && !steep)
         low = half - closed;
     add_slab(plan, scale, (struct rf_slab){(int16_t)low, (uint16_t)(high - low), (int16_t)centre});
 }
@@ -185,6 +200,10 @@ static void add_surface(struct rf_tile_plan *plan, struct rf_bin_scale scale,
  * surfaces of slope up to 1/4 have no gaps: a ray of a pixel of blur 0.60 that looks at its
  * neighbour of blur 0.45 hits it. Without the overlap it would miss that, and itself at offset 0.
  *
+ * Where surfaces are steeper, as in soft maps, slabs overlap by 7/8 pixel: else bright fragments of
+ * the hidden background show on them. Most of that is the deeper slab's, which is tested after the
+ * nearer one, so that it takes no ray that hits its own slab.
+ *
  * Returns how many of the slabs are of noise.
  */
 static int cover(const struct rf_bins_in_reach *in_reach, const struct rf_reach *reach,
@@ -192,7 +211,7 @@ static int cover(const struct rf_bins_in_reach *in_reach, const struct rf_reach 
 {
     const struct rf_bins *const bins = &in_reach->all;
     const struct rf_bin_scale scale = reach->scale;
-    const int unit = scale.unit, half = HALF >> unit, closed = CLOSED >> unit;
+    const int unit = scale.unit, half = HALF >> unit;
     const int focus_end = scale.focus + scale.focus_bins;
     const uint16_t *const end_of_wide = reach->slab_end[bins->most - bins->least < MOST_SPREAD];
     int noisy = 0, next = 0; /* surface */
@@ -213,6 +232,9 @@ static int cover(const struct rf_bins_in_reach *in_reach, const struct rf_reach 
             continue;
         }
         if (bin >= scale.focus && bin < focus_end) {
+            const bool steep = is_steep(in_reach, scale, bin, focus_end);
+            const int closed = (steep ? OVERLAP + STEEP : CLOSED) >> unit;
+
             add_slab(
                 plan, scale,
                 (struct rf_slab){(int16_t)(-half - closed), (uint16_t)(2 * half + closed - 1), 0});
@@ -235,7 +257,7 @@ static int cover(const struct rf_bins_in_reach *in_reach, const struct rf_reach 
         high = rf_edge_of(scale, last + 1) - 1;
         low = low < bins->least ? bins->least : low;
         high = high > bins->most ? bins->most : high;
-        add_blurred_slab(plan, scale, low, high);
+        add_blurred_slab(plan, scale, low, high, is_steep(in_reach, scale, bin, last + 1));
         bin = last + 1;
     }
     plan->reach = rf_in_pixels(plan->reach, unit);
@@ -246,7 +268,7 @@ static int cover(const struct rf_bins_in_reach *in_reach, const struct rf_reach 
 /* Blurs within the tile hit no wider slab modulo 2^16, with what it overlaps. */
 static int widest_slab(const struct rf_bins_in_reach *in_reach)
 {
-    return (UINT16_MAX + 1 - (in_reach->all.most - in_reach->all.least)) / 5 * 4 - 2 * OVERLAP;
+    return (UINT16_MAX + 1 - (in_reach->all.most - in_reach->all.least)) / 5 * 4 - OVERLAP - STEEP;
 }
 
 /* Covers the occupied bins: where they are noise, by as few slabs as a tile may have. Others are

@@ -15,6 +15,8 @@ enum {
     HALF = 128, /* 1/256 pixel, as all of these */
     LARGEST = RF_PLAIN_RADIUS * 256,
     LEAST_NOISE = 64, /* tiles of less noise are clean */
+    STEEP = 384,      /* over three pixels; rays can pass such a surface between slabs */
+    CONTINUOUS = 256, /* pixels beside each other that differ by no more are of one surface */
     NARROWEST = 4,    /* shift of the narrowest bins */
 };
 
@@ -122,6 +124,41 @@ static int16_t noise_of_tile(const struct rf_bins *bins, struct rf_bin_scale sca
     return (int16_t)rf_smaller(cut >= 2 ? largest : second, INT16_MAX);
 }
 
+/* Whether a cell is of one surface, so that pixels beside each other differ little, which slopes by
+ * more than half a pixel of blur a pixel along one of its rows or columns. */
+static bool is_steep_cell(const int16_t *s, ptrdiff_t stride, int unit)
+{
+    enum { LAST = RF_CELL - 1 };
+    const int steep = STEEP >> unit, most = CONTINUOUS >> unit;
+    bool slopes = false, is_one = true;
+
+    for (int i = 0; i < RF_CELL; i++) {
+        const int16_t *const row = s + i * stride, *const column = s + i;
+
+        slopes |= abs(row[LAST] - row[0]) > steep;
+        slopes |= abs(column[LAST * stride] - column[0]) > steep;
+        for (int k = 1; k < RF_CELL; k++) {
+            is_one &= abs(row[k] - row[k - 1]) <= most;
+            is_one &= abs(column[k * stride] - column[(k - 1) * stride]) <= most;
+        }
+    }
+    return slopes && is_one;
+}
+
+static bool is_steep(struct rf_bin_scale scale, struct rf_blur_q8 blur,
+                     const struct rf_cells *cells, int tx, int ty)
+{
+    for (int y = ty * EACH; y < (ty + 1) * EACH; y++)
+        for (int x = tx * EACH; x < (tx + 1) * EACH; x++) {
+            const ptrdiff_t cell = y * cells->stride + x;
+
+            if (cells->most[cell] - cells->least[cell] > STEEP >> scale.unit &&
+                is_steep_cell(blur.at + RF_CELL * (y * blur.stride + x), blur.stride, scale.unit))
+                return true;
+        }
+    return false;
+}
+
 static struct rf_bins bins_of_tile(struct rf_bin_scale scale, struct rf_blur_q8 blur,
                                    const struct rf_cells *cells, int tx, int ty)
 {
@@ -144,6 +181,7 @@ static struct rf_bins bins_of_tile(struct rf_bin_scale scale, struct rf_blur_q8 
     if (last - first > 1) {
         add_cells(&bins, scale, blur, cells, tx, ty, first, last);
         bins.noise = noise_of_tile(&bins, scale, cells, tx, ty);
+        bins.steep = is_steep(scale, blur, cells, tx, ty);
         if (bins.noise)
             rf_find_flat(&bins, scale, blur.at + RF_TILE * (ty * blur.stride + tx), blur.stride);
     }

@@ -108,9 +108,10 @@ void rf_note_background_blur(const struct rf_viewport *view, struct rf_blur_q8 b
 /* The bins of all tiles that reach a tile. */
 struct rf_bins_in_reach {
     struct rf_bins all;
-    uint64_t sure[RF_BINS / 64]; /* bins of the tiles without noise */
-    int64_t noise;               /* sum of that of the tiles with noise */
-    int noisy;                   /* number of these */
+    uint64_t sure[RF_BINS / 64];  /* bins of the tiles without noise */
+    uint64_t steep[RF_BINS / 64]; /* bins of the tiles with a steep surface */
+    int64_t noise;                /* sum of that of the tiles with noise */
+    int noisy;                    /* number of these */
 };
 
 /* The bins of all tiles that reach tile (tx, ty). */

@@ -10,6 +10,7 @@ static const double overlap = 0.125;
  * noise of the others, and their number. */
 struct bins {
     bool has[BINS], sure[BINS];
+    bool steep, has_steep[BINS]; /* a surface is; bins of the tiles in which one is */
     double least, most, noise;
     int noisy;
     bool level; /* a tile is, with this mean: */
@@ -120,6 +121,35 @@ static double noise_of_tile(const struct twin *t, const struct bins *bins, doubl
     return cut >= 2 ? largest : second;
 }
 
+/* Whether a cell is of one surface, which slopes by more than half a pixel a pixel along a row or a
+ * column; see src/tiles/tiles.c. */
+static bool is_steep_cell(const struct twin *t, int x, int y)
+{
+    bool slopes = false;
+
+    for (int i = 0; i < 2 * TWIN_CELL; i++) {
+        double blur[TWIN_CELL];
+
+        for (int k = 0; k < TWIN_CELL; k++)
+            blur[k] = t->map_blur[i < TWIN_CELL ? twin_at(t, x + k, y + i)
+                                                : twin_at(t, x + i - TWIN_CELL, y + k)];
+        for (int k = 1; k < TWIN_CELL; k++)
+            if (fabs(blur[k] - blur[k - 1]) > 1)
+                return false;
+        slopes = slopes || fabs(blur[TWIN_CELL - 1] - blur[0]) > 1.5;
+    }
+    return slopes;
+}
+
+static bool is_steep_tile(const struct twin *t, int tx, int ty)
+{
+    for (int y = 0; y < TWIN_TILE; y += TWIN_CELL)
+        for (int x = 0; x < TWIN_TILE; x += TWIN_CELL)
+            if (is_steep_cell(t, tx * TWIN_TILE + x, ty * TWIN_TILE + y))
+                return true;
+    return false;
+}
+
 static void note_tile(const struct twin *t, struct bins *bins, double width, const double *blur,
                       int tx, int ty)
 {
@@ -135,6 +165,7 @@ static struct bins bins_of_tile(const struct twin *t, double width, int tx, int 
     note_tile(t, &bins, width, t->map_blur, tx, ty); /* silhouettes as they were, too */
     bins.noise = noise_of_tile(t, &bins, width, tx, ty);
     bins.noisy = bins.noise > 0;
+    bins.steep = is_steep_tile(t, tx, ty);
     bins.level = twin_is_level(t, tx, ty, bins.noise, bins.most - bins.least, &bins.middle);
     note_tile(t, &bins, width, t->blur, tx, ty);
     return bins;
@@ -161,11 +192,13 @@ static void add(struct bins *reach, const struct bins *bins)
     for (int i = 0; i < BINS; i++) {
         reach->has[i] |= bins->has[i];
         reach->sure[i] |= bins->has[i] && !bins->noisy;
+        reach->has_steep[i] |= bins->has[i] && bins->steep;
     }
     reach->least = fmin(reach->least, bins->least);
     reach->most = fmax(reach->most, bins->most);
     reach->noise += bins->noise;
     reach->noisy += bins->noisy;
+    reach->steep |= bins->steep;
 }
 
 /* A block of tiles is as noisy as they are on the average, if all are. */
@@ -330,6 +363,15 @@ static struct twin_slab slab_of_surface(const struct twin_surface *surface, doub
                               centre};
 }
 
+/* How far a slab reaches into the nearer one: farther where surfaces are steep. */
+static double overlap_of(const struct bins *bins, double width, int first, int end)
+{
+    for (int i = first; i < end && i < BINS; i++)
+        if (bins->has_steep[i] && fabs(edge_of(width, first)) <= 16)
+            return 6 * overlap;
+    return overlap;
+}
+
 /* Slabs a pixel wide from the near side on, half as wide below 3 pixels of blur, an eighth of the
  * blur less a pixel from 16 on, where they end as those do that cover all bins; one for all that is
  * in focus. */
@@ -344,7 +386,7 @@ static struct twin_plan cover(const struct bins *bins, double width, double unit
     for (int bin = 0; bin < BINS;) {
         int end, last = bin, cell = 0;
         struct twin_slab slab;
-        double wide;
+        double wide, nearer;
         bool sure = false;
 
         if (!bins->has[bin]) {
@@ -362,8 +404,9 @@ static struct twin_plan cover(const struct bins *bins, double width, double unit
             continue;
         }
         if (bin >= FOCUS_BIN && bin < FOCUS_BIN + pixel) {
+            nearer = overlap_of(bins, width, bin, FOCUS_BIN + pixel);
             plan.slab[plan.slabs++] =
-                (struct twin_slab){-0.5 - 2 * overlap, nextafter(0.5, 0), 0, 0, 0};
+                (struct twin_slab){-0.5 - overlap - nearer, nextafter(0.5, 0), 0, 0, 0};
             bin = FOCUS_BIN + pixel;
             continue;
         }
@@ -384,11 +427,12 @@ static struct twin_plan cover(const struct bins *bins, double width, double unit
         plan.sharp = false;
         plan.reach = fmax(plan.reach, fmax(-slab.low, slab.high));
         wide = fmax(overlap, (slab.high - slab.low) / 8);
-        slab.low -= wide;
+        nearer = overlap_of(bins, width, bin, last + 1);
+        slab.low -= fmax(nearer, wide);
         slab.high += wide;
         if (slab.centre < 0 && slab.high >= -0.5)
             slab.high = nextafter(-0.5, -1);
-        if (slab.centre > 0 && slab.low < 0.5)
+        if (slab.centre > 0 && slab.low < 0.5 && nearer == overlap)
             slab.low = 0.5 - 2 * overlap;
         plan.slab[plan.slabs++] = slab;
         bin = last + 1;
