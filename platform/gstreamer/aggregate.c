@@ -253,6 +253,23 @@ static void tell_limit(GstRefocus *element)
     element->limited = element->shot.limited;
 }
 
+/* Once, until there is a map of the shape of frames. */
+static void tell_shape(GstRefocus *element)
+{
+    const struct refocus_disparity *const map = &element->depths.disparity;
+    const bool stretched = rf_gst_depths_are_stretched(&element->depths, &element->info);
+
+    if (stretched && !element->stretched)
+        GST_ELEMENT_WARNING(element, STREAM, FORMAT,
+                            ("the depth of %dx%d samples is stretched to the shape of frames, "
+                             "%dx%d; give depth of these frames, as upright as they are",
+                             (int)map->width, (int)map->height,
+                             GST_VIDEO_INFO_WIDTH(&element->info),
+                             GST_VIDEO_INFO_HEIGHT(&element->info)),
+                            (NULL));
+    element->stretched = stretched;
+}
+
 static GstFlowReturn refocus(GstRefocus *element, GstBuffer *buffer, GstClockTime time)
 {
     GstBuffer *const result = new_frame(element, buffer);
@@ -281,6 +298,7 @@ static GstFlowReturn refocus(GstRefocus *element, GstBuffer *buffer, GstClockTim
         return fail(element, reason.text[0] ? reason.text : refocus_strerror(status));
     }
     tell_limit(element);
+    tell_shape(element);
     element->rendered++;
     return gst_aggregator_finish_buffer(&element->parent, result);
 }

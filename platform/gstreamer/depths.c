@@ -223,6 +223,30 @@ int rf_gst_depths_use(struct rf_gst_depths *depths, const struct rf_gst_settings
     return status;
 }
 
+/* Whether one of two shapes is wider than the other by more than an eighth. */
+static bool differ(guint64 width, guint64 height, guint64 other_width, guint64 other_height)
+{
+    const guint64 wide = width * other_height, high = height * other_width;
+
+    return 8 * wide > 9 * high || 8 * high > 9 * wide;
+}
+
+bool rf_gst_depths_are_stretched(const struct rf_gst_depths *depths, const GstVideoInfo *info)
+{
+    enum { FEWEST = 16 }; /* the shape of fewer samples says nothing */
+    const struct refocus_disparity *const map = &depths->disparity;
+    const guint64 width = (guint64)GST_VIDEO_INFO_WIDTH(info);
+    const guint64 height = (guint64)GST_VIDEO_INFO_HEIGHT(info);
+
+    if (MIN(map->width, map->height) < FEWEST || MIN(width, height) < FEWEST ||
+        map->width == map->height)
+        return false;
+    return differ((guint64)map->width, (guint64)map->height, width, height) &&
+           differ((guint64)map->width, (guint64)map->height,
+                  width * (guint64)GST_VIDEO_INFO_PAR_N(info),
+                  height * (guint64)GST_VIDEO_INFO_PAR_D(info));
+}
+
 void rf_gst_depths_forget(struct rf_gst_depths *depths)
 {
     let_go(depths);

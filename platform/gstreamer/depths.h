@@ -40,6 +40,10 @@ int rf_gst_depths_hold(struct rf_gst_depths *depths, const struct rf_gst_setting
 int rf_gst_depths_use(struct rf_gst_depths *depths, const struct rf_gst_settings *settings,
                       const struct refocus_image *photo, struct refocus_reason *reason);
 
+/* Whether the map has neither the shape of frames as they are stored nor as they are shown, and so
+ * is another picture's, or lies on its side. A square is what networks make of any frame. */
+bool rf_gst_depths_are_stretched(const struct rf_gst_depths *depths, const GstVideoInfo *info);
+
 /* Forget maps of the pad and the past: after a flush. */
 void rf_gst_depths_forget(struct rf_gst_depths *depths);
 void rf_gst_depths_end(struct rf_gst_depths *depths);

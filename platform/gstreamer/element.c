@@ -88,7 +88,7 @@ static gboolean start(GstAggregator *aggregator)
     rf_gst_depths_end(&element->depths);
     element->rendered = element->dropped = 0;
     element->refused.text[0] = '\0';
-    element->limited = false;
+    element->limited = element->stretched = false;
     element->flushed = 0;
     element->earliest = GST_CLOCK_TIME_NONE;
     if (!element->settings.depth_location)

@@ -31,6 +31,7 @@ typedef struct rf_gst_element {
     struct rf_gst_settings used; /* settings of the last frame that could be rendered by its own */
     struct refocus_reason refused; /* words that the bus has about those that could not */
     bool limited;                  /* the bus knows of a blur that the method cannot have */
+    bool stretched;                /* the bus knows of maps of another shape than frames have */
     guint64 rendered, dropped;
 } GstRefocus;
 

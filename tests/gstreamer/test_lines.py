@@ -108,6 +108,20 @@ class Lines(unittest.TestCase):
         self.assertEqual(len(out), pathlib.Path(path).stat().st_size)
         self.assertNotEqual(out, pathlib.Path(path).read_bytes())
 
+    def test_depth_on_its_side(self):
+        """Depth of another shape is told of, once; the shape that frames are shown in is none."""
+        for size, words in (('width=64,height=96', 1), ('width=96,height=64', 0),
+                            ('width=64,height=96,pixel-aspect-ratio=2/1', 0)):
+            line = (f'videotestsrc num-buffers=3 ! video/x-raw,format=NV12,{size} ! '
+                    f'refocus name=r depth-location={DEPTH} ! fakesink')
+            done = self.run_words(['gst-launch-1.0', *shlex.split(line)])
+            self.assertEqual(done[0], 0, done[1])
+            self.assertEqual(done[1].count('720x540 samples is stretched'), words, size + done[1])
+        done = self.run_words(['gst-launch-1.0', *shlex.split(
+            f'videotestsrc num-buffers=3 ! {SMALL}NV12 ! refocus name=r ! fakesink '
+            'videotestsrc num-buffers=3 ! video/x-raw,format=GRAY8,width=64,height=96 ! r.depth')])
+        self.assertEqual(done[1].count('64x96 samples is stretched'), 1, done[1])
+
     def test_own_brightness_as_depth(self):
         self.passes(f'videotestsrc num-buffers=3 ! {SMALL}GRAY8 ! tee name=t ! queue ! '
                     'refocus name=r depth-edges=true ! fakesink t. ! queue ! r.depth')
