@@ -160,12 +160,15 @@ int refocus_sink_start_image(struct refocus_sink *sink, const struct refocus_ima
 
     reason = reason ? reason : &unheard;
     reason->text[0] = '\0';
-    if ((status = refocus_image_read(&own, like)))
-        return status;
+    status = refocus_image_read(&own, like);
+    if (status != REFOCUS_OK || !sink)
+        return rf_capture_fail(reason, status ? status : REFOCUS_ERR_ARGUMENT,
+                               sink ? "no picture that can be read is given" : "no sink is given");
     like = &own;
-    if (!sink || like->width < 1 || like->height < 1 || like->width > REFOCUS_MAX_SIDE ||
+    if (like->width < 1 || like->height < 1 || like->width > REFOCUS_MAX_SIDE ||
         like->height > REFOCUS_MAX_SIDE)
-        return REFOCUS_ERR_ARGUMENT;
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "%dx%d pixels are out of the range",
+                               (int)like->width, (int)like->height);
     sink->started = false;
     if (!refocus_sink_takes(sink, like->format))
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,

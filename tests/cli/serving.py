@@ -14,9 +14,6 @@ from urllib.parse import quote, urlsplit
 import pictures
 from case import Case, REFOCUS
 
-
-from case import Case, REFOCUS
-
 HEADERS = {
     'Content-Security-Policy':
         "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "

@@ -80,6 +80,14 @@ class Extremes(Case):
                 else:
                     os.remove(out)
             self.assertEqual(codes, {0, 1}, command)
+        # Memory for the picture, and none for the stacks of 64 threads of eight MiB.
+        def small(kib):
+            limit(kib)()
+            resource.setrlimit(resource.RLIMIT_STACK, (8 << 20, 8 << 20))
+        result = self.run_it('render', 'black.png', '--depth', 'depth.pgm', '--blur', '9', '--threads', '64',
+                             '-o', 'out.png', preexec_fn=lambda: small(least + 130000))
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, '^refocus: --threads: .*memory is short.*\n$')
 
 
 class Running(Case):

@@ -1,7 +1,6 @@
 /* pull.c: the command `refocus pull` renders an animation between focus settings. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include "outputs/animation.h"
 #include "commands/commands.h"
 #include "settings/keys.h"
@@ -215,10 +214,8 @@ static int pull(struct shot *shot, const char *photo, struct keys **keys, const 
 
     if (status == EXIT_DONE && *keys)
         most_blur = keys_most(*keys, "blur", 0);
-    if (status != EXIT_DONE) {
-        memset(shot, 0, sizeof *shot);
+    if (status != EXIT_DONE)
         return status;
-    }
     if (isnan(s->wiggle) && !input_focus_is_given(&wanted.lens))
         /* each frame has its own: none is found */
         wanted.lens.focus = given(s->from, 1);
@@ -266,7 +263,7 @@ static int run(int argc, char **argv)
                                 .fps = NAN,
                                 .wiggle = NAN};
     struct keys *keys = NULL;
-    struct shot shot;
+    struct shot shot = {.engine = {.spool = -1}};
     const char *files[2];
     int frames = 0, status = options_parse(&pull_command, argc, argv, &settings, files);
 

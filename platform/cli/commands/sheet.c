@@ -247,7 +247,7 @@ static int run(int argc, char **argv)
         .shot = SHOT_SETTINGS_NONE, .sheet = {.cell_width = NAN}, .region = {NAN}};
     struct sheet *sheet = NULL;
     struct refocus_image picture = {0};
-    struct shot shot;
+    struct shot shot = {.engine = {.spool = -1}};
     const char *files[2];
     int status = options_parse(&sheet_command, argc, argv, &settings, files);
 
@@ -259,7 +259,6 @@ static int run(int argc, char **argv)
     sheet = malloc(sizeof *sheet);
     if (!sheet)
         return report_failure(EXIT_FAILED, settings.output, "not enough memory");
-    memset(&shot, 0, sizeof shot);
     status = sheet_begin(sheet, &settings.sheet, &settings.shot.engine);
     if (status == EXIT_DONE)
         status = make(&shot, sheet, files[0], &settings, &picture);

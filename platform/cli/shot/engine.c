@@ -140,10 +140,18 @@ int engine_create(struct engine *engine, const struct engine_settings *settings,
         return report_failure(EXIT_FAILED, "--cpu", "this processor or build has no %s; give auto",
                               refocus_cpu_name(params.cpu));
     if (status == REFOCUS_ERR_THREAD)
-        return report_failure(EXIT_FAILED, "--threads", "%s; give fewer", refocus_strerror(status));
+        return report_failure(EXIT_FAILED, "--threads",
+                              "%s: memory is short, or there are too many; give fewer, or a "
+                              "smaller picture",
+                              refocus_strerror(status));
     engine->short_of_memory = status == REFOCUS_ERR_MEMORY && settings->memory_kib > 0;
     if (engine->short_of_memory)
         return EXIT_FAILED;
+    if (status == REFOCUS_ERR_ARGUMENT)
+        return report_failure(EXIT_FAILED, engine->name,
+                              "%s: this command and its library, %s, do not go together; give it "
+                              "the one that it was built with",
+                              refocus_strerror(status), refocus_version());
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, engine->name,
                               "%s: %dx%d pixels with blur %.4g need %.0f MiB; give a "

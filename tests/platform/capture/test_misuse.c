@@ -117,6 +117,7 @@ static void sinks_of_nothing(void **state)
     struct refocus_sink *sink = NULL;
     struct refocus_image image = refocus_image_planar(REFOCUS_FORMAT_RGB8, memory, W, H);
     struct refocus_source_mode mode = refocus_source_mode_default();
+    struct refocus_reason reason;
 
     (void)state;
     assert_status(refocus_sink_open(NULL, "null", NULL), REFOCUS_ERR_ARGUMENT);
@@ -143,6 +144,12 @@ static void sinks_of_nothing(void **state)
     assert_status(refocus_sink_set_cancelled(NULL, NULL, NULL), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_sink_overwrites(NULL, "x"), 0);
     assert_int_equal(refocus_sink_overwrites("y4m:x", NULL), 0);
+    assert_status(refocus_sink_open(&sink, "null", NULL), REFOCUS_OK);
+    assert_status(refocus_sink_start(sink, 0, H, 30, &reason), REFOCUS_ERR_ARGUMENT);
+    assert_string_not_equal(reason.text, "");
+    assert_status(refocus_sink_start_image(sink, NULL, 30, &reason), REFOCUS_ERR_ARGUMENT);
+    assert_string_not_equal(reason.text, "");
+    assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
     for (int f = 0; f < 5; f++) {
         assert_status(refocus_sink_open(&sink, "raw:misuse.raw,own", NULL), REFOCUS_OK);
         assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_ERR_STATE);
