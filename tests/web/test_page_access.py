@@ -149,6 +149,18 @@ class Access(Page):
             met = {one['what'] for one in self.walk()}
             self.assertEqual([one for one in wanted if one not in met], [], tab)
 
+    def test_without_scripts(self):
+        """The page says what it needs, and only then."""
+        b = self.browser
+        self.load()
+        self.assertEqual(b.all('#unscripted'), [])
+        b.command('Emulation.setScriptExecutionDisabled', value=True)
+        try:
+            b.driver.get(self.address)
+            b.until(lambda: b.all('#unscripted') and 'JavaScript' in b.find('unscripted').text, 'sentence')
+        finally:
+            b.command('Emulation.setScriptExecutionDisabled', value=False)
+
     def test_screens(self):
         b = self.browser
         for name, (width, height, touch, scale) in SCREENS.items():

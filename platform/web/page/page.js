@@ -47,3 +47,4 @@ startRack();
 startSaving();
 startLive();
 startOpening();
+$('unscripted').remove();
