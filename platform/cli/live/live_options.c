@@ -25,8 +25,8 @@ static const char *quality_summary(uint32_t index)
 {
     static const char *const rays[] = {
         "32 rays", "64 rays",
-        "128 rays; of Y, U and V also no halo beside what is in focus, of a single picture (file:) "
-        "that and thin structures splatted"};
+        ("128 rays; of Y, U and V also no halo beside what is in focus, of a single picture "
+         "(file:) that and thin structures splatted")};
     return index < sizeof rays / sizeof *rays ? rays[index] : engine_quality_words[index].summary;
 }
 
