@@ -1,4 +1,5 @@
 /* settings.c: the properties of the element are rows of a table. */
+#include <math.h>
 #include <string.h>
 #include "settings.h"
 
@@ -92,8 +93,8 @@ static const struct row rows[] = {
     {NUMBER, LIVE, "near", AT(near_m), 0, 1e6, 0, NULL, NULL, "Near",
      "Metres that disparity 1 stands for; 0: not known. Distances on the pad depth need near and "
      "far"},
-    {NUMBER, LIVE, "far", AT(far_m), 0, G_MAXDOUBLE, 0, NULL, NULL, "Far",
-     "Metres that disparity 0 stands for; 0: not known"},
+    {NUMBER, LIVE, "far", AT(far_m), 0, INFINITY, 0, NULL, NULL, "Far",
+     "Metres that disparity 0 stands for, which may be inf; 0: not known"},
     {CHOICE, LIVE, "quality", AT(quality), 0, 0, 1, NULL, quality_type, "Quality",
      "Time against smoothness"},
     {CHOICE, READY, "method", AT(method), 0, 0, REFOCUS_METHOD_SWEEP, NULL, method_type, "Method",

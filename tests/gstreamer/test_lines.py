@@ -122,6 +122,13 @@ class Lines(unittest.TestCase):
             'videotestsrc num-buffers=3 ! video/x-raw,format=GRAY8,width=64,height=96 ! r.depth')])
         self.assertEqual(done[1].count('64x96 samples is stretched'), 1, done[1])
 
+    def test_far_is_infinity(self):
+        """The range of a map may have no end; a number that is as good as that makes the same frames."""
+        line = (f'videotestsrc num-buffers=2 ! {SMALL}NV12 ! refocus name=r depth-unit=mm near=0.5 far=%s '
+                'f-number=2 focus-distance=2 ! OUT videotestsrc num-buffers=2 pattern=ball ! '
+                f'{SMALL}GRAY16_LE ! r.depth')
+        self.assertTrue(self.bytes_of(line % 'inf') == self.bytes_of(line % '1e300'), 'other bytes')
+
     def test_own_brightness_as_depth(self):
         self.passes(f'videotestsrc num-buffers=3 ! {SMALL}GRAY8 ! tee name=t ! queue ! '
                     'refocus name=r depth-edges=true ! fakesink t. ! queue ! r.depth')
