@@ -167,8 +167,9 @@ int refocus_sink_start_image(struct refocus_sink *sink, const struct refocus_ima
     like = &own;
     if (like->width < 1 || like->height < 1 || like->width > REFOCUS_MAX_SIDE ||
         like->height > REFOCUS_MAX_SIDE)
-        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT, "%dx%d pixels are out of the range",
-                               (int)like->width, (int)like->height);
+        return rf_capture_fail(reason, REFOCUS_ERR_ARGUMENT,
+                               "%dx%d pixels are out of the range; give 1 to %d a side",
+                               (int)like->width, (int)like->height, REFOCUS_MAX_SIDE);
     sink->started = false;
     if (!refocus_sink_takes(sink, like->format))
         return rf_capture_fail(reason, REFOCUS_ERR_UNSUPPORTED,

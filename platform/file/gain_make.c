@@ -1,5 +1,5 @@
 /* gain_make.c: the gain map of a picture that was refocused in light beyond white. Each pixel has
- * its own gain, as light is lost at once where a highlight ends. If one of picture and light is
+ * its own gain, as clipping ends from one pixel to the next. If one of picture and light is
  * larger, a sample is the gain between their means in its block, as gain_apply.c takes it apart
  * again. */
 #include "gain_make.h"
@@ -103,6 +103,7 @@ static double gain_at(const struct work *work, int x, int c)
 {
     const double base = work->sums[x][0][c] / work->counts[x][0];
     const double light = work->sums[x][1][c] / work->counts[x][1];
+    /* In single precision, which is faster and enough: a sample has eight bits. */
     const double gain = (double)log2f((float)((light + offset) / (base + offset)));
 
     return fmin(fmax(gain, -RF_GAIN_MOST_STOPS), RF_GAIN_MOST_STOPS);

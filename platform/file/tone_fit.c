@@ -17,7 +17,7 @@ enum {
     FEW = 100,         /* one pixel in so many of a cell is as much as what is around counts */
 };
 
-#define WHITE 0.97F /* Noise and JPEG leave what clips above this. */
+#define WHITE 0.97f /* Noise and JPEG leave what clips above this. */
 
 /* Sums over the pixels of a cell with the light of a knot, or nearly so: their number, their true
  * light and that of the base rendition. */

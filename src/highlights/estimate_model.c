@@ -34,10 +34,10 @@
  *     log2(gain) >= min(log2(h) + 3.5, 2.5),
  *
  * by night alone: where the surroundings are dark, t^2 of it; in photos whose mean log2 of
- * luminance is above -3 nothing, and all from -4 down. What the model leaves as it is, such as snow
- * in a dark photo, whose surroundings are lit, stays so: all of it is from half a stop on. Nor is
- * there any of it where highlights crowd, as text does: their glare is not told from what lies
- * between, so it ends as C_5 goes from 0.15 to 0.35 of C_2.
+ * luminance is above -3 nothing, and all from -4 down. This bound holds in full where the model has
+ * half a stop, and not at all where it has none, as for snow in a dark photo, whose surroundings
+ * are lit. It is faded out where highlights crowd, as text does, as C_5 goes from 0.15 to 0.35 of
+ * C_2: their glare is not told from what lies between.
  */
 #include <math.h>
 
@@ -232,8 +232,8 @@ static double part_of(double stops, double night)
     return smoothstep((float)stops, 1 - 0.5 * night, 1.8 - 0.8 * night);
 }
 
-/* Returns what a cell has lost, `lost` by the model, where its surroundings are dark to this part.
- */
+/* Returns what a cell has lost, which is `lost` by the model. `dark`: how dark its surroundings
+ * are, 0 to 1. */
 static double with_glare(const struct means *means, int i, double lost, double dark)
 {
     const double by_night = 1 - smoothstep(means->photo[i], -4, -3);

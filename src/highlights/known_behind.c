@@ -29,7 +29,7 @@ struct behind {
 struct tile {
     struct rf_rect at;
     int excess[3][RF_TILE * RF_TILE];
-    int16_t map_blur[RF_TILE * RF_TILE]; /* by the map's disparity, as is stored */
+    int16_t map_blur[RF_TILE * RF_TILE]; /* by the map's disparity, as it is stored */
 };
 
 static int place_of(const struct tile *tile, int x, int y)

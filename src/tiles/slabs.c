@@ -12,8 +12,8 @@ enum {
     HALF = 128,            /* 1/256 pixel, as all of these */
     OVERLAP = 32,          /* a slab reaches so far into each of those beside it */
     CLOSED = 2 * OVERLAP,  /* so that the slab of what is sharp overlaps them as much in all */
-    STEEP = 192,           /* where surfaces are steep, it reaches so far into the nearer one, */
-    MOST_STEEP = 16 * 256, /* up to this blur */
+    STEEP = 192,           /* a slab of a steep surface reaches so far into the nearer one */
+    MOST_STEEP = 16 * 256, /* up to this blur slabs of steep surfaces reach farther */
     CRACKED = 2 * 256,     /* up to this blur cracks between slabs are closed */
     MOST_NOISY = 8 * 256,  /* by this, at the most, noise widens the slab that closes a crack */
     CLOSABLE = 12 * 256,   /* two slabs that are wider together are surfaces of much noise */

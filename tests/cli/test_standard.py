@@ -214,9 +214,13 @@ class Standard(Case):
                                  '--depth', 'depth.pgm', '--out', 'raw:frames.yuv'],
                                 preexec_fn=close)
         try:
-            while not (os.path.exists('frames.yuv') and os.path.getsize('frames.yuv')):
+            for _ in range(6000):
                 self.assertIsNone(live.poll())
+                if os.path.exists('frames.yuv') and os.path.getsize('frames.yuv'):
+                    break
                 time.sleep(0.01)
+            else:
+                self.fail('live writes no frame')
             self.assertEqual([os.readlink('/proc/%d/fd/%d' % (live.pid, file))
                               for file in range(3)], 3 * ['/dev/null'])
         finally:

@@ -169,7 +169,9 @@ static void lamps_by(uint32_t method, float sigma, const double within[3])
 
 /* The light of 9.6 to 13, 1.2 to 4.3 and 1.0 to 2.7 codes of Y, U and V. When it was estimated of
  * luma alone and given back to that, 0.30, 1.8 and 1.4 of it were off by the sweep, 0.30, 1.1
- * and 1.1 by the search, and 0.80, 1.9 and 1.4 where eq. 5 weighs. */
+ * and 1.1 by the search, and 0.80, 1.9 and 1.4 where eq. 5 weighs: it
+ * weighs Y, U and V otherwise than R, G and B, so that there chroma is as far off as it has light.
+ */
 static void coloured_lamps(void **state)
 {
     (void)state;

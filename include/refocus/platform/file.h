@@ -380,8 +380,8 @@ struct refocus_write_options {
      *  and lies behind the picture: an Ultra HDR photo, by ISO 21496-1 and by XMP. NULL = none. */
     const struct refocus_image *light;
     /** Asked before each row of a PNG, PPM and PFM, and where an encoder takes the whole picture
-     *  (JPEG, HEIC, TIFF, OpenEXR) before and behind that, in the thread of the call: other than 0
-     *  ends it with REFOCUS_ERR_CANCELLED, as any error does. NULL = never */
+     *  (JPEG, HEIC, TIFF, OpenEXR) at least before and after it, in the thread of the call: other
+     * than 0 ends it with REFOCUS_ERR_CANCELLED, as any error does. NULL = never */
     int (*cancelled)(void *user);
     void *user; /**< handed to `cancelled` */
 };

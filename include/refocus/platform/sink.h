@@ -81,7 +81,8 @@ REFOCUS_API int refocus_sink_set_mode(struct refocus_sink *sink,
 /**
  * Set what is asked while a picture of a sequence is written, as `cancelled` of struct
  * refocus_write_options: other than 0 ends refocus_sink_write() with REFOCUS_ERR_CANCELLED, and of
- * this picture no file is left. Other sinks write a frame whole.
+ * this picture no file is left; its number is not used again. Other sinks write a frame whole. Not
+ * while refocus_sink_write() runs in another thread.
  *
  * @param cancelled  called in the thread of refocus_sink_write(); NULL = nobody is asked
  * @return REFOCUS_OK; REFOCUS_ERR_ARGUMENT: there is no sink

@@ -47,7 +47,7 @@ static const struct option options[] = {
      .greatest = REFOCUS_MAX_SIDE, .count = 4,
      .help = "render only this part of the picture, pixels"},
     {OPTION(OPTION_CHOICE, "--view", "WHAT", struct render_settings, view), .words = view_words,
-     .rare = true, .help = "write a picture of how it is made instead"},
+     .omits_default = true, .help = "write a picture of how it is made instead"},
     {OPTION(OPTION_NUMBER, "--parallax", "PIXELS", struct render_settings, parallax), .least = 0,
      .greatest = STEREO_MOST,
      .help = "anaglyph: between the eyes at disparity 1 when 0 is in focus; default "

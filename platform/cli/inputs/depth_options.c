@@ -62,12 +62,12 @@ const struct option upsample_options[] = {
 
 const struct option light_options[] = {
     {OPTION(OPTION_CHOICE, "--gain-map", "HOW", struct depth_settings, gain_map),
-     .words = gain_map_words, .rare = true,
+     .words = gain_map_words, .omits_default = true,
      .help = "the gain map of a photo (Ultra HDR, ISO 21496-1, Apple); default use"},
     {OPTION(OPTION_FLAG, "--no-dither", NULL, struct depth_settings, no_dither),
      .help = "photos of more than 8 bits, or with a gain map: 8 bits of the result are rounded"},
     {OPTION(OPTION_CHOICE, "--transfer", "CURVE", struct depth_settings, transfer),
-     .words = transfer_words, .rare = true,
+     .words = transfer_words, .omits_default = true,
      .help = "how a photo of more than 8 bits stores light; default auto"},
     {OPTION(OPTION_NUMBER, "--white", "LIGHT", struct depth_settings, white), .least = 1 / 65536.0,
      .greatest = 65536,

@@ -258,7 +258,7 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
     return status == EXIT_DONE ? input_convert(input, settings) : status;
 }
 
-int estimated_depth(struct input *input, const struct depth_settings *settings)
+int input_estimate_depth(struct input *input, const struct depth_settings *settings)
 {
     input->depth_name = settings->model ? settings->model : input->photo_name;
     return settings->model ? estimate_depth(input, settings->model, &settings->network, settings)

@@ -13,8 +13,8 @@ int input_read_estimate(struct input *input, const char *photo, const char *mode
                         const struct network_settings *network,
                         const struct depth_settings *settings);
 
-/* Make the depth of a photo that was read, by the settings' `model` or else `right` and `stereo`:
- * for their `make`. */
-int estimated_depth(struct input *input, const struct depth_settings *settings);
+/* Make the depth of a photo that was read, by the settings' `model` or else `right` and `stereo`.
+ * It is what `make` of the settings points to. */
+int input_estimate_depth(struct input *input, const struct depth_settings *settings);
 
 #endif

@@ -47,10 +47,10 @@ struct option {
     const char *brief; /* A line of --help, to which the words of a choice are added; NULL: it is
                           in --help-all alone */
     const char *help;
-    bool elsewhere; /* the option is about this run, not about the picture: not in files of
-                       settings */
-    bool rare;      /* commands that take files of settings from this one lack this OPTION_CHOICE:
-                       its first word, which is its default, is not written into them */
+    bool elsewhere;     /* the option is about this run, not about the picture: not in files of
+                           settings */
+    bool omits_default; /* OPTION_CHOICE: files of settings leave out its first word, the default,
+                           as not every command that takes such files has the option */
     /* OPTION_TEXT that names a file with values of other options, which is read before the rest of
      * the command line, or NULL. Returns OPTIONS_PARSED or an exit code. */
     int (*load)(const struct command *command, const char *file, void *settings);

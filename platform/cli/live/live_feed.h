@@ -14,7 +14,7 @@ struct live_frame {
 };
 
 /* Open the sources of settings that are checked, and stay; an exit code, and reports why. A feed
- * ends with its process: one of the page's has one session, and its cameras. */
+ * ends with its process, as each process of the page has one session and its cameras. */
 int live_feed_open(struct live_feed **feed, const struct live_settings *settings);
 /* Wait so long for a frame that is newer than the last one. An exit code, which is not EXIT_DONE
  * once the sources have failed, and why is reported; *came: whether there is one. */

@@ -302,7 +302,7 @@ static bool apply(struct live_focus *focus, const char *word, const char *rest, 
     const bool point = strcmp(word, "focus-at") == 0 || strcmp(word, "pull-at") == 0;
     const bool rectangle = strcmp(word, "focus-rectangle") == 0;
     const bool pulls = strncmp(word, "pull", 4) == 0;
-    double values[4] = {0, 0, 0, 0}, seconds = pulls;
+    double values[4] = {0, 0, 0, 0}, seconds = pulls ? 1 : 0;
     struct live_target target = {.known = !point, .point = {NAN, NAN}};
 
     if (strcmp(word, "blur") != 0 && strcmp(word, "focus") != 0 && strcmp(word, "pull") != 0 &&

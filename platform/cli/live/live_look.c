@@ -30,7 +30,8 @@ int live_look_check(struct live_settings *settings)
     if (live_look_needs_metres(settings) && live_estimate_is_meant(settings->depth.file))
         return report_failure(EXIT_WRONG, settings->depth.file, "%s", live_look_no_metres);
     settings->engine.bokeh.f_number = lens->f_number;
-    /* Photos alone have the time for these two; refocus() has silhouettes in the best frames. */
+    /* Frames have no time for either. With quality best refocus() splats thin structures of a
+     * single picture, and puts the silhouettes of Y, U and V right. */
     settings->engine.no_thin = true;
     settings->engine.fill = FILL_SMOOTH;
     return EXIT_DONE;

@@ -172,8 +172,9 @@ void serve_answer_save(struct serving *s, const struct rf_web_ask *ask, const ch
 int serve_encode(const char *ending, const struct refocus_image *image,
                  const struct refocus_write_options *options, struct refocus_blob *bytes);
 
-/* The name of a new file for a short time. Whoever has written it, with this status, gives it back
- * for its bytes, if it was EXIT_DONE; returns the status then. */
+/* serve_temporary() names a new file for a short time. serve_take_back() reads what was written
+ * into it, if `status`, that of writing it, is EXIT_DONE, then removes the file and frees its name.
+ * Exit codes. */
 int serve_temporary(const char *ending, char **path);
 int serve_take_back(int status, char *path, struct refocus_blob *bytes);
 

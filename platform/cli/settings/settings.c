@@ -226,7 +226,7 @@ static json_t *member_of(const struct option *option, const void *settings, int 
     case OPTION_FLAG:
         return *(const bool *)at ? json_true() : NULL;
     case OPTION_CHOICE:
-        if (option->rare && *(const int *)at == 0)
+        if (option->omits_default && *(const int *)at == 0)
             return NULL;
         json = json_string(options_word(option, (uint32_t) * (const int *)at));
         break;

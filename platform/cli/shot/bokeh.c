@@ -135,13 +135,15 @@ static int parse_figure(const struct figure *figure, const char *shape,
     return EXIT_DONE;
 }
 
-/* Reports that `option` names no shape; `or_else` is what else it may give. */
+/* Reports that `option` names no shape. `or_else`: what else the option takes, as the end of the
+ * list of shapes, or "". */
 static int report_unknown_shape(const char *option, const char *shape, const char *or_else)
 {
     char names[256] = "";
 
     for (size_t i = 0; i < FIGURES; i++)
-        snprintf(names + strlen(names), sizeof names - strlen(names), ", %s", figures[i].name);
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s%s",
+                 i + 1 == FIGURES && !or_else[0] ? " or " : ", ", figures[i].name);
     return report_failure(
         EXIT_WRONG, option,
         "'%s' is not known; give disc, polygon:BLADES, polygon:BLADES:DEGREES%s%s", shape, names,

@@ -79,7 +79,7 @@ int shot_check(struct shot_settings *settings, bool own_focus)
     int status = input_check_depth(&settings->depth);
 
     if (input_depth_is_made(&settings->depth))
-        settings->depth.make = estimated_depth;
+        settings->depth.make = input_estimate_depth;
     if (settings->depth.strokes)
         settings->depth.full = settings->depth.optional = true;
     settings->engine.bokeh.f_number = settings->lens.f_number;

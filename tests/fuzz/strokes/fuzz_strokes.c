@@ -1,5 +1,6 @@
 /* fuzz_strokes.c: a file of strokes over a small photo: what is taken is written, read again and
  * the same. */
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <refocus/platform/strokes.h>
@@ -28,6 +29,7 @@ static int points_of(const struct refocus_strokes *strokes)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static uint8_t pixels[3 * W * H];
+    static bool is_drawn;
     struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
     struct refocus_strokes *strokes, *again;
     struct refocus_strokes_reason reason;
@@ -35,8 +37,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     if (size > MANY)
         return 0;
-    for (int i = 0; !pixels[3 * W * H - 1] && i < 3 * W * H; i++)
+    for (int i = 0; !is_drawn && i < 3 * W * H; i++)
         pixels[i] = (uint8_t)(i / 3 % W > 15 ? i * 7 : 200 - i % 5);
+    is_drawn = true;
     must(refocus_strokes_create(&strokes, &photo, NULL) == REFOCUS_OK);
     must(refocus_strokes_create(&again, &photo, NULL) == REFOCUS_OK);
     if (refocus_strokes_load(strokes, data, size, &reason) == REFOCUS_OK) {

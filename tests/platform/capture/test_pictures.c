@@ -336,13 +336,44 @@ static void every_allocation(void **state)
     }
 }
 
+static int always(void *user)
+{
+    (void)user;
+    return 1;
+}
+
+/* A picture of a sequence that is cancelled leaves no file, and the next one that is not has the
+ * next number. */
+static void a_cancelled_picture(void **state)
+{
+    static uint8_t rgb[3 * 16 * 16];
+    const struct refocus_image picture =
+        refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, 16, 16, 3 * 16);
+    struct refocus_sink *sink;
+
+    (void)state;
+    unlink("cancelled-0.png");
+    unlink("cancelled-1.png");
+    assert_status(refocus_sink_open(&sink, "cancelled-%d.png", &reason), REFOCUS_OK);
+    assert_status(refocus_sink_start(sink, 16, 16, 25, &reason), REFOCUS_OK);
+    assert_status(refocus_sink_set_cancelled(sink, always, NULL), REFOCUS_OK);
+    assert_status(refocus_sink_write(sink, &picture, &reason), REFOCUS_ERR_CANCELLED);
+    assert_int_equal(access("cancelled-0.png", F_OK), -1);
+    assert_status(refocus_sink_set_cancelled(sink, NULL, NULL), REFOCUS_OK);
+    assert_status(refocus_sink_write(sink, &picture, &reason), REFOCUS_OK);
+    assert_int_equal(access("cancelled-0.png", F_OK), -1);
+    assert_int_equal(access("cancelled-1.png", F_OK), 0);
+    refocus_sink_close(&sink, &reason);
+    unlink("cancelled-1.png");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(depth_of_codes),         cmocka_unit_test(pictures_in_time),
         cmocka_unit_test(pictures_change),        cmocka_unit_test(a_gap_is_told),
         cmocka_unit_test(numbers_begin_anywhere), cmocka_unit_test(maps_are_left_out),
-        cmocka_unit_test(every_allocation)};
+        cmocka_unit_test(a_cancelled_picture),    cmocka_unit_test(every_allocation)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
