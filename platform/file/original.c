@@ -1,6 +1,7 @@
 /* original.c: the all-in-focus original that an editable result holds is made of the photo. */
 #include "original.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -148,7 +149,7 @@ static int put_matte(struct rf_store *store, const struct refocus_depth_map *mat
                                      ? ((const uint16_t *)(const void *)row)[x]
                                      : row[x];
 
-            *out++ = (uint8_t)(255 * value / matte->value_near + 0.5);
+            *out++ = (uint8_t)(fmin(255 * value / matte->value_near, 255) + 0.5);
         }
     }
     rows.top = samples;
