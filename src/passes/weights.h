@@ -10,7 +10,7 @@ struct rf_weights {
     struct rf_light_q12 smooth, background; /* read */
     bool is_luminance; /* light is luminance, in channel[0] alone, and `weight` has its stride */
     struct rf_weight_q15 weight;            /* written, borders too: of `smooth`, */
-    bool has_background;                    /* whether `background_weight` is written, too */
+    bool has_background;                    /* `background_weight` is written, too */
     struct rf_weight_q15 background_weight; /* weights of `background` */
 };
 

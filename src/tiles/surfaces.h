@@ -26,7 +26,7 @@ struct rf_level_surface {
     int first, end; /* bins from first to end - 1 are of it */
     int middle;     /* the blur that it is seen with */
     int noise;      /* as in rf_bins, but no more than the widest slab allows */
-    bool own;       /* whether it is the surface of the tile itself, not of one around it */
+    bool own;       /* It is the surface of the tile itself, not of one around it. */
 };
 
 struct rf_level_surfaces {

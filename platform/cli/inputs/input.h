@@ -79,7 +79,7 @@ struct input {
     struct refocus_depth_edges_report edges; /* by depth --full; struct_size 0: as given */
     struct refocus_stack_result stack;       /* findings; struct_size 0: it is no stack */
     struct refocus_image stacked;            /* the light of its photo; plane[0] NULL: none */
-    bool has_stacked; /* whether `stacked` has light that 8 bits do not hold */
+    bool has_stacked;                        /* `stacked` has light that 8 bits do not hold */
 };
 
 #endif

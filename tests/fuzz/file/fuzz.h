@@ -28,7 +28,7 @@ static const struct refocus_read_limits fuzz_limits = {
     .struct_size = sizeof fuzz_limits,
     .max_pixels = 1u << 20,
     .max_bytes = 1u << 23,
-    .max_memory = UINT64_C(1) << 30}; /* else the system is asked how much there is, each time */
+    .max_memory = UINT64_C(1) << 30}; /* 0 would ask the system how much there is, each time. */
 
 /* A reading as rf_read_begin() sets it up. */
 struct fuzz_reading {

@@ -437,7 +437,7 @@ static void a_cancelled_picture_is_left_out(void **state)
 {
     static const struct {
         const char *name;
-        int least; /* how often it is asked at the least */
+        int least; /* `cancelled` is asked at least so often. */
     } formats[] = {{"c.ppm", 200},
 #ifdef RF_HAVE_PNG
                    {"c.png", 200},
