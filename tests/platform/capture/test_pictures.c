@@ -352,19 +352,19 @@ static void a_cancelled_picture(void **state)
     struct refocus_sink *sink;
 
     (void)state;
-    unlink("cancelled-0.png");
-    unlink("cancelled-1.png");
-    assert_status(refocus_sink_open(&sink, "cancelled-%d.png", &reason), REFOCUS_OK);
+    unlink("cancelled-0.ppm");
+    unlink("cancelled-1.ppm");
+    assert_status(refocus_sink_open(&sink, "cancelled-%d.ppm", &reason), REFOCUS_OK);
     assert_status(refocus_sink_start(sink, 16, 16, 25, &reason), REFOCUS_OK);
     assert_status(refocus_sink_set_cancelled(sink, always, NULL), REFOCUS_OK);
     assert_status(refocus_sink_write(sink, &picture, &reason), REFOCUS_ERR_CANCELLED);
-    assert_int_equal(access("cancelled-0.png", F_OK), -1);
+    assert_int_equal(access("cancelled-0.ppm", F_OK), -1);
     assert_status(refocus_sink_set_cancelled(sink, NULL, NULL), REFOCUS_OK);
     assert_status(refocus_sink_write(sink, &picture, &reason), REFOCUS_OK);
-    assert_int_equal(access("cancelled-0.png", F_OK), -1);
-    assert_int_equal(access("cancelled-1.png", F_OK), 0);
+    assert_int_equal(access("cancelled-0.ppm", F_OK), -1);
+    assert_int_equal(access("cancelled-1.ppm", F_OK), 0);
     refocus_sink_close(&sink, &reason);
-    unlink("cancelled-1.png");
+    unlink("cancelled-1.ppm");
 }
 
 int main(void)
