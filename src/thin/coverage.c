@@ -2,6 +2,7 @@
 #include "thin/coverage.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,6 +35,7 @@ void rf_lay_out_coverage(struct rf_coverage *coverage, struct rf_arena *arena, i
 struct sum {
     int32_t light[4]; /* sums of alpha N (three channels) and of alpha, 4096 = 1 */
     int32_t blur, weight;
+    int32_t x, y; /* alpha times a pixel's place in its cell is added up */
 };
 
 /* Adds up the splatted mixtures of a tile by cells. */
@@ -56,6 +58,8 @@ static void add_tile(const struct rf_thin_pass *t, int tx, int ty, struct sum su
         cell->light[3] += (4096 * thin->alpha + 127) / 255;
         cell->weight += thin->alpha;
         cell->blur -= thin->alpha * rf_near_blur(t, thin, tx, ty);
+        cell->x += thin->alpha * (x % RF_COVERAGE_CELL);
+        cell->y += thin->alpha * (y % RF_COVERAGE_CELL);
     }
 }
 
@@ -78,19 +82,55 @@ static int chord(int dy, int radius) /* Q8 both, below 2^16 */
                  23);
 }
 
+/* The first and the last row of cells whose middle is within a disc around y. */
+static int first_row(int y, int radius)
+{
+    return (y - radius + 127) >> 8;
+}
+
+static int last_row(int y, int radius)
+{
+    return (y + radius - 128) >> 8;
+}
+
+/* Half the length of a disc's row of cells. */
+static int half_row(int row, int y, int radius)
+{
+    return chord(abs(row * 256 + 128 - y), radius);
+}
+
 /* Divides the light and the coverage of a cell among the cells of its disc: there are as many of
  * these as the disc's rows are long together. */
-static void share(const int32_t light[4], int radius, int32_t each[4])
+static void share(const int32_t light[4], int y, int radius, int32_t each[4])
 {
-    int64_t length = chord(0, radius);
+    int64_t length = 0;
 
-    for (int y = 1; y <= radius >> 8; y++)
-        length += 2 * chord(y << 8, radius);
+    for (int row = first_row(y, radius); row <= last_row(y, radius); row++)
+        length += half_row(row, y, radius);
     static_assert((INT64_C(16) * 4096 << (RF_COVERAGE_SHIFT + 8 - 4)) / (2 * 256) <= 1 << 25,
                   "half of one a cell, of discs of a cell of radius");
     for (int c = 0; c < 4; c++) /* sums are of pixels, 16 a cell */
         each[c] =
             (int32_t)(((int64_t)light[c] * (1 << (RF_COVERAGE_SHIFT + 8 - 4))) / (2 * length));
+}
+
+/* The radius on the layer of a disc that is to look as wide as one of this radius, whose variance
+ * is radius^2 / 4. The layer widens discs: the ends of a row are parts of cells (1/12 of a cell
+ * squared of variance, across alone), and between cells it is interpolated (1/6 both ways). */
+static int narrow(int radius) /* Q8, cells */
+{
+    const int64_t square = (int64_t)radius * radius - 5 * 65536 / 6;
+
+    return square > 256 * 256 ? (int)sqrt((double)square) : 256;
+}
+
+static void set_centre(struct rf_coverage_source *source, int cell_x, int cell_y,
+                       const struct sum *sum)
+{
+    const int pixel = 256 / RF_COVERAGE_CELL;
+
+    source->x = cell_x * 256 + (sum->x * pixel / sum->weight) + pixel / 2;
+    source->y = cell_y * 256 + (sum->y * pixel / sum->weight) + pixel / 2;
 }
 
 static void collect_band(void *context, int ty, int worker)
@@ -110,11 +150,10 @@ static void collect_band(void *context, int ty, int worker)
         for (int i = 0; i < CELLS * CELLS; i++) {
             if (!sum[i].weight)
                 continue;
-            out[sources].x = (uint16_t)(tx * CELLS + i % CELLS);
-            out[sources].y = (uint16_t)(ty * CELLS + i / CELLS);
+            set_centre(&out[sources], tx * CELLS + i % CELLS, ty * CELLS + i / CELLS, &sum[i]);
             out[sources].radius =
-                (uint16_t)rf_smaller(sum[i].blur / sum[i].weight * t->disc_scale >> 10, UINT16_MAX);
-            share(sum[i].light, out[sources].radius, out[sources].each);
+                narrow(rf_smaller(sum[i].blur / sum[i].weight * t->disc_scale >> 10, UINT16_MAX));
+            share(sum[i].light, out[sources].y, out[sources].radius, out[sources].each);
             sources++;
         }
     }
@@ -137,19 +176,19 @@ static void step(int32_t (*row)[4], int cells, int x, const int32_t v[4], int32_
 }
 
 /* A disc in rows from `first` to `end` - 1. */
-static void draw(const struct rf_thin_pass *t, int cx, int cy, int radius, const int32_t v[4],
+static void draw(const struct rf_thin_pass *t, int x, int y, const struct rf_coverage_source *s,
                  int first, int end)
 {
-    const int cells = t->view->tiles_x * CELLS, rows = radius >> 8;
+    const int cells = t->view->tiles_x * CELLS;
 
-    first = cy - rows > first ? cy - rows : first;
-    end = cy + rows + 1 < end ? cy + rows + 1 : end;
-    for (int y = first; y < end; y++) {
-        const int half = chord(abs(y - cy) << 8, radius);
-        int32_t(*row)[4] = t->coverage->cell + (size_t)y * t->coverage->stride;
+    first = rf_larger(first, first_row(y, s->radius));
+    end = rf_smaller(end, last_row(y, s->radius) + 1);
+    for (int row = first; row < end; row++) {
+        const int half = half_row(row, y, s->radius);
+        int32_t(*const to)[4] = t->coverage->cell + (size_t)row * t->coverage->stride;
 
-        step(row, cells, cx * 256 + 128 - half, v, 1);
-        step(row, cells, cx * 256 + 128 + half, v, -1);
+        step(to, cells, x - half, s->each, 1);
+        step(to, cells, x + half, s->each, -1);
     }
 }
 
@@ -157,18 +196,17 @@ static void draw(const struct rf_thin_pass *t, int cx, int cy, int radius, const
 static void draw_reflected(const struct rf_thin_pass *t, const struct rf_coverage_source *s,
                            int first, int end)
 {
-    const int rows = s->radius >> 8;
-    const int right = (t->view->width + RF_COVERAGE_CELL - 1) / RF_COVERAGE_CELL;
-    const int below = (t->view->height + RF_COVERAGE_CELL - 1) / RF_COVERAGE_CELL;
-    const int x[] = {s->x, -1 - s->x, 2 * right - 1 - s->x};
-    const int y[] = {s->y, -1 - s->y, 2 * below - 1 - s->y};
+    const int right = (t->view->width + RF_COVERAGE_CELL - 1) / RF_COVERAGE_CELL * 256;
+    const int below = (t->view->height + RF_COVERAGE_CELL - 1) / RF_COVERAGE_CELL * 256;
+    const int x[] = {s->x, -s->x, 2 * right - s->x};
+    const int y[] = {s->y, -s->y, 2 * below - s->y};
 
     for (int j = 0; j < 3; j++) {
-        if (y[j] + rows < first || y[j] - rows >= end || y[j] >= below + rows)
+        if (last_row(y[j], s->radius) < first || first_row(y[j], s->radius) >= end)
             continue;
         for (int i = 0; i < 3; i++)
-            if (x[i] >= -rows - 1 && x[i] <= right + rows)
-                draw(t, x[i], y[j], s->radius, s->each, first, end);
+            if (x[i] + s->radius > 0 && x[i] - s->radius < right)
+                draw(t, x[i], y[j], s, first, end);
     }
 }
 

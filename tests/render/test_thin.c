@@ -81,7 +81,7 @@ static void wire(void **state)
     static uint8_t out[MOST];
     const double s = (double)K * (NEAR - FAR) / 65535, wide = 1, pi = 3.14159265358979;
     struct picture p = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){0, 0, 0}, FAR);
-    double sum = 0, worst = 0, worst_rays = 0;
+    double sum = 0, moment = 0, worst = 0, worst_rays = 0;
     struct setting rays = plain;
 
     (void)state;
@@ -102,6 +102,7 @@ static void wire(void **state)
             double *most = pass ? &worst_rays : &worst;
 
             sum += pass ? 0 : is;
+            moment += pass ? 0 : is * (x - 169);
             if (t < s - 5) /* cells blur the edge */
                 *most = fmax(*most, fabs(is - should));
         }
@@ -109,8 +110,9 @@ static void wire(void **state)
             if (abs(out[3 * (y * WIDTH + 169)] - out[3 * 169]) > 4)
                 fail_msg("row %d is %d, the first %d", y, out[3 * (y * WIDTH + 169)], out[3 * 169]);
     }
-    printf("wire: %.4f off where it is %.4f; by rays %.4f\n", worst,
-           picture_light(220) * wide * 2 / (pi * s), worst_rays);
+    printf("wire: %.4f off where it is %.4f; by rays %.4f; middle %.2f px beside\n", worst,
+           picture_light(220) * wide * 2 / (pi * s), worst_rays, moment / sum);
+    assert_true(fabs(moment / sum) < 0.2); /* not at the middle of its cell, half a pixel beside */
     assert_true(fabs(sum - picture_light(220) * wide) < 0.03 * picture_light(220) * wide);
     assert_true(worst < 0.13 * picture_light(220) * wide * 2 / (pi * s));
     assert_true(worst < worst_rays / 3);
