@@ -132,6 +132,7 @@ struct refocus_look_params {
                                its size. It is measured in the smoothest parts of the photo; what
                                is below one code, or differs between brightnesses or blocks, or
                                over distance, as texture does, is no noise, and nothing changes.
+                               Near black and white, where noise is cut off, there is less.
                                0 = none, the default; 1 = as much as there was */
     uint32_t grain_seed;  /**< seed of the grain; any number; default 0 */
     int32_t star_spikes;  /**< scatter, sweep: of a star filter, 0 = none, the default, else 2 to

@@ -14,8 +14,8 @@
 
 #include "support/compare.h"
 
-/* Standard deviation at a luma: between the middles of the levels in proportion. */
-static int sigma_at(const struct rf_grain *grain, int code)
+/* Standard deviation measured at a luma: between the middles of the levels in proportion. */
+static int measured_at(const struct rf_grain *grain, int code)
 {
     const int from = code - RF_NOISE_WIDTH / 2, last = RF_NOISE_LEVELS - 1;
     const int level = from < 0 ? 0 : from / RF_NOISE_WIDTH;
@@ -25,6 +25,13 @@ static int sigma_at(const struct rf_grain *grain, int code)
         return grain->sigma[last];
     return (grain->sigma[level] * (RF_NOISE_WIDTH - part) + grain->sigma[level + 1] * part) /
            RF_NOISE_WIDTH;
+}
+
+/* Standard deviation that a luma takes. Three of them fit between it and black and white: a photo's
+ * noise is cut off there, and what is cut off on one side would make black grey. */
+static int sigma_at(const struct rf_grain *grain, int code)
+{
+    return rf_smaller(measured_at(grain, code), 256 * rf_smaller(code, 255 - code) / 3);
 }
 
 /* Sum of four random bytes about 0: standard deviation sqrt(4 (256^2 - 1) / 12) =

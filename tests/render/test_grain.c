@@ -118,8 +118,8 @@ static void grain_size(void **state)
     }
 }
 
-/* Noise of codes 48 above and of 208 below in the blurred half, where the photo has these. */
-static void bands(double dark, double bright, double noises[2])
+/* Noise of this code above and of 208 below in the blurred half, where the photo has these. */
+static void bands(int code, double dark, double bright, double noises[2])
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
     struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 12);
@@ -131,7 +131,7 @@ static void bands(double dark, double bright, double noises[2])
     draw_noise(&p, bright, 0);
     memcpy(p.rgb, above, sizeof above);
     for (int i = 0; i < 3 * W * H; i++)
-        p.rgb[i] = (uint8_t)(p.rgb[i] + (i < 3 * W * H / 2 ? 48 - 120 : 208 - 120));
+        p.rgb[i] = (uint8_t)fmax(p.rgb[i] + (i < 3 * W * H / 2 ? code - 120 : 208 - 120), 0);
     renderer = prepared(&p, 12, 2);
     params.look.grain = 1;
     assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
@@ -147,14 +147,16 @@ static void noise_follows_brightness(void **state)
     double noises[2];
 
     (void)state;
-    bands(5, 2, noises);
+    bands(48, 5, 2, noises);
     about("dark", noises[0], 5, 0.12);
     about("bright", noises[1], 2, 0.12);
-    bands(9, 2, noises);
+    bands(48, 9, 2, noises);
     about("dark, too much", noises[0], 2 * 1.25 * 2.56, 0.12);
-    bands(2.5, 8, noises);
+    bands(48, 2.5, 8, noises);
     about("dark", noises[0], 2.5, 0.12);
     about("bright, too much", noises[1], 2.5 * 1.25, 0.12);
+    bands(9, 9, 9, noises);
+    about("cut off at black", noises[0], 9 / 3.0, 0.25);
 }
 
 /* Texture of one brightness is no noise where others are smooth. */
