@@ -168,9 +168,9 @@ class DepthAndInfo(Case):
         pictures.pgm('parts.pgm', W, H, lambda x, y: x * 140, 65535)  # a tenth, and a little
         self.assertNotIn('little', self.succeeds('info', 'parts.pgm', '--depth-unit', 'disparity'))
 
-    def test_lower_half_farther(self):
-        """Where 3 of 4 samples that differ say so, and a quarter differs."""
-        told = ('as disparities, %s = near, its lower half is the farther one; if that is wrong, '
+    def test_bottom_farther(self):
+        """Where 3 of 4 samples that differ of the edges say so, and a quarter differs."""
+        told = ('as disparities, %s = near, its bottom is farther than its top; if that is wrong, '
                 'give --depth-unit inverse, mm, m or 5000/m, else disparity')
         pictures.pgm('down.pgm', W, H, lambda x, y: 200 - 2 * y)
         pictures.pfm('down.pfm', W, H, lambda x, y: -1.0 * y if x else math.nan)
@@ -188,7 +188,10 @@ class DepthAndInfo(Case):
                   (lambda x, y: 200 - 2 * y if 4 * x < 3 * W - 4 else 2 * y + 1, False),
                   (lambda x, y: 200 - 2 * y if 4 * x < W else 9, True),
                   (lambda x, y: 200 - 2 * y if 4 * x < W - 4 else 9, False),
-                  (lambda x, y: 200 - 2 * y if 2 * y < H else 0, False))
+                  (lambda x, y: 200 - 2 * y if 2 * y < H else 0, False),
+                  # a subject stands in the middle; the lowest and the highest eighth count
+                  (lambda x, y: 2 * y + 1 if 4 <= y < H - 4 else 200 - 2 * y, True),
+                  (lambda x, y: 200 - 2 * y if 4 <= y < H - 4 else 2 * y + 1, False))
         for sample, doubtful in bounds:
             pictures.pgm('other.pgm', W, H, sample)
             self.assertEqual('doubtful' in self.succeeds('info', 'other.pgm'), doubtful)

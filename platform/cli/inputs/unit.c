@@ -13,8 +13,9 @@
 enum { LEAST = 100, MOST = 32767 };
 
 /* The ground before a camera comes nearer from row to row, so in most pictures what lies lower is
- * nearer. The halves differ enough where a quarter of the samples do. */
-enum { LESS = 3, OF_LESS = 4, OF_ALL = 4 };
+ * nearer. The lowest and the highest eighth of the rows say so more often than halves, in which a
+ * subject stands. They differ enough where a quarter of the samples do. */
+enum { PART = 8, LESS = 3, OF_LESS = 4, OF_ALL = 4 };
 
 /* A sample, or 0 where there is none: 0 itself stands for that in many maps. */
 static double sample_at(const struct refocus_depth_map *map, int32_t x, int32_t y)
@@ -52,14 +53,14 @@ static bool are_distances(const struct refocus_depth_map *map, char line[UNIT_LI
     return least >= LEAST && most <= MOST && 2 * most > 3 * least;
 }
 
-/* Whether the lower half has less of the samples that differ from their mirror images in the upper
- * half, LESS of OF_LESS of them. */
+/* Whether the lowest rows have less of the samples that differ from their mirror images in the
+ * highest rows, LESS of OF_LESS of them. */
 static bool are_upside_down(const struct refocus_depth_map *map, char line[UNIT_LINE])
 {
-    const int32_t half = map->height / 2;
+    const int32_t rows = (map->height + PART - 1) / PART;
     int64_t less = 0, differ = 0;
 
-    for (int32_t y = 0; y < half; y++) {
+    for (int32_t y = 0; y < rows; y++) {
         for (int32_t x = 0; x < map->width; x++) {
             const double upper = sample_at(map, x, y);
             const double lower = sample_at(map, x, map->height - 1 - y);
@@ -70,11 +71,12 @@ static bool are_upside_down(const struct refocus_depth_map *map, char line[UNIT_
             }
         }
     }
-    snprintf(line, UNIT_LINE,
-             "as disparities, %s = near, its lower half is the farther one; if that is wrong, give "
-             "--depth-unit inverse, mm, m or 5000/m, else disparity",
-             map->sample == REFOCUS_SAMPLE_F32 ? "greater" : "bright");
-    return OF_ALL * differ >= (int64_t)half * map->width && differ > 0 &&
+    snprintf(
+        line, UNIT_LINE,
+        "as disparities, %s = near, its bottom is farther than its top; if that is wrong, give "
+        "--depth-unit inverse, mm, m or 5000/m, else disparity",
+        map->sample == REFOCUS_SAMPLE_F32 ? "greater" : "bright");
+    return OF_ALL * differ >= (int64_t)rows * map->width && differ > 0 &&
            OF_LESS * less >= LESS * differ;
 }
 

@@ -12,7 +12,7 @@ enum { UNIT_LINE = ENDS_LINE };
 /* Writes a line of up to UNIT_LINE bytes where samples of a depth file that are taken for
  * disparities look like distances or the inverse, as no unit is given, have an end that looks like
  * a code for no value, as none is given, or use little of the range of their type. Of a map that
- * will be turned, upper and lower half are not known. */
+ * will be turned, top and bottom are not known. */
 bool unit_is_doubtful(const struct refocus_photo *photo, const struct depth_settings *settings,
                       bool turned, char line[UNIT_LINE]);
 
