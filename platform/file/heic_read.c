@@ -232,6 +232,8 @@ static int run(struct rf_heic *heic)
         (read->picture_always || !read->samples.pixels)) {
         status = rf_heic_decode(heic, heic->primary, RF_HEIC_COLOUR, &read->image);
         status = status == REFOCUS_OK ? rf_heic_settle_light(read, heic->primary) : status;
+        if (status == REFOCUS_OK && heif_image_handle_has_alpha_channel(heic->primary))
+            rf_note(read->info, "%s: transparency is dropped", read->info->container);
     }
     return status;
 }

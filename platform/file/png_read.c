@@ -22,8 +22,9 @@ struct reader {
     png_infop info;
     struct rf_raster raster;
     struct refocus_blob exif, icc;
-    bool alpha; /* Alpha is kept beside the samples. */
-    int status; /* status for errors that are not libpng's own */
+    bool alpha;       /* Alpha is kept beside the samples. */
+    bool transparent; /* The file has some, by itself or in its palette. */
+    int status;       /* status for errors that are not libpng's own */
 };
 
 static void on_error(png_structp png, png_const_charp words)
@@ -83,8 +84,9 @@ static void choose_samples(struct reader *reader)
         png_set_palette_to_rgb(png);
     else if (type == PNG_COLOR_TYPE_GRAY && bits < 8)
         png_set_expand_gray_1_2_4_to_8(png);
-    if (reader->alpha &&
-        (type & PNG_COLOR_MASK_ALPHA || png_get_valid(png, reader->info, PNG_INFO_tRNS))) {
+    reader->transparent =
+        type & PNG_COLOR_MASK_ALPHA || png_get_valid(png, reader->info, PNG_INFO_tRNS);
+    if (reader->alpha && reader->transparent) {
         png_set_tRNS_to_alpha(png);
     } else {
         reader->alpha = false;
@@ -196,7 +198,7 @@ static bool run(struct reader *reader)
 }
 
 /* The pixels and, unless their places are NULL, EXIF and the colour profile. With *alpha true their
- * transparency is beside them; it becomes false where there is none. */
+ * transparency is beside them; it becomes whether the file has some. */
 static int decode(const struct rf_read *read, struct rf_bytes file, struct rf_raster *raster,
                   bool *alpha, struct refocus_blob *exif, struct refocus_blob *icc)
 {
@@ -211,7 +213,7 @@ static int decode(const struct rf_read *read, struct rf_bytes file, struct rf_ra
         reader.status = rf_fail_memory(read->reason);
     } else if (run(&reader) && reader.status == REFOCUS_OK) {
         *raster = reader.raster;
-        *alpha = reader.alpha;
+        *alpha = reader.transparent;
         if (exif) {
             *exif = reader.exif;
             reader.exif.data = NULL;
@@ -266,15 +268,15 @@ static int settle_colour(struct rf_read *read, struct rf_bytes file, struct refo
 int rf_read_png(struct rf_read *read, struct rf_bytes file)
 {
     struct refocus_blob exif = {NULL, 0}, icc = {NULL, 0};
-    bool alpha = rf_wants_alpha(read);
+    const bool wanted = rf_wants_alpha(read);
+    bool alpha = wanted;
     int status;
 
     memcpy(read->info->container, "PNG", 4);
     status = decode(read, file, &read->image, &alpha, &exif, &icc);
-    if (status == REFOCUS_OK && alpha)
+    if (status == REFOCUS_OK && alpha && wanted)
         status = rf_part_alpha(read);
-    /* IHDR comes first: its colour type is byte 25 of the file. */
-    if (status == REFOCUS_OK && !read->holes.pixels && file.data[25] & PNG_COLOR_MASK_ALPHA)
+    if (status == REFOCUS_OK && alpha && !read->holes.pixels)
         rf_note(read->info, "PNG: transparency is dropped");
     if (status == REFOCUS_OK)
         status = rf_exif_take(read, (struct rf_bytes){exif.data, exif.size}, true);
