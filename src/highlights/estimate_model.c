@@ -27,17 +27,18 @@
  *
  *     g = sum of C_k / 2^(k - 1), k = 1 to 6.
  *
- * So the harmonic mean h of light / g, weighted by g, is the gain times that share or, where
- * something is lit, more. The share is taken as 2^-3.5, more than that of most lenses, so that too
- * little is added rather than too much:
+ * So by how much light grows with g, h = cov(Y, g) / var(g), is the gain times that share. The dark
+ * counts most, by the weight 1 / (Y + 0.002)^2, and what is as bright everywhere, as a wall behind
+ * white letters, not at all. The share is taken as 2^-4, so that too little is added rather than
+ * too much:
  *
- *     log2(gain) >= min(log2(h) + 3.5, 2.5),
+ *     log2(gain) >= min(log2(h) + 4, 2.5),
  *
  * by night alone: where the surroundings are dark, t^2 of it; in photos whose mean log2 of
  * luminance is above -3 nothing, and all from -4 down. This bound holds in full where the model has
- * half a stop, and not at all where it has none, as for snow in a dark photo, whose surroundings
- * are lit. It is faded out where highlights crowd, as text does, as C_5 goes from 0.15 to 0.35 of
- * C_2: their glare is not told from what lies between.
+ * half a stop, or where g explains 0.4 of the variance of light, and not at all where the model has
+ * none and g explains less than 0.2 of it, as for snow on dark rock. It is faded out where what is
+ * clipped is wide or crowded, as sky between leaves is, as C_5 goes from 0.35 to 0.55 of C_2.
  */
 #include <math.h>
 
@@ -49,7 +50,7 @@ enum { BLOCK = 32 /* cells at once, side by side for vectors */ };
 #define MOST_STOPS       4.0 /* a gain of 16 */
 #define DAY_STOPS        0.75
 #define NIGHT_STOPS      5.5
-#define GLARE_STOPS      3.5
+#define GLARE_STOPS      4.0
 #define MOST_GLARE_STOPS 2.5
 #define LEAST_CLIPPED    0.005f /* the least part of a cell that is clipped, for an estimate */
 #define ALL_LARGE        0.9f   /* where this part of what is around is clipped, nothing is added */
@@ -86,7 +87,8 @@ struct means {
     float clipped[RF_GRID_SCALES][BLOCK], unclipped[RF_GRID_SCALES][BLOCK];
     float photo[BLOCK], around[BLOCK]; /* log2 of luminance */
     float grey[BLOCK], saturation[BLOCK], plateau[BLOCK], white[BLOCK];
-    float glare[BLOCK]; /* log2 of the light around, as times g */
+    float glare[BLOCK];     /* log2 of how much light grows with g */
+    float explained[BLOCK]; /* the part of light's variance that g explains; below 0: light falls */
 };
 
 static double within(double v, double least, double most)
@@ -122,11 +124,23 @@ static void read_looks(const struct rf_light_grid *grid, const struct rf_grid_pl
     means->white[i] = rf_grid_at(grid, RF_GRID_WHITE, place) / clipped;
 }
 
-/* The harmonic mean of light / g around clipped pixels, by its weight g: dark pixels count most. */
-static float glare_at(const struct rf_light_grid *grid, const struct rf_grid_place *place)
+/* Fits light to the glare around clipped pixels by least squares. */
+static void read_glare(const struct rf_light_grid *grid, const struct rf_grid_place *place,
+                       struct means *means, int i)
 {
-    return rf_log2f((rf_grid_at(grid, RF_GRID_GLARE, place) + 1e-9f) /
-                    (rf_grid_at(grid, RF_GRID_DARK, place) + 1e-9f));
+    const double weight = (double)rf_grid_at(grid, RF_GRID_DARK, place) + 1e-9;
+    const double light = (double)rf_grid_at(grid, RF_GRID_LIGHT, place) / weight;
+    const double glare = (double)rf_grid_at(grid, RF_GRID_GLARE, place) / weight;
+    const double of_light =
+        (double)rf_grid_at(grid, RF_GRID_LIGHT_SQUARED, place) / weight - light * light;
+    const double of_glare =
+        (double)rf_grid_at(grid, RF_GRID_GLARE_SQUARED, place) / weight - glare * glare;
+    const double both =
+        (double)rf_grid_at(grid, RF_GRID_GLARE_LIGHT, place) / weight - light * glare;
+
+    means->glare[i] = rf_log2f((float)fmax(both / (fmax(of_glare, 0) + 1e-5), 1e-4));
+    means->explained[i] =
+        (float)(both * fabs(both) / ((fmax(of_glare, 0) + 1e-9) * (fmax(of_light, 0) + 1e-9)));
 }
 
 static void read_means(const struct rf_light_grid *grid, const struct rf_grid_row *row,
@@ -144,7 +158,7 @@ static void read_means(const struct rf_light_grid *grid, const struct rf_grid_ro
             if (k == 1)
                 read_looks(grid, &place, means, i);
             if (k == 3)
-                means->glare[i] = glare_at(grid, &place);
+                read_glare(grid, &place, means, i);
             if (k >= 5)
                 means->around[i] += 0.5f * rf_grid_at(grid, RF_GRID_LOG, &place);
         }
@@ -238,10 +252,11 @@ static double with_glare(const struct means *means, int i, double lost, double d
 {
     const double by_night = 1 - smoothstep(means->photo[i], -4, -3);
     const double alone =
-        1 - smoothstep(means->clipped[5][i] / (means->clipped[2][i] + 0.004f), 0.15, 0.35);
+        1 - smoothstep(means->clipped[5][i] / (means->clipped[2][i] + 0.004f), 0.35, 0.55);
     const double own = rf_log2(1 + lost);
     const double glare = fmin((double)means->glare[i] + GLARE_STOPS, MOST_GLARE_STOPS);
-    const double agrees = smoothstep((float)own, 0, 0.5);
+    const double agrees =
+        fmax(smoothstep((float)own, 0, 0.5), smoothstep(means->explained[i], 0.2, 0.4));
 
     return rf_exp2(own + agrees * dark * by_night * alone * fmax(glare - own, 0)) - 1;
 }

@@ -10,10 +10,11 @@
 static const struct {
     int first, last;
 } scales[RF_GRID_MEASURES] = {
-    [RF_GRID_CLIPPED] = {0, 6}, [RF_GRID_UNCLIPPED] = {1, 6}, [RF_GRID_LOG] = {1, 6},
-    [RF_GRID_GREY] = {1, 1},    [RF_GRID_PLATEAU] = {1, 1},   [RF_GRID_WHITE] = {1, 1},
-    [RF_GRID_RED] = {1, 4},     [RF_GRID_GREEN] = {1, 4},     [RF_GRID_BLUE] = {1, 4},
-    [RF_GRID_DARK] = {1, 3},    [RF_GRID_GLARE] = {1, 6},
+    [RF_GRID_CLIPPED] = {0, 6}, [RF_GRID_UNCLIPPED] = {1, 6},     [RF_GRID_LOG] = {1, 6},
+    [RF_GRID_GREY] = {1, 1},    [RF_GRID_PLATEAU] = {1, 1},       [RF_GRID_WHITE] = {1, 1},
+    [RF_GRID_RED] = {1, 4},     [RF_GRID_GREEN] = {1, 4},         [RF_GRID_BLUE] = {1, 4},
+    [RF_GRID_DARK] = {1, 3},    [RF_GRID_LIGHT] = {1, 3},         [RF_GRID_LIGHT_SQUARED] = {1, 3},
+    [RF_GRID_GLARE] = {1, 6},   [RF_GRID_GLARE_SQUARED] = {1, 3}, [RF_GRID_GLARE_LIGHT] = {1, 3},
 };
 
 static void lay_out(struct rf_light_grid *grid, struct rf_arena *arena)
@@ -92,13 +93,16 @@ static void set_tables(struct rf_light_grid *grid, const struct rf_transfer *lin
     t->clipped = 0;
     for (int i = 0; i < RF_CODES_OF_LIGHT; i++) {
         const int code = own->to_code[4 * i], v = part(code, 242, 254);
+        const double light = i / 4095.0, dark = 1 / ((light + 0.002) * (light + 0.002));
 
         t->linear[i] = own == linear ? (uint16_t)i : linear->to_light[code];
         t->soft[i] = (uint16_t)((v * v * (768 - 2 * v) + (1 << 15)) >> 16);
         t->plateau[i] = (uint16_t)part(code, 250, 255);
         t->white[i] = (uint16_t)part(code, 246, 255);
         t->log[i] = (uint16_t)floor((rf_log2(i / 4095.0 + 0.003) + 9) * 256 + 0.5);
-        t->dark[i] = (uint16_t)(128 / (i / 4095.0 + 0.002) + 0.5);
+        t->dark[i] = (uint16_t)(dark / 4 + 0.5);
+        t->light[i] = (uint16_t)(256 * dark * light + 0.5);
+        t->light_squared[i] = (uint16_t)(32768 * dark * light * light + 0.5);
         if (t->soft[i] == 0)
             t->clipped = i;
     }
@@ -128,7 +132,7 @@ static void add_unclipped(const struct rf_light_grid *grid, int y, int row)
         sum[i] = grid->plane[i].scale[1] + (ptrdiff_t)row * across;
     for (int cx = 0; cx < across; cx++) {
         const int end = t->first[rf_smaller(2 * cx + 2, grid->width)];
-        int light[3] = {0}, luminance = 0, log = 0, dark = 0;
+        int light[3] = {0}, luminance = 0, log = 0, dark = 0, lit = 0, squared = 0;
 
         for (; x < end; x += step) {
             int colour[3], left = 256, own;
@@ -149,10 +153,14 @@ static void add_unclipped(const struct rf_light_grid *grid, int y, int row)
             luminance += (left * own) >> 8;
             log += t->log[own];
             dark += (left * t->dark[own]) >> 8;
+            lit += (left * t->light[own]) >> 8;
+            squared += (left * t->light_squared[own]) >> 8;
         }
         sum[RF_GRID_UNCLIPPED][cx] += (float)luminance;
         sum[RF_GRID_LOG][cx] += (float)log;
         sum[RF_GRID_DARK][cx] += (float)dark;
+        sum[RF_GRID_LIGHT][cx] += (float)lit;
+        sum[RF_GRID_LIGHT_SQUARED][cx] += (float)squared;
         for (int c = 0; c < 3; c++)
             sum[RF_GRID_RED + c][cx] += (float)light[c];
     }
@@ -260,7 +268,9 @@ static void measure_rows(void *context, int item, int worker)
     divide(grid, RF_GRID_WHITE, item, 256, false);
     for (int i = RF_GRID_RED; i <= RF_GRID_BLUE; i++)
         divide(grid, (unsigned)i, item, 4095, true);
-    divide(grid, RF_GRID_DARK, item, 128, true);
+    divide(grid, RF_GRID_DARK, item, 0.25f, true);
+    divide(grid, RF_GRID_LIGHT, item, 256, true);
+    divide(grid, RF_GRID_LIGHT_SQUARED, item, 32768, true);
 }
 
 static void blur_plane(void *context, int item, int worker)
@@ -277,13 +287,16 @@ static void blur_plane(void *context, int item, int worker)
                           rf_grid_size(grid->height, k));
 }
 
-/* Weights what is not clipped, (1 - s) and (1 - s) / (Y + 0.002) of scale 1, by g and g^2: the
- * glare g = sum of C_k / 2^(k - 1) is added up from the widest scale on. */
+/* Makes the products of scale 1 with the glare g = sum of C_k / 2^(k - 1), which is added up from
+ * the widest scale on. */
 static void add_glare(const struct rf_light_grid *grid)
 {
     float *const *clipped = grid->plane[RF_GRID_CLIPPED].scale;
     float *const *glare = grid->plane[RF_GRID_GLARE].scale;
-    float *dark = grid->plane[RF_GRID_DARK].scale[1];
+    const float *dark = grid->plane[RF_GRID_DARK].scale[1];
+    const float *light = grid->plane[RF_GRID_LIGHT].scale[1];
+    float *squared = grid->plane[RF_GRID_GLARE_SQUARED].scale[1];
+    float *both = grid->plane[RF_GRID_GLARE_LIGHT].scale[1];
     const int last = grid->plane[RF_GRID_GLARE].last;
     const int cells = rf_grid_size(grid->width, 1) * rf_grid_size(grid->height, 1);
 
@@ -297,8 +310,9 @@ static void add_glare(const struct rf_light_grid *grid)
     for (int i = 0; i < cells; i++) {
         const float g = glare[1][i];
 
-        dark[i] *= g * g;
-        glare[1][i] = (1 - clipped[1][i]) * g;
+        glare[1][i] = dark[i] * g;
+        squared[i] = dark[i] * g * g;
+        both[i] = light[i] * g;
     }
 }
 
@@ -336,11 +350,11 @@ bool rf_light_grid_measure(struct rf_light_grid *grid, const struct rf_transfer 
         return false;
     grid->mean_log =
         mean_of(grid->plane[RF_GRID_LOG].scale[1], rf_grid_size(grid->width, 1) * down) - 9;
-    rf_pool_run(grid->exec->pool, blur_plane, grid, RF_GRID_GLARE);
+    rf_pool_run(grid->exec->pool, blur_plane, grid, RF_GRID_DARK);
     if (rf_cancelled(grid->exec))
         return false;
     add_glare(grid);
-    rf_pool_run(grid->exec->pool, blur_glare, grid, 2);
+    rf_pool_run(grid->exec->pool, blur_glare, grid, RF_GRID_MEASURES - RF_GRID_DARK);
     return !rf_cancelled(grid->exec);
 }
 

@@ -35,8 +35,12 @@ enum rf_grid_measure {
     RF_GRID_RED,       /* (1 - s) R, G, B */
     RF_GRID_GREEN,
     RF_GRID_BLUE,
-    RF_GRID_DARK,  /* (1 - s) g^2 / (Y + 0.002), g the glare that s would have around it */
-    RF_GRID_GLARE, /* (1 - s) g */
+    RF_GRID_DARK,  /* w = (1 - s) / (Y + 0.002)^2, by which dark pixels count most */
+    RF_GRID_LIGHT, /* w Y */
+    RF_GRID_LIGHT_SQUARED,
+    RF_GRID_GLARE, /* w g, g the glare that s would have around it */
+    RF_GRID_GLARE_SQUARED,
+    RF_GRID_GLARE_LIGHT, /* w g Y */
     RF_GRID_MEASURES
 };
 
@@ -52,9 +56,10 @@ struct rf_grid_tables {
     uint16_t soft[RF_CODES_OF_LIGHT];                              /* s of a greatest channel, Q8 */
     uint16_t plateau[RF_CODES_OF_LIGHT], white[RF_CODES_OF_LIGHT]; /* Q8 */
     uint16_t log[RF_CODES_OF_LIGHT];  /* by linear light: (log2(light + 0.003) + 9), Q8 */
-    uint16_t dark[RF_CODES_OF_LIGHT]; /* by linear light: 1 / (light + 0.002), Q7 */
-    int clipped;                      /* s is 0 of light up to this one */
-    int first[RF_GRID_SIDE + 1];      /* the first pixel of each column of cells, and the end */
+    uint16_t dark[RF_CODES_OF_LIGHT]; /* by linear light: 1 / (light + 0.002)^2, a quarter of it */
+    uint16_t light[RF_CODES_OF_LIGHT], light_squared[RF_CODES_OF_LIGHT]; /* such of w Y, Q8, Q15 */
+    int clipped;                 /* s is 0 of light up to this one */
+    int first[RF_GRID_SIDE + 1]; /* the first pixel of each column of cells, and the end */
 };
 
 struct rf_light_grid {
