@@ -306,10 +306,24 @@ static void push_yuv_band(void *context, int band, int worker)
     }
 }
 
-/* Makes chroma of rows c0 to c1 - 1 from level 1. */
-static void pull_chroma(const struct yuv_step *step, int c0, int c1)
+/* Keeps the samples of a row of chroma that are known; the pixel beyond an odd width repeats the
+ * last one. */
+static void restore_known(const struct yuv_step *step, uint16_t *out, int y)
 {
     const struct rf_level *fine = &step->pyramid->level[0], *coarse = &step->pyramid->level[1];
+    int16_t *const blur = fine->blur.at + y * fine->blur.stride;
+
+    if (fine->width % 2)
+        blur[fine->width] = blur[fine->width - 1];
+    step->exec->kernels->restore_known2(
+        out, step->chroma->smooth.at + y * step->chroma->smooth.stride, blur, coarse->width);
+}
+
+/* Makes chroma of rows c0 to c1 - 1 from level 1, before level 0 is pulled: it still tells what is
+ * known. */
+static void pull_chroma(const struct yuv_step *step, int c0, int c1)
+{
+    const struct rf_level *coarse = &step->pyramid->level[1];
     const struct rf_inpaint_chroma *chroma = step->chroma;
 
     for (int y = c0; y < c1; y++) {
@@ -319,10 +333,7 @@ static void pull_chroma(const struct yuv_step *step, int c0, int c1)
         step->exec->kernels->join2(out, coarse->light.channel[1] + at,
                                    coarse->light.channel[2] + at, coarse->width);
         if (!chroma->size.down) /* known samples have rows of their own */
-            step->exec->kernels->restore_known2(out, chroma->smooth.at + y * chroma->smooth.stride,
-                                                chroma->blur.at + y * chroma->blur.stride,
-                                                fine->blur.at + y * fine->blur.stride,
-                                                coarse->width);
+            restore_known(step, out, y);
     }
     rf_extend_chroma(step->view, &chroma->size, chroma->background.at, chroma->background.stride,
                      c0, c1);
@@ -334,10 +345,10 @@ static void pull_yuv_band(void *context, int band, int worker)
     const int y0 = rf_band_start(band), y1 = rf_band_end(step->view, band);
     const int down = step->chroma->size.down;
 
+    pull_chroma(step, y0 >> down, rf_chroma_end(down, y1));
     for (int y = y0; y < y1; y++)
         pull_row(step->exec, step->pyramid, 0, 1, rf_scratch(step->exec, worker), y);
     extend_background(step->view, &step->pyramid->level[0], 1, y0, y1);
-    pull_chroma(step, y0 >> down, rf_chroma_end(down, y1));
 }
 
 /* A picture of one pixel has no pyramid, and nothing is unknown. */

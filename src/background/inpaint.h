@@ -55,7 +55,6 @@ static_assert((int)REFOCUS_MAX_BLUR_RADIUS * 64 >> RF_MAX_UNIT < INT16_MAX, "qua
 /* Chroma that is read and written beside the pyramid, for a photo of Y, U and V. */
 struct rf_inpaint_chroma {
     struct rf_chroma_size size;
-    struct rf_blur_q8 blur;          /* read: of each pixel */
     struct rf_chroma_q12 smooth;     /* read */
     struct rf_chroma_q12 background; /* written, with its border */
 };

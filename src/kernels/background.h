@@ -89,13 +89,13 @@ typedef void rf_push1_fn(uint16_t *out, int16_t *out_blur, const uint16_t *upper
 
 /* split2: n means of two rows of pairs, half up, the firsts and the seconds apart.
  * join2: pairs of them again.
- * restore_known2: n pairs become `own` where both of the two pixels have the same blur in front
- * and in the background.
+ * restore_known2: n pairs become `own` where neither of the two pixels of the background is
+ * unknown.
  */
 typedef void rf_split2_fn(uint16_t *first, uint16_t *second, const uint16_t *upper,
                           const uint16_t *lower, int n);
 typedef void rf_join2_fn(uint16_t *out, const uint16_t *first, const uint16_t *second, int n);
-typedef void rf_restore_known2_fn(uint16_t *out, const uint16_t *own, const int16_t *blur,
+typedef void rf_restore_known2_fn(uint16_t *out, const uint16_t *own,
                                   const int16_t *background_blur, int n);
 
 /* products: the sum of the products of n x rows elements of two rectangles whose rows are `stride`

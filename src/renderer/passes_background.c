@@ -169,10 +169,9 @@ void rf_pass_inpaint(struct rf_frame *f, int levels)
     rf_plane_read(&r->lifetimes, RF_PLANE_PYRAMID);
     rf_plane_read(&r->lifetimes, RF_PLANE_BACKGROUND_BLUR);
     if (r->yuv->on)
-        rf_background_inpaint_yuv(&r->exec, &r->view, &r->pyramid,
-                                  &(struct rf_inpaint_chroma){r->chroma.size, r->blur,
-                                                              r->chroma.smooth,
-                                                              r->chroma.background});
+        rf_background_inpaint_yuv(
+            &r->exec, &r->view, &r->pyramid,
+            &(struct rf_inpaint_chroma){r->chroma.size, r->chroma.smooth, r->chroma.background});
     else if (f->textured)
         pull_textured(f);
     else

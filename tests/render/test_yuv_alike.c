@@ -218,6 +218,53 @@ static void no_tint(void **state)
     pair_free(&pair);
 }
 
+/* The red of half-covered pixels of the wall beside a figure counts the same, whether the
+ * lowest bit of the wall's blur, which the inpainted background has, is set or not. */
+static void lowest_bit(void **state)
+{
+    enum { W = 96, H = 64, K = 14, WALL = 9000, LEFT = 31, RIGHT = 64, WITHIN = 1 };
+    struct refocus_settings settings = refocus_settings_default(0.2f, K);
+
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        struct yuv_picture out[2];
+
+        for (int odd = 0; odd < 2; odd++) { /* a 256th of a pixel of blur is 18 of disparity */
+            struct picture p =
+                picture_flat(W, H, (const uint8_t[3]){60, 60, 60}, (uint16_t)(WALL + 18 * odd));
+            struct yuv_picture in = yuv_make(yuv_formats[i], W, H, 0);
+            struct pair pair;
+
+            for (int at = 0; at < W * H; at++) {
+                const int x = at % W;
+
+                if (x >= LEFT - 1 && x <= RIGHT)
+                    memcpy(p.rgb + 3 * at, (const uint8_t[3]){155, 75, 50}, 3);
+                if (x < LEFT || x >= RIGHT)
+                    continue;
+                memcpy(p.rgb + 3 * at, (const uint8_t[3]){250, 90, 40}, 3);
+                p.disparity[at] = 65535;
+            }
+            pair = pair_of(&p, K);
+            out[odd] = yuv_make(yuv_formats[i], W, H, 0);
+            yuv_from_picture(&in, &p);
+            render_yuv(&pair, &settings, &in, &out[odd]);
+            yuv_free(&in);
+            pair_free(&pair);
+        }
+        for (int at = 0; at < 3 * W * H; at++) {
+            const int c = at % 3, x = at / 3 % W, y = at / 3 / W;
+            const int even = *yuv_sample(&out[0].image, c, x, y);
+
+            if (abs(*yuv_sample(&out[1].image, c, x, y) - even) > WITHIN)
+                fail_msg("format %d: %c of (%d, %d) is %d, or %d", (int)yuv_formats[i], "YUV"[c], x,
+                         y, even, *yuv_sample(&out[1].image, c, x, y));
+        }
+        yuv_free(&out[0]);
+        yuv_free(&out[1]);
+    }
+}
+
 /* Half-covered pixels of an antialiased red beam in focus are told by their luminance: the grey
  * wall beside them has no halo, nor is it tinted; and a region is that part of the whole. */
 static void no_halo(void **state)
@@ -288,7 +335,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(grey_texture),
                                        cmocka_unit_test(coloured_lamps), cmocka_unit_test(no_tint),
-                                       cmocka_unit_test(no_halo)};
+                                       cmocka_unit_test(lowest_bit), cmocka_unit_test(no_halo)};
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
