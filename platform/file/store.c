@@ -243,12 +243,15 @@ int rf_store_close_memory(struct rf_store *store, int status, struct refocus_blo
 int rf_store_close(struct rf_store *store, int status, struct refocus_reason *reason)
 {
     const bool good = status == REFOCUS_OK;
+    int kept;
 
     errno = 0;
     if (good && rf_store_goes_on(store) && fflush(store->stream) != 0)
         store->error = errno ? errno : EIO;
     if (good && store->error == 0 && !store->unsynced)
         store->error = sync_file(fileno(store->stream));
+    /* Until it has its name it is among the open files, where a process that is to end finds it. */
+    kept = fcntl(fileno(store->stream), F_DUPFD_CLOEXEC, 0);
     errno = 0;
     if (fclose(store->stream) != 0 && store->error == 0)
         store->error = errno ? errno : EIO;
@@ -258,6 +261,8 @@ int rf_store_close(struct rf_store *store, int status, struct refocus_reason *re
         unlink(store->temporary);
     else if (!store->unsynced)
         sync_folder(store->path);
+    if (kept >= 0)
+        close(kept);
     if (good && store->error == ECANCELED)
         status = rf_fail(reason, REFOCUS_ERR_CANCELLED, "cancelled");
     else if (good && store->error != 0)

@@ -96,6 +96,51 @@ class Saving(Case):
             self.assertEqual(self.listing(), before, command)
         os.remove('tall.ppm')
 
+    @unittest.skipIf('REFOCUS_SLOW' in os.environ, 'sanitizers come before what is preloaded')
+    def test_a_signal_while_saving_hangs(self):
+        """In a library, on a slow disk: it is not waited for, and nothing of the file stays."""
+        self.succeeds('depth', 'depth.pgm', '-o', 'd.png')  # what is there stays as it was
+        with open('d.png', 'rb') as file:
+            old = file.read()
+        before = self.listing()
+        still = ('photo.ppm', '--depth', 'depth.pgm', '--threads', '1')
+        brief = (*still, '--seconds', '0.1', '-o')
+        live = ('live', '--json', '--camera', 'file:photo.ppm', '--depth', 'file:depth.pgm',
+                '--loop', '--no-commands', '--out', 'l%03d.')
+        endings = [ending for ending in ('ppm', 'png', 'jpg', 'tif', 'exr', 'heic')
+                   if self.run_it('render', *still, '-o', 'x.' + ending).returncode == 0]
+        for name in set(self.listing()) - set(before):
+            os.remove(name)
+        hangs = [(at, 'out.' + ending, ('render', *still, '-o', 'out.' + ending))
+                 for at in ('fsync', 'rename') for ending in endings]
+        hangs += [(at, name, ('pull', *brief, name)) for at in ('fsync', 'rename')
+                  for name in ('a.y4m', 'f%03d.ppm', 'a.apng') if (at, name) != ('fsync', 'f%03d.ppm')]
+        hangs += [('fsync', 'd.png', ('depth', 'depth.pgm', '-o', 'd.png')),
+                  ('rename', 'sheet.png', ('sheet', *still, '-o', 'sheet.png'))]
+        if 'jpg' in endings:
+            hangs += [('encode', 'out.jpg', ('render', *still, '-o', 'out.jpg')),
+                      ('encode', None, (*live[:-1], live[-1] + 'jpg'))]
+        hangs += [('rename', None, (*live[:-1], live[-1] + 'ppm'))]
+        for at, name, command in hangs:
+            for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+                env = {**os.environ, 'LD_PRELOAD': os.environ['REFOCUS_SIGNAL_IN_SAVE'],
+                       'REFOCUS_STALL': at, 'REFOCUS_SIGNAL': str(int(number))}
+                process = self.start(*command, env=env)
+                out, error = process.communicate(timeout=60)
+                by_signal = -number if number == signal.SIGHUP else None
+                self.assertEqual(process.returncode, by_signal or (1 if name else 0), (at, command))
+                if name:
+                    line = 'refocus: %s: interrupted; nothing was written\n' % name
+                    self.assertEqual(error, line, (at, command))
+                else:
+                    report = json.loads(out)
+                    self.assertEqual((error, report['frames_out']), ('', 0), command)
+                    self.assertGreater(report['sink_dropped'], 0)
+                self.assertEqual(self.listing(), before, (at, command))
+        with open('d.png', 'rb') as file:
+            self.assertEqual(file.read(), old)
+        os.remove('d.png')
+
     def test_first_signal_of_two(self):
         """Ctrl-C ends with status 1, as ever; a second one, of any kind, at once."""
         before = self.listing()
@@ -129,8 +174,9 @@ class Saving(Case):
     def test_waiting_for_an_encoder(self):
         """That does not read, and has made its file: both go."""
         before = self.listing()
-        for first, second in ((signal.SIGHUP, None), (signal.SIGINT, signal.SIGINT),
-                              (signal.SIGTERM, signal.SIGQUIT)):
+        for first, second, status in ((signal.SIGHUP, None, -signal.SIGHUP),
+                                      (signal.SIGINT, None, 1),
+                                      (signal.SIGINT, signal.SIGTERM, -signal.SIGTERM)):
             os.mkdir('bin')
             with open('bin/ffmpeg', 'w') as file:
                 file.write(STUCK)
@@ -143,11 +189,12 @@ class Saving(Case):
             self.assertIsNone(process.poll())
             with open('process') as file:
                 encoder = int(file.read())
+            process.send_signal(signal.SIGSTOP)  # so that the second comes with the first
             process.send_signal(first)
             if second:
-                time.sleep(0.1)
                 process.send_signal(second)
-            self.ended(process, second or first)
+            process.send_signal(signal.SIGCONT)
+            self.ended(process, -status)
             for _ in range(500):  # until its new parent has taken it up
                 try:
                     with open('/proc/%d/stat' % encoder) as file:

@@ -218,11 +218,13 @@ int depth_run(int argc, char **argv, const char *called)
         settings.depth.edges = EDGES_AS_GIVEN;
     settings.depth.full |= settings.strokes != NULL;
     report_progress("reading", 0);
+    report_cut(settings.output ? settings.output : files[0]);
     status = read_input(&settings, files, &input);
     if (status == EXIT_DONE && settings.strokes) {
         report_progress("painting", 0.4);
         status = painted_apply(&input, settings.strokes);
     }
+    report_cut(NULL);
     if (status == EXIT_DONE) {
         report_progress("writing", 0.7);
         if (settings.stack.photo)

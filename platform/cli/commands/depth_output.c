@@ -173,7 +173,7 @@ static int write_photo(const struct depth_command_settings *settings, const stru
         depth.confidence = input->confidence;
         depth.confidence_stride = input->width;
     }
-    interrupt_hold(true);
+    report_cut(settings->output);
     if (status == EXIT_DONE && settings->stack.on)
         status = stacked_write_temporary(input, settings->output, &temporary);
     if (status == EXIT_DONE)
@@ -182,14 +182,16 @@ static int write_photo(const struct depth_command_settings *settings, const stru
                      : refocus_photo_write_depth(settings->output,
                                                  temporary ? temporary : input->photo_name, &depth,
                                                  &reason);
-    if (temporary)
+    if (temporary) {
         remove(temporary);
+        interrupt_clean_up(NULL, NULL);
+    }
     free(temporary);
-    interrupt_hold(false);
+    report_cut(NULL);
     if (status > 0) /* an exit code: the failure has been reported */
         return status;
     if (status == REFOCUS_ERR_CANCELLED)
-        return report_failure(EXIT_FAILED, settings->output, "interrupted; nothing was written");
+        return report_failure(EXIT_FAILED, settings->output, REPORT_INTERRUPTED);
     if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, settings->output, "%s",
                               reason.text[0] ? reason.text : refocus_strerror(status));

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "commands/depth_stack.h"
+#include "line/interrupt.h"
 #include "line/report.h"
 
 const struct option stack_options[] = {
@@ -415,11 +416,21 @@ int stacked_write_photo(const struct input *input, const char *path)
     return output_write_image(path, input->photo->image, &keeps);
 }
 
+static void remove_file(void *path)
+{
+    remove(path);
+}
+
 int stacked_write_temporary(const struct input *input, const char *path, char **temporary)
 {
     struct refocus_reason reason = {""};
-    const int status = refocus_file_temporary(path, temporary, &reason);
+    int status;
 
+    interrupt_hold(true);
+    status = refocus_file_temporary(path, temporary, &reason);
+    if (status == REFOCUS_OK)
+        interrupt_clean_up(remove_file, *temporary);
+    interrupt_hold(false);
     return status == REFOCUS_OK
                ? stacked_write_photo(input, *temporary)
                : report_failure(EXIT_FAILED, path, "%s",

@@ -21,8 +21,7 @@ int shots_fail(const struct shots *shots, int status, const struct refocus_reaso
     if (status == REFOCUS_ERR_CANCELLED && shots->ends_quietly)
         return EXIT_FAILED;
     if (status == REFOCUS_ERR_CANCELLED)
-        return report_failure(EXIT_FAILED, shots->settings->camera,
-                              "interrupted; nothing was written");
+        return report_failure(EXIT_FAILED, shots->settings->camera, REPORT_INTERRUPTED);
     return report_failure(input_exit_code(status), shots->settings->camera, "%s",
                           reason->text[0] ? reason->text : refocus_strerror(status));
 }

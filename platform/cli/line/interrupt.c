@@ -1,21 +1,35 @@
 /* interrupt.c: Ctrl-C ends the work early. refocus_cancel() may be called from any thread, but
  * not from a signal handler, so signals are blocked everywhere and a thread of their own waits
  * for them. */
+#include <dirent.h>
+#include <fcntl.h>
+#include <poll.h>
 #include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <sys/signalfd.h>
 #include <time.h>
+#include <unistd.h>
 #include "line/interrupt.h"
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-static struct refocus_renderer *watched; /* these seven under the lock */
+static struct refocus_renderer *watched; /* these nine under the lock */
 static bool came, held;
-static void (*clean_up)(void *), (*end_work)(void *);
-static void *clean_up_of, *end_work_of;
+static const char *cut;
+static void (*end_work)(void *);
+static void *end_work_of;
+static struct {
+    void (*function)(void *);
+    void *of;
+} clean_ups[4];
+static int clean_up_count;
 static pthread_t thread;
 static bool started;
+static atomic_bool late;
 static atomic_int ending; /* the signal that is to end the process, or 0 */
 
 /* Signals that end a process, but for those that the caller has it ignore, as nohup and shells do
@@ -96,15 +110,73 @@ static void die_of(int number)
     pthread_sigmask(SIG_UNBLOCK, &set, NULL);
 }
 
-static void end_process(int number)
+/* Remove the files of this process that are open to be written and have their temporary names
+ * (platform/file/store.c) still; false: which those are cannot be told. */
+static bool remove_temporaries(void)
+{
+    enum { LONGEST = 4096 };
+    DIR *const files = opendir("/proc/self/fd");
+    char begin[32], name[LONGEST];
+
+    if (!files)
+        return false;
+    snprintf(begin, sizeof begin, "/.refocus-%u-", (unsigned)getpid());
+    for (const struct dirent *entry; (entry = readdir(files));) {
+        const int mode = fcntl(atoi(entry->d_name), F_GETFL);
+        const ssize_t length = readlinkat(dirfd(files), entry->d_name, name, LONGEST - 1);
+        const char *last;
+
+        if (length < 0 || mode < 0 || (mode & O_ACCMODE) == O_RDONLY)
+            continue;
+        name[length] = '\0';
+        last = strrchr(name, '/');
+        if (last && strncmp(last, begin, strlen(begin)) == 0)
+            unlink(name);
+    }
+    closedir(files);
+    return true;
+}
+
+/* The line of work that is cut. It is printed past the stream, whose lock the work may
+ * have, and left out where standard error would make us wait. */
+static void print_cut(void)
+{
+    struct pollfd error = {.fd = STDERR_FILENO, .events = POLLOUT};
+
+    if (poll(&error, 1, 0) == 1 && error.revents & POLLOUT)
+        (void)!write(STDERR_FILENO, cut, strlen(cut));
+}
+
+static void remove_all(void)
+{
+    for (int i = 0; i < clean_up_count; i++)
+        clean_ups[i].function(clean_ups[i].of);
+}
+
+/* With the status that the work would end with where work is cut, else by the signal. Does nothing
+ * while signals are held back. */
+static void end_process(int number, bool by_signal)
 {
     pthread_mutex_lock(&lock);
-    if (!held) {
-        if (clean_up)
-            clean_up(clean_up_of);
+    if (!held && remove_temporaries()) {
+        remove_all();
+        if (cut && !by_signal)
+            print_cut();
+        if (cut && !by_signal && atomic_load(&ending) == 0)
+            _exit(EXIT_FAILURE);
         die_of(number);
     }
     pthread_mutex_unlock(&lock);
+}
+
+static bool is_cut(void)
+{
+    bool result;
+
+    pthread_mutex_lock(&lock);
+    result = cut != NULL;
+    pthread_mutex_unlock(&lock);
+    return result;
 }
 
 static bool ends_its_own_work(void)
@@ -117,30 +189,48 @@ static bool ends_its_own_work(void)
     return result;
 }
 
+static double clock_ms(void)
+{
+    struct timespec now;
+
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+}
+
 static void *wait_for_signals(void *argument)
 {
-    enum { PATIENCE = 200 };
+    enum { PATIENCE_MS = 2000 };
     const struct timespec pause = {0, 10000000};
     sigset_t set;
-    int number, first;
+    int first, second = 0;
+    double since;
 
     choose_signals(&set);
     if (sigwait(&set, &first) != 0)
         return argument;
+    since = clock_ms();
     /* Ctrl-C and SIGTERM end the work, with the status of one that was not done. */
     if (first != SIGINT && first != SIGTERM)
         atomic_store(&ending, first);
     /* A cancel has no effect on calls that have not begun: repeat it until the renderer
-     * is given up. A second signal ends the process when nothing is being written; so
+     * is given up. Work that asks nobody is cut soon. A second signal ends the process at once; so
      * does the first one after two seconds in which the work has not ended, as it waits for a
      * pipe: of a command that ends its own work, or of signals that are not asked to wait. */
-    for (int waited = 0;; waited++) {
+    for (;;) {
+        double waited;
+        int number;
+
         cancel();
         number = sigtimedwait(&set, NULL, &pause);
-        if (number > 0)
-            end_process(number);
-        else if (waited >= PATIENCE && (atomic_load(&ending) != 0 || ends_its_own_work()))
-            end_process(first);
+        waited = clock_ms() - since;
+        second = number > 0 ? number : second;
+        atomic_store(&late, waited >= INTERRUPT_SOON_MS);
+        if (second > 0)
+            end_process(second, true);
+        else if (waited >= INTERRUPT_SOON_MS && is_cut())
+            end_process(first, false);
+        else if (waited >= PATIENCE_MS && (atomic_load(&ending) != 0 || ends_its_own_work()))
+            end_process(first, true);
     }
 }
 
@@ -254,6 +344,22 @@ bool interrupt_came(void)
     return result;
 }
 
+bool interrupt_is_late(void)
+{
+    return atomic_load(&late);
+}
+
+void interrupt_leave(int status)
+{
+    fflush(stdout);
+    pthread_mutex_lock(&lock);
+    remove_temporaries();
+    remove_all();
+    if (atomic_load(&ending) != 0)
+        die_of(atomic_load(&ending));
+    _exit(status);
+}
+
 int interrupt_cancels(void *unused)
 {
     (void)unused;
@@ -267,10 +373,21 @@ void interrupt_hold(bool hold)
     pthread_mutex_unlock(&lock);
 }
 
+void interrupt_cut(const char *line)
+{
+    pthread_mutex_lock(&lock);
+    cut = line;
+    pthread_mutex_unlock(&lock);
+}
+
 void interrupt_clean_up(void (*function)(void *), void *of)
 {
     pthread_mutex_lock(&lock);
-    clean_up = function;
-    clean_up_of = of;
+    if (!function && clean_up_count > 0) {
+        clean_up_count--;
+    } else if (function && clean_up_count < (int)(sizeof clean_ups / sizeof *clean_ups)) {
+        clean_ups[clean_up_count].function = function;
+        clean_ups[clean_up_count++].of = of;
+    }
     pthread_mutex_unlock(&lock);
 }

@@ -40,11 +40,25 @@ int interrupt_cancels(void *unused);
 /* Whether it will end the process: a reader that has gone need not be told anything. */
 bool interrupt_ends(void);
 
-/* Hold signals back while a file is written, which none shall cut short. */
+/* Whether INTERRUPT_SOON_MS have gone by since one. interrupt_leave() then ends the process with a
+ * status, or by the signal, and leaves threads that are still at work behind, without what they
+ * have written in part. It flushes standard output, and does not return. */
+enum { INTERRUPT_SOON_MS = 100 };
+bool interrupt_is_late(void);
+void interrupt_leave(int status);
+
+/* Hold signals back for a moment: while a file has a name that interrupt_clean_up() does not know
+ * yet. */
 void interrupt_hold(bool hold);
 
-/* Set a function that is called, in another thread, before a signal ends the process at once; not
- * while a file is held. NULL: nothing. */
+/* Work that asks for no signal, such as that of other libraries, and that leaves nothing but
+ * temporary files of refocus_image_write() and what interrupt_clean_up() removes: where it has not
+ * ended INTERRUPT_SOON_MS after a signal the process ends, with this line and status 1, or by the
+ * signal. The line stays until this is called with NULL. report_cut() makes the line. */
+void interrupt_cut(const char *line);
+
+/* Add a function, the fourth at the most, that is called, in another thread, before a signal ends
+ * the process at once; not while signals are held. NULL: the last one is taken away. */
 void interrupt_clean_up(void (*function)(void *), void *of);
 
 #endif

@@ -55,20 +55,41 @@ static void keep_line(const char *what, const char *why, va_list list)
     report_clean(kept, kept_size, line);
 }
 
+/* Returns the length of the line. */
+static int compose(char *line, size_t size, const char *what, const char *text)
+{
+    const bool other = about && strcmp(about, what) != 0;
+    char of[LINE_LENGTH] = "", name[LINE_LENGTH], why[LINE_LENGTH];
+
+    if (other)
+        report_clean(of, sizeof of, about);
+    report_clean(name, sizeof name, what);
+    report_clean(why, sizeof why, report_without_name(what, text));
+    return snprintf(line, size, "refocus: %s%s%s: %s\n", of, other ? ": " : "", name, why);
+}
+
 static void print_line(const char *what, const char *why, va_list list)
 {
-    char text[LINE_LENGTH], line[LINE_LENGTH], name[LINE_LENGTH];
+    char text[LINE_LENGTH], line[4 * LINE_LENGTH];
 
     vsnprintf(text, sizeof text, why, list);
-    report_clean(line, sizeof line, report_without_name(what, text));
-    report_clean(name, sizeof name, what);
+    compose(line, sizeof line, what, text);
     report_progress_end();
-    if (about && strcmp(about, what) != 0) {
-        report_clean(text, sizeof text, about);
-        fprintf(stderr, "refocus: %s: %s: %s\n", text, name, line);
-    } else {
-        fprintf(stderr, "refocus: %s: %s\n", name, line);
-    }
+    fputs(line, stderr);
+}
+
+void report_cut(const char *what)
+{
+    static char line[4 * LINE_LENGTH];
+    int begin = 0;
+
+    interrupt_cut(NULL);
+    if (!what)
+        return;
+    if (bar_shown || (about && report_is_watched()))
+        begin = snprintf(line, sizeof line, "\r\033[K");
+    compose(line + begin, sizeof line - (size_t)begin, what, REPORT_INTERRUPTED);
+    interrupt_cut(line);
 }
 
 void report_about(const char *name)

@@ -17,6 +17,12 @@ __attribute__((format(printf, 3, 4)))
 #endif
 int report_failure(int exit_code, const char *what, const char *why, ...);
 
+/* The words for work that a signal has ended. Between report_cut() of what it is for and of NULL
+ * the process may end with them at any time: see interrupt_cut(). One thread of the process calls
+ * it. */
+#define REPORT_INTERRUPTED "interrupted; nothing was written"
+void report_cut(const char *what);
+
 /* Report work that is done, but not quite as it was asked for. */
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))

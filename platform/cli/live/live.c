@@ -1,6 +1,10 @@
 /* live.c: the command refocus live: cameras are opened, the threads run, and the report is made. */
+#define _GNU_SOURCE /* pthread_tryjoin_np() */
+#include <errno.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 #include "commands/commands.h"
 #include "line/interrupt.h"
 #include "line/report.h"
@@ -90,7 +94,9 @@ static int open_all(struct live *live)
         status = live_look_place(live, live->mode.width, live->mode.height);
     if (status != EXIT_DONE)
         return status;
+    report_cut(settings->out); /* a pipe is opened once somebody reads it */
     status = refocus_sink_open(&live->sink, settings->out, &reason);
+    report_cut(NULL);
     if (status != REFOCUS_OK)
         return report_failure(input_exit_code(status), settings->out, "%s", reason.text);
     refocus_sink_set_mode(live->sink, &live->mode);
@@ -112,8 +118,36 @@ static uint32_t find_yuv_formats(struct live *live)
     return formats;
 }
 
-/* The threads, and this one renders; then all is over. */
-static void run_threads(struct live *live)
+/* False: a signal came, and the thread goes on nevertheless, in a library or as nobody reads. */
+static bool join(pthread_t thread)
+{
+    const struct timespec pause = {0, 2000000};
+
+    while (pthread_tryjoin_np(thread, NULL) == EBUSY) {
+        if (interrupt_is_late())
+            return false;
+        nanosleep(&pause, NULL);
+    }
+    return true;
+}
+
+/* Counts the frames that the output thread, which is left behind, does not write any more. */
+static void drop_rendered(struct live *live)
+{
+    bool ended = false;
+
+    live->sink_dropped++; /* the one that it is at */
+    while (!ended) {
+        struct live_picture *const picture = live_queue_take(&live->rendered, &ended);
+
+        live->sink_dropped += picture != NULL;
+        if (picture)
+            live_queue_return(&live->rendered, picture);
+    }
+}
+
+/* The threads, and this one renders; then all is over. False: threads are left behind. */
+static bool run_threads(struct live *live)
 {
     enum { CAPTURE, DEPTH, ESTIMATE, OUTPUT, COMMANDS, THREADS };
     const struct live_settings *settings = live->settings;
@@ -128,7 +162,7 @@ static void run_threads(struct live *live)
                                   [OUTPUT] = true,
                                   [COMMANDS] = !settings->no_commands || live->command_fd >= 0};
     pthread_t thread[THREADS];
-    bool running[THREADS] = {false};
+    bool running[THREADS] = {false}, left = false;
 
     for (int i = 0; i < THREADS; i++) {
         if (!wanted[i])
@@ -146,15 +180,18 @@ static void run_threads(struct live *live)
     /* Pictures that are rendered already are still written, unless the sink failed or a signal
      * came. */
     if (running[OUTPUT])
-        pthread_join(thread[OUTPUT], NULL);
+        left = !join(thread[OUTPUT]);
     live_stop(live);
     live_depths_end(&live->depths, false);
     live_queue_close(&live->captured);
     live_queue_close(&live->rendered);
     live_queue_close(&live->to_estimate);
+    if (left)
+        drop_rendered(live);
     for (int i = 0; i < THREADS; i++)
         if (running[i] && i != OUTPUT)
-            pthread_join(thread[i], NULL);
+            left |= !join(thread[i]);
+    return !left;
 }
 
 /* A stream without frames has its header all the same, if the size of a frame is known. */
@@ -179,20 +216,21 @@ static void stop_live(void *live)
 static int run_live(struct live *live)
 {
     struct refocus_reason reason = {""};
+    bool whole = true;
     int status;
 
     interrupt_call(stop_live, live);
     status = open_all(live);
     if (status == EXIT_DONE) {
         live->yuv_formats = find_yuv_formats(live);
-        run_threads(live);
+        whole = run_threads(live);
         status = live->exit_code;
         if (status != EXIT_DONE && live->what[0])
             status = report_failure(status, live->what, "%s", live->why);
-        if (status == EXIT_DONE)
+        if (status == EXIT_DONE && whole)
             begin_without_frames(live);
     }
-    if (refocus_sink_close(&live->sink, &reason) != REFOCUS_OK && status == EXIT_DONE) {
+    if (whole && refocus_sink_close(&live->sink, &reason) != REFOCUS_OK && status == EXIT_DONE) {
         live_note_failure(live, EXIT_FAILED, live->settings->out, reason.text);
         status = report_failure(EXIT_FAILED, live->what, "%s", live->why);
     }
@@ -200,6 +238,8 @@ static int run_live(struct live *live)
         status = live_report(live);
     else if (live->settings->engine.json && live->capture.frames > 0)
         live_report(live); /* The frames until then count all the same. */
+    if (!whole)
+        interrupt_leave(status);
     interrupt_call(NULL, NULL);
     live_sources_close(live);
     live_commands_close(live);

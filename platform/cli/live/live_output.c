@@ -98,9 +98,7 @@ void *live_output_thread(void *argument)
             live_queue_return(&live->rendered, picture);
             continue;
         }
-        interrupt_hold(!live_output_is_stream(live));
         go_on = write_picture(live, picture, &last);
-        interrupt_hold(false);
         live_times_add(&live->output.times, (double)(live_now_ns() - begin) / 1e6);
         live_queue_return(&live->rendered, picture);
         if (most > 0 && (double)atomic_load(&live->frames_out) >= most)

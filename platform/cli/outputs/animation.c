@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <refocus/platform/file.h>
 #include <refocus/platform/sink.h>
@@ -22,6 +23,7 @@ struct animation {
     char path[PATH_MAX];
     char *temporary; /* NULL: none yet */
     int frames;      /* written */
+    ino_t old;       /* the file that has the name of the next one already, or 0 */
     long process;    /* process number of the encoder, or -1 */
     struct refocus_sink *sink;
     struct apng *apng;
@@ -88,6 +90,14 @@ static int lost(const struct animation *a, const struct refocus_reason *reason)
     return report_failure(EXIT_FAILED, a->path, "%s", reason->text);
 }
 
+/* Returns the number of the file, or 0 where there is none. */
+static ino_t file_at(const char *name)
+{
+    struct stat file;
+
+    return lstat(name, &file) == 0 ? file.st_ino : 0;
+}
+
 static void take_away(const struct animation *a)
 {
     char name[PATH_MAX];
@@ -100,6 +110,9 @@ static void take_away(const struct animation *a)
     for (int i = 0; i < a->frames; i++)
         if (frame_name(a, i, name))
             unlink(name);
+    /* One that has just come into its place may not be counted yet. */
+    if (frame_name(a, a->frames, name) && file_at(name) != a->old)
+        unlink(name);
 }
 
 static int begin(struct animation *a, int width, int height, double fps, int frames,
@@ -138,6 +151,7 @@ static void abandon(void *of)
 
     if (a->process > 0)
         kill((pid_t)a->process, SIGKILL); /* before it makes the file once more */
+    apng_take_away(a->apng);
     take_away(a);
 }
 
@@ -171,6 +185,7 @@ static int write_picture(struct animation *a, const struct refocus_image *image,
         snprintf(reason->text, sizeof reason->text, "the name is too long; give a shorter one");
         return REFOCUS_ERR_ARGUMENT;
     }
+    a->old = file_at(name);
     options.cancelled = interrupt_cancels;
     return refocus_image_write(name, image, &options, reason);
 }
@@ -178,11 +193,9 @@ static int write_picture(struct animation *a, const struct refocus_image *image,
 int animation_write(struct animation *a, const struct refocus_image *image)
 {
     struct refocus_reason reason = {{0}};
-    /* Pictures have temporary files of their own; an encoder may make us wait. */
-    const bool hold = a->kind == KIND_PICTURES || a->kind == KIND_APNG;
     int status = REFOCUS_OK;
 
-    interrupt_hold(hold);
+    report_cut(a->path);
     switch (a->kind) {
     case KIND_PICTURES:
         status = write_picture(a, image, &reason);
@@ -200,9 +213,9 @@ int animation_write(struct animation *a, const struct refocus_image *image)
         break;
     }
     a->frames += status == REFOCUS_OK;
-    interrupt_hold(false);
+    report_cut(NULL);
     if (status == REFOCUS_ERR_CANCELLED)
-        return report_failure(EXIT_FAILED, a->path, "interrupted; nothing was written");
+        return report_failure(EXIT_FAILED, a->path, REPORT_INTERRUPTED);
     return status == REFOCUS_OK ? EXIT_DONE : lost(a, &reason);
 }
 
@@ -210,27 +223,31 @@ int animation_close(struct animation *a, bool keep)
 {
     struct refocus_reason reason = {{0}};
     int status = REFOCUS_OK, result = EXIT_DONE;
+    struct apng *apng;
 
     if (!a)
         return EXIT_DONE;
+    apng = a->apng;
+    if (keep)
+        report_cut(a->path);
+    interrupt_hold(true);
+    a->apng = NULL; /* No frame of it is on its way any more. */
+    interrupt_hold(false);
     if (a->sink)
         status = refocus_sink_close(&a->sink, &reason);
-    else if (a->apng)
-        status = apng_close(a->apng, &reason);
+    else if (apng)
+        status = apng_close(apng, &reason);
     else if (a->encoder)
         status = encoder_close(a->encoder, keep, &reason);
-    interrupt_hold(true);
+    a->process = -1;
+    if (keep && status == REFOCUS_OK && a->kind != KIND_PICTURES)
+        status = refocus_file_move(a->temporary, a->path, &reason);
+    if (!keep || status != REFOCUS_OK)
+        take_away(a);
+    report_cut(NULL);
     interrupt_clean_up(NULL, NULL);
-    if (status != REFOCUS_OK && keep)
+    if (keep && status != REFOCUS_OK)
         result = lost(a, &reason);
-    if (!keep || status != REFOCUS_OK) {
-        take_away(a);
-    } else if (a->kind != KIND_PICTURES &&
-               refocus_file_move(a->temporary, a->path, &reason) != REFOCUS_OK) {
-        result = lost(a, &reason);
-        take_away(a);
-    }
-    interrupt_hold(false);
     free(a->temporary);
     free(a);
     return result;

@@ -19,6 +19,7 @@ struct apng {
     int width, height, frames, written;
     uint16_t delay[2]; /* seconds of a frame: numerator, denominator */
     uint32_t sequence;
+    char *picture; /* the frame that is on its way, or NULL */
 };
 
 static void put32(uint8_t *to, uint32_t v)
@@ -159,6 +160,12 @@ static bool put_pixels(struct apng *a, const uint8_t *png, size_t size)
     return true;
 }
 
+void apng_take_away(const struct apng *a)
+{
+    if (a && a->picture)
+        unlink(a->picture);
+}
+
 int apng_write(struct apng *a, const struct refocus_image *image, struct refocus_reason *reason)
 {
     struct refocus_blob png = {NULL, 0};
@@ -166,16 +173,21 @@ int apng_write(struct apng *a, const struct refocus_image *image, struct refocus
                                                       sizeof(struct refocus_write_options),
                                                   .unsynced = 1,
                                                   .cancelled = interrupt_cancels};
-    char *picture;
-    int status = refocus_file_temporary(a->beside, &picture, reason);
+    int status;
 
+    interrupt_hold(true);
+    status = refocus_file_temporary(a->beside, &a->picture, reason);
+    interrupt_hold(false);
     if (status != REFOCUS_OK)
         return status;
-    status = refocus_image_write(picture, image, &options, reason);
+    status = refocus_image_write(a->picture, image, &options, reason);
     if (status == REFOCUS_OK)
-        status = refocus_file_read(picture, UINT32_MAX, &png, reason);
-    unlink(picture);
-    free(picture);
+        status = refocus_file_read(a->picture, UINT32_MAX, &png, reason);
+    interrupt_hold(true);
+    apng_take_away(a);
+    free(a->picture);
+    a->picture = NULL;
+    interrupt_hold(false);
     if (status != REFOCUS_OK)
         return status;
     errno = 0;

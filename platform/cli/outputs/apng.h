@@ -12,6 +12,7 @@ struct apng;
 int apng_open(struct apng **apng, const char *path, int width, int height, double fps, int frames,
               struct refocus_reason *reason);
 int apng_write(struct apng *apng, const struct refocus_image *image, struct refocus_reason *reason);
+void apng_take_away(const struct apng *apng); /* the file of a frame that is being written */
 int apng_close(struct apng *apng, struct refocus_reason *reason);
 
 #endif

@@ -207,11 +207,11 @@ int output_write_image_as(const char *path, const char *name, const struct refoc
     int status;
 
     own.cancelled = interrupt_cancels;
-    interrupt_hold(true);
+    report_cut(name);
     status = refocus_image_write(path, image, &own, &reason);
-    interrupt_hold(false);
+    report_cut(NULL);
     if (status == REFOCUS_ERR_CANCELLED)
-        return report_failure(EXIT_FAILED, name, "interrupted; nothing was written");
+        return report_failure(EXIT_FAILED, name, REPORT_INTERRUPTED);
     return written(status, name, &reason);
 }
 
@@ -220,13 +220,13 @@ int output_write_gray16(const char *path, const uint16_t *samples, int width, in
     struct refocus_reason reason = {""};
     int status;
 
-    interrupt_hold(true);
+    report_cut(path);
     status = interrupt_came() ? REFOCUS_ERR_CANCELLED
                               : refocus_gray16_write(path, samples, width, height,
                                                      (ptrdiff_t)width * 2, &reason);
-    interrupt_hold(false);
+    report_cut(NULL);
     if (status == REFOCUS_ERR_CANCELLED)
-        return report_failure(EXIT_FAILED, path, "interrupted; nothing was written");
+        return report_failure(EXIT_FAILED, path, REPORT_INTERRUPTED);
     return written(status, path, &reason);
 }
 
@@ -235,8 +235,8 @@ int output_write_file(const char *path, const void *bytes, size_t size)
     struct refocus_reason reason = {""};
     int status;
 
-    interrupt_hold(true);
+    report_cut(path);
     status = refocus_file_write(path, bytes, size, &reason);
-    interrupt_hold(false);
+    report_cut(NULL);
     return written(status, path, &reason);
 }

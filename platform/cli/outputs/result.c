@@ -126,16 +126,23 @@ static int write_standard(const char *output, const struct refocus_image *pictur
 
     snprintf(beside, sizeof beside, "%s/refocus%s", folder && *folder ? folder : "/tmp",
              strrchr(output, '.'));
-    if (make_temporary(beside, &path, &reason) != REFOCUS_OK)
+    interrupt_hold(true);
+    status = make_temporary(beside, &path, &reason);
+    if (status == REFOCUS_OK)
+        interrupt_clean_up(remove_file, path);
+    interrupt_hold(false);
+    if (status != REFOCUS_OK)
         return report_failure(EXIT_FAILED, standard_output, "%s", reason.text);
-    interrupt_clean_up(remove_file, path);
     status = output_write_image_as(path, standard_output, picture, options);
     if (status == EXIT_DONE)
         status = read_whole(path, &bytes);
     unlink(path);
     interrupt_clean_up(NULL, NULL);
     if (status == EXIT_DONE) {
+        report_cut(standard_output);
         fwrite(bytes.data, 1, bytes.size, stdout);
+        fflush(stdout);
+        report_cut(NULL);
         status = report_end_output();
     }
     free(bytes.data);

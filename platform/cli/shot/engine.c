@@ -100,7 +100,7 @@ void engine_suit_rays(const struct engine *engine, struct refocus_settings *para
 
 static int interrupted(const struct engine *engine)
 {
-    return report_failure(EXIT_FAILED, engine->name, "interrupted; nothing was written");
+    return report_failure(EXIT_FAILED, engine->name, REPORT_INTERRUPTED);
 }
 
 double engine_most_blur(const struct engine_settings *settings)

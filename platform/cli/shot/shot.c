@@ -123,6 +123,7 @@ static int read_files(struct shot *shot, const char *photo, const struct shot_se
     int status;
 
     report_progress("reading", 0);
+    report_cut(photo);
     if (!engine_takes_deep(&shot->engine.params) || in_strips)
         depth.deep = DEEP_NONE;
     depth.light &= engine_draws_light(&shot->engine.params) && !in_strips;
@@ -130,9 +131,10 @@ static int read_files(struct shot *shot, const char *photo, const struct shot_se
     if (status == EXIT_DONE)
         status = painted_over(&shot->input, &depth);
     shot->input.most_blur = engine_most_blur(&settings->engine);
-    return status == EXIT_DONE
-               ? behind_read(&shot->behind, &settings->behind, &settings->depth, &shot->input)
-               : status;
+    if (status == EXIT_DONE)
+        status = behind_read(&shot->behind, &settings->behind, &settings->depth, &shot->input);
+    report_cut(NULL);
+    return status;
 }
 
 void shot_suit_output(struct depth_settings *depth, const char *output)
