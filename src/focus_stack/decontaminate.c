@@ -301,8 +301,10 @@ static void add_clipped(const struct lifting *l, int disparity, uint32_t part, i
         spill->clipped = disparity;
 }
 
-/* Adds up what lies over a pixel that is seen at a focus. */
-static void spill_of(const struct lifting *l, int focus, int x, int y, struct spill *spill)
+/* Adds up what lies over a pixel that is seen at a focus, of surfaces that are nearer by so much at
+ * the most: taps that the widest circle of confusion of these does not reach have no share. */
+static void spill_of(const struct lifting *l, int focus, int nearer, int x, int y,
+                     struct spill *spill)
 {
     const struct refocus_stack *s = l->stack;
     const struct disc *disc = &l->disc;
@@ -310,14 +312,16 @@ static void spill_of(const struct lifting *l, int focus, int x, int y, struct sp
     /* Exact for columns below 2^16, as no sample is as wide as 2^8 pixels. */
     const uint64_t by = (1 << 24) / (uint32_t)s->reduced + 1;
     const int least = focus + (int)(((int64_t)LEAST << 16) / l->most);
+    const int widest = (taps_of(l, nearer) * 5 / 4 + 8 + 15) / 16; /* as add_clipped() has it */
+    const int taps = widest < disc->taps ? widest : disc->taps;
 
     memset(spill, 0, sizeof *spill);
-    for (int j = -disc->taps; j <= disc->taps; j++) {
+    for (int j = -taps; j <= taps; j++) {
         const int v = rf_stack_clamp(y + j * disc->apart, s->height - 1);
         const size_t row = sample_at(s, 0, v);
         const uint8_t *rgb = photo->rgb + v * photo->stride;
 
-        for (int i = -disc->taps; i <= disc->taps; i++) {
+        for (int i = -taps; i <= taps; i++) {
             const int u = rf_stack_clamp(x + i * disc->apart, s->width - 1);
             const size_t at = row + ((uint64_t)u * by >> 24);
             const int here = s->moved[at];
@@ -388,13 +392,13 @@ static void look_past(const struct refocus_stack *s, int disparity, int x, int y
 
 /* Takes out of a pixel what lies over it: the more of that is clipped, the more it becomes what the
  * other frame shows. */
-static void clean(const struct lifting *l, int focus, int x, int y, uint8_t *p)
+static void clean(const struct lifting *l, int focus, int nearer, int x, int y, uint8_t *p)
 {
     uint8_t past[3] = {p[0], p[1], p[2]};
     struct spill spill;
     int share;
 
-    spill_of(l, focus, x, y, &spill);
+    spill_of(l, focus, nearer, x, y, &spill);
     share = rf_stack_clamp(256 * (int)spill.bright / HIGHLIGHT, 256);
     if (share > 0)
         look_past(l->stack, spill.clipped, x, y, past);
@@ -420,9 +424,10 @@ static void lift_row(void *context, int y, int worker)
         const int tile =
             (int)(at / (size_t)s->columns) / TILE * across + (int)(at % (size_t)s->columns) / TILE;
 
-        /* Else nothing near is nearer. */
-        if ((int64_t)l->most * (l->nearest[tile] - focus) >> 16 >= LEAST)
-            clean(l, focus, x, y, row + 3 * (ptrdiff_t)x);
+        const int nearer = l->nearest[tile] - focus;
+
+        if ((int64_t)l->most * nearer >> 16 >= LEAST)
+            clean(l, focus, nearer, x, y, row + 3 * (ptrdiff_t)x);
     }
 }
 

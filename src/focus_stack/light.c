@@ -192,9 +192,16 @@ static void miss_row(void *context, int y, int worker)
 
 /* ----- rounds ----- */
 
+static void look_at(struct rf_lights *l, int frame)
+{
+    l->frame = frame;
+    l->focus = rf_stack_disparity(l->stack, 256 * frame);
+}
+
 static void find_residuals(struct rf_lights *l)
 {
-    for (l->frame = 0; l->frame < l->stack->count; l->frame++) {
+    for (int k = 0; k < l->stack->count; k++) {
+        look_at(l, k);
         rf_light_spread(l, RF_LIGHT_SOURCE, l->light, l->spread);
         rf_pool_run(l->stack->pool, residual_row, l, l->rows);
     }
@@ -253,9 +260,9 @@ static void find_excess(struct rf_lights *l)
             light[i] = l->clipped[i] * l->excess[i];
             l->change[i] = l->norm[i] = 0;
         }
-        for (l->frame = 0; l->frame < l->stack->count; l->frame++) {
-            rf_light_spread(l, RF_LIGHT_WHITE, light, l->spread);
-            rf_light_spread(l, RF_LIGHT_WHITE, l->clipped, l->ones);
+        for (int k = 0; k < l->stack->count; k++) {
+            look_at(l, k);
+            rf_light_spread_excess(l, light);
             rf_pool_run(l->stack->pool, miss_row, l, l->rows);
             rf_light_gather(l);
         }

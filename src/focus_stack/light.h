@@ -35,6 +35,7 @@ struct rf_lights {
     int by;                     /* pixels of a cell, across and down */
     int columns, rows;          /* cells */
     int frame;                  /* the frame that is looked at */
+    int focus;                  /* the disparity that is in focus there */
     int sources;                /* cells with these marks are spread */
     float kept;                 /* this share is handed on to the next cell */
     double radius;              /* K, in parts of a cell */
@@ -46,11 +47,11 @@ struct rf_lights {
     float *spread; /* A_k of L or of c x, and what frame k has more; `change`, smooth along rows */
     float *ones;   /* A_k of c; `norm`, smooth along rows */
     float *change; /* the sum beside it */
-    const float *from;   /* rf_light_spread() spreads this at present */
-    float *to;           /* rf_light_spread() adds it up here */
-    int16_t *residual;   /* F_k - A_k L, RF_LIGHT_LANES a cell, frame by frame */
-    uint16_t *disparity; /* the middle of a cell has it */
-    uint8_t *near;       /* marks of a cell */
+    const float *from[2]; /* rf_light_spread() spreads this at present: one plane or two */
+    float *to[2];         /* rf_light_spread() adds that up here */
+    int16_t *residual;    /* F_k - A_k L, RF_LIGHT_LANES a cell, frame by frame */
+    uint16_t *disparity;  /* the middle of a cell has it */
+    uint8_t *near;        /* marks of a cell */
 };
 
 static inline size_t rf_light_cell(const struct rf_lights *l, int x, int y)
@@ -64,6 +65,8 @@ void rf_light_make_discs(struct rf_lights *l);
 void rf_light_mark_around(const struct rf_lights *l, int of, int mark);
 /* Spreads what is `from` as the frame does, from cells with these marks: A_k. */
 void rf_light_spread(struct rf_lights *l, int sources, const float *from, float *to);
+/* Likewise of c x, from white cells, to `spread`, and at the same time of `clipped` to `ones`. */
+void rf_light_spread_excess(struct rf_lights *l, const float *excess);
 /* Adds what is spread back of `spread` and `ones` to `change` and `norm`: B_k. */
 void rf_light_gather(struct rf_lights *l);
 

@@ -30,9 +30,9 @@ static void make_disc(struct rf_light_disc *disc, double radius)
             disc->weight[j][i] /= sum;
 }
 
-static const struct rf_light_disc *disc_of(const struct rf_lights *l, size_t at, int k)
+static const struct rf_light_disc *disc_of(const struct rf_lights *l, size_t at)
 {
-    const int away = abs(l->disparity[at] - rf_stack_disparity(l->stack, 256 * k));
+    const int away = abs(l->disparity[at] - l->focus);
     const int radius = (int)(RF_LIGHT_FINE * l->radius * away / 65535 + 0.5);
 
     return &l->disc[radius < RF_LIGHT_RADII ? radius : RF_LIGHT_RADII - 1];
@@ -74,55 +74,80 @@ void rf_light_mark_around(const struct rf_lights *l, int of, int mark)
     }
 }
 
-/* Adds a cell, spread over its disc, to rows from `begin` to before `end`. */
-static void spread_cell(const struct rf_lights *l, int x, int y, int begin, int end)
+/* Adds a cell, spread over its disc, to rows from `begin` to before `end`. The number of planes is
+ * known to the compiler. */
+static inline void spread_cell(const struct rf_lights *l, int planes, int x, int y, int begin,
+                               int end)
 {
     const size_t at = rf_light_cell(l, x, y);
-    const struct rf_light_disc *disc = disc_of(l, at, l->frame);
+    const struct rf_light_disc *disc = disc_of(l, at);
     const struct range down = range_of(y, disc->reach, begin, end);
     const struct range across = range_of(x, disc->reach, 0, l->columns);
     const int nearer = l->disparity[at] + BEHIND;
-    float value[LANES];
+    float value[2][LANES];
 
-    for (int c = 0; c < LANES; c++)
-        value[c] = l->from[LANES * at + c];
+    for (int i = 0; i < planes; i++)
+        memcpy(value[i], l->from[i] + LANES * at, sizeof value[i]);
     for (int v = down.first; v <= down.last; v++) {
         const float *weight = disc->weight[v - y + RF_LIGHT_MOST + 1];
-        const uint16_t *disparity = l->disparity + rf_light_cell(l, 0, v);
-        float *restrict out = l->to + LANES * rf_light_cell(l, 0, v);
+        const size_t row = rf_light_cell(l, 0, v);
+        const uint16_t *disparity = l->disparity + row;
+        float *const out[2] = {l->to[0] + LANES * row, l->to[planes - 1] + LANES * row};
 
         for (int u = across.first; u <= across.last; u++) {
             const float w = disparity[u] < nearer ? weight[u - x + RF_LIGHT_MOST + 1] : 0;
 
-            for (int c = 0; c < LANES; c++)
-                out[LANES * u + c] += w * value[c];
+            for (int i = 0; i < planes; i++)
+                for (int c = 0; c < LANES; c++)
+                    out[i][LANES * u + c] += w * value[i][c];
         }
     }
 }
 
-/* Rows of A_k of `from`. */
-static void spread_band(void *context, int band, int worker)
+/* Rows of A_k of what is to be spread. */
+static inline void spread_rows(const struct rf_lights *l, int planes, int band)
 {
-    const struct rf_lights *l = context;
     const int begin = band * RF_LIGHT_BAND,
               end = begin + RF_LIGHT_BAND < l->rows ? begin + RF_LIGHT_BAND : l->rows;
     const struct range rows = range_of(begin, RF_LIGHT_MOST + 1, 0, l->rows);
 
-    (void)worker;
-    memset(l->to + LANES * rf_light_cell(l, 0, begin), 0,
-           LANES * sizeof(float) * (size_t)(end - begin) * (size_t)l->columns);
+    for (int i = 0; i < planes; i++)
+        memset(l->to[i] + LANES * rf_light_cell(l, 0, begin), 0,
+               LANES * sizeof(float) * (size_t)(end - begin) * (size_t)l->columns);
     for (int y = rows.first; y < end + RF_LIGHT_MOST + 1 && y < l->rows; y++)
         for (int x = 0; x < l->columns; x++)
             if (l->near[rf_light_cell(l, x, y)] & l->sources)
-                spread_cell(l, x, y, begin, end);
+                spread_cell(l, planes, x, y, begin, end);
+}
+
+static void spread_band(void *context, int band, int worker)
+{
+    (void)worker;
+    spread_rows(context, 1, band);
+}
+
+static void spread_both_band(void *context, int band, int worker)
+{
+    (void)worker;
+    spread_rows(context, 2, band);
 }
 
 void rf_light_spread(struct rf_lights *l, int sources, const float *from, float *to)
 {
-    l->from = from;
+    l->from[0] = from;
     l->sources = sources;
-    l->to = to;
+    l->to[0] = to;
     rf_pool_run(l->stack->pool, spread_band, l, (l->rows + RF_LIGHT_BAND - 1) / RF_LIGHT_BAND);
+}
+
+void rf_light_spread_excess(struct rf_lights *l, const float *excess)
+{
+    l->from[0] = excess;
+    l->from[1] = l->clipped;
+    l->sources = RF_LIGHT_WHITE;
+    l->to[0] = l->spread;
+    l->to[1] = l->ones;
+    rf_pool_run(l->stack->pool, spread_both_band, l, (l->rows + RF_LIGHT_BAND - 1) / RF_LIGHT_BAND);
 }
 
 /* Adds A_k' of `spread` and of `ones` to `change` and `norm`, where something is clipped. */
@@ -133,7 +158,7 @@ static void gather_row(void *context, int y, int worker)
     (void)worker;
     for (int x = 0; x < l->columns; x++) {
         const size_t at = rf_light_cell(l, x, y);
-        const struct rf_light_disc *disc = disc_of(l, at, l->frame);
+        const struct rf_light_disc *disc = disc_of(l, at);
         const struct range down = range_of(y, disc->reach, 0, l->rows);
         const struct range across = range_of(x, disc->reach, 0, l->columns);
         const int nearer = l->disparity[at] + BEHIND;
