@@ -8,11 +8,8 @@
  * were fed in. "feed" writes files again and again, until it is ended. "same" compares
  * the first picture of 4:2:0 in one file with the one of YUYV in another. */
 #define _GNU_SOURCE /* memmem */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <fcntl.h>
 #include <linux/videodev2.h>
 #include <pthread.h>
@@ -119,14 +116,13 @@ static const struct refocus_frame *next(struct refocus_source *source)
     return frame;
 }
 
-static void depth_comes_to_the_last_bit(void **state)
+TEST(depth_comes_to_the_last_bit)
 {
     struct feeder feeder = {.size = WIDTH * HEIGHT * 2};
     static uint16_t samples[WIDTH * HEIGHT];
     struct refocus_converter *converter = NULL;
     struct refocus_source *source;
 
-    (void)state;
     for (size_t i = 0; i < feeder.size; i++) /* every byte's value, high and low */
         bytes[i] = (uint8_t)(i * 31 + i / 256);
     begin_feed(&feeder, V4L2_PIX_FMT_Z16, WIDTH, HEIGHT);
@@ -160,7 +156,7 @@ static size_t read_file(const char *path)
     return size;
 }
 
-static void jpegs_become_pictures(void **state)
+TEST(jpegs_become_pictures)
 {
     struct feeder feeder = {.size = read_file(jpeg)};
     struct refocus_converter *converter = NULL;
@@ -169,7 +165,6 @@ static void jpegs_become_pictures(void **state)
     struct refocus_image out;
     size_t row;
 
-    (void)state;
     assert_int_equal(refocus_photo_read(&photo, jpeg, NULL, NULL), REFOCUS_OK);
     row = (size_t)photo->image->width * 3;
     out = refocus_image_packed(REFOCUS_FORMAT_RGB8, malloc(row * (size_t)photo->image->height),
@@ -270,11 +265,6 @@ static int compare(const char *y4m, const char *yuyv, int width, int height)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(depth_comes_to_the_last_bit),
-        cmocka_unit_test(jpegs_become_pictures),
-    };
-
     if (argc >= 7 && (argc - 3) % 4 == 0 && argc <= 11 && strcmp(argv[1], "feed") == 0)
         return atoi(argv[2]) > 0 ? feed_for_ever(atoi(argv[2]), argv + 3, (argc - 3) / 4) : 2;
     if (argc == 6 && strcmp(argv[1], "same") == 0)
@@ -283,5 +273,5 @@ int main(int argc, char **argv)
         return 2;
     node = argv[2];
     jpeg = argv[3];
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

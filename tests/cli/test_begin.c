@@ -1,11 +1,8 @@
 /* test_begin.c: each call that makes a lock, a condition, a semaphore or an event of `refocus live`
  * fails once: one line, an exit code, and nothing is kept. */
 #include <errno.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <stdio.h>
 #include <string.h>
 #include "live/live_sources.h"
@@ -49,11 +46,10 @@ static int begin(int fail)
     return status;
 }
 
-static void each_fails(void **state)
+TEST(each_fails)
 {
     int all;
 
-    (void)state;
     assert_int_equal(begin(0), EXIT_DONE);
     assert_int_equal(kept, 0);
     assert_int_equal(lines, 0);
@@ -64,11 +60,4 @@ static void each_fails(void **state)
         assert_int_equal(kept, 0);
         assert_int_equal(lines, 1);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(each_fails)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

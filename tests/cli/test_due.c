@@ -1,9 +1,6 @@
 /* test_due.c: when `refocus live` expects the depth of a frame, by how the last maps came. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include "live/live_depth.h"
 #include "live/live_times.h"
 
@@ -38,9 +35,8 @@ static void end(void)
     live_depths_free(&depths);
 }
 
-static void a_map_for_each_frame(void **state)
+TEST(a_map_for_each_frame)
 {
-    (void)state;
     come(0, 33, 5);
     assert_int_equal(due(0, 0), -2);
     end();
@@ -55,9 +51,8 @@ static void a_map_for_each_frame(void **state)
     end();
 }
 
-static void fewer_maps_than_frames(void **state)
+TEST(fewer_maps_than_frames)
 {
-    (void)state;
     come(4, 200, 5); /* the last one is of 600 ms */
     assert_int_equal(due(633, 633), -1);
     assert_int_equal(due(766, 766), -1);
@@ -67,9 +62,8 @@ static void fewer_maps_than_frames(void **state)
 }
 
 /* One map that is late does not make the next ones be given up, nor one lag that is short. */
-static void odd_ones(void **state)
+TEST(odd_ones)
 {
-    (void)state;
     come(5, 33, 5);
     depths.lag_ns[1] = 300 * (int64_t)MS;
     depths.period_ns[2] = 500 * (int64_t)MS;
@@ -83,25 +77,15 @@ static void odd_ones(void **state)
 }
 
 /* Pairing comes back at once where nothing is due by the deadline. */
-static void nothing_is_waited_for(void **state)
+TEST(nothing_is_waited_for)
 {
     const int64_t now = live_now_ns(), far = now + 20000 * (int64_t)MS;
     bool paired = true;
 
-    (void)state;
     come(4, 200, 5);
     depths.newest_ns = now - 5 * (int64_t)MS;
     assert_non_null(live_depths_pair(&depths, now + 100 * (int64_t)MS, HALF, far, &paired));
     assert_false(paired);
     assert_true(live_now_ns() < far);
     end();
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_map_for_each_frame), cmocka_unit_test(fewer_maps_than_frames),
-        cmocka_unit_test(odd_ones), cmocka_unit_test(nothing_is_waited_for)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

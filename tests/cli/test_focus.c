@@ -1,11 +1,8 @@
 /* test_focus.c: focus pulls of `refocus live`, by the times of frames: smooth, and without a
  * jump also when one begins before the other has ended. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <string.h>
 #include "live/live_focus.h"
 
@@ -65,11 +62,10 @@ static void watch(struct live_focus *focus, double to, int ms)
     assert_true(fabs(before - to) < 1e-9);
 }
 
-static void pulls_are_smooth(void **state)
+TEST(pulls_are_smooth)
 {
     struct live_focus focus;
 
-    (void)state;
     begin(&focus, 0.1);
     command(&focus, "pull 0.9 2");
     assert_true(fabs(look(&focus) - 0.1) < 1e-12);
@@ -81,12 +77,11 @@ static void pulls_are_smooth(void **state)
     pthread_mutex_destroy(&focus.lock);
 }
 
-static void one_takes_over_from_another(void **state)
+TEST(one_takes_over_from_another)
 {
     struct live_focus focus;
     double at;
 
-    (void)state;
     begin(&focus, 0);
     look(&focus);
     command(&focus, "pull 1 2");
@@ -102,12 +97,11 @@ static void one_takes_over_from_another(void **state)
     pthread_mutex_destroy(&focus.lock);
 }
 
-static void points_are_asked_for_once(void **state)
+TEST(points_are_asked_for_once)
 {
     struct live_focus focus;
     double point[2];
 
-    (void)state;
     begin(&focus, 0.5);
     assert_false(live_focus_point(&focus, point));
     look(&focus);
@@ -127,11 +121,10 @@ static void points_are_asked_for_once(void **state)
 }
 
 /* A command before the first frame holds from it on, and a pull begins there. */
-static void commands_before_the_first_frame_are_kept(void **state)
+TEST(commands_before_the_first_frame_are_kept)
 {
     struct live_focus focus;
 
-    (void)state;
     begin(&focus, (double)NAN); /* the centre, where 0.25 is */
     assert_true(look(&focus) == 0.25);
     begin(&focus, (double)NAN);
@@ -154,12 +147,11 @@ static void commands_before_the_first_frame_are_kept(void **state)
 }
 
 /* A point is a distance from then on, and so is where a pull is taken over; a disparity is none. */
-static void distances_stay_while_the_range_moves(void **state)
+TEST(distances_stay_while_the_range_moves)
 {
     struct live_focus focus;
     double at;
 
-    (void)state;
     range = (struct live_range){0.5, 0.25};
     begin(&focus, (double)NAN);
     assert_true(look(&focus) == 0.25); /* 0.3125 dioptres */
@@ -182,12 +174,11 @@ static void distances_stay_while_the_range_moves(void **state)
     pthread_mutex_destroy(&focus.lock);
 }
 
-static void the_camera_s_lens_is_followed(void **state)
+TEST(the_camera_s_lens_is_followed)
 {
     struct live_focus focus;
     double disparity, blur;
 
-    (void)state;
     range = (struct live_range){1, 0.2};
     begin(&focus, (double)NAN);
     for (int i = 0; i < 3; i++) {
@@ -206,7 +197,7 @@ static void the_camera_s_lens_is_followed(void **state)
     pthread_mutex_destroy(&focus.lock);
 }
 
-static void points_lie_in_the_picture(void **state)
+TEST(points_lie_in_the_picture)
 {
     static const char *const outside[] = {"focus-at 64,3",
                                           "pull-at 3,48 1",
@@ -219,7 +210,6 @@ static void points_lie_in_the_picture(void **state)
     struct live_focus focus;
     double point[2];
 
-    (void)state;
     begin(&focus, 0.5);
     command(&focus, "focus-at 9999,9"); /* no picture yet: its edge serves */
     assert_true(live_focus_point(&focus, point));
@@ -249,14 +239,13 @@ static void points_lie_in_the_picture(void **state)
 }
 
 /* A rectangle is its middle until it is followed. */
-static void rectangles_have_a_middle(void **state)
+TEST(rectangles_have_a_middle)
 {
     static const char *const other[] = {"focus-at 3,4", "focus 0.5"};
     struct live_focus focus;
     double point[2], box[4];
     uint64_t asked;
 
-    (void)state;
     begin(&focus, 0.5);
     live_focus_size(&focus, 64, 48);
     for (int i = 0; i < 2; i++) {
@@ -272,11 +261,10 @@ static void rectangles_have_a_middle(void **state)
 }
 
 /* The range of a frame takes in the distance in focus, nearer or farther than what there is. */
-static void the_range_takes_in_the_focus(void **state)
+TEST(the_range_takes_in_the_focus)
 {
     static const double metres[] = {0.5, 8, 3};
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         struct live_range of_frame = {0.5, 0.25};
         struct lens_settings lens = LENS_SETTINGS_NONE;
@@ -292,19 +280,4 @@ static void the_range_takes_in_the_focus(void **state)
         assert_true(of_frame.far == 0);
         pthread_mutex_destroy(&focus.lock);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(pulls_are_smooth),
-                                       cmocka_unit_test(one_takes_over_from_another),
-                                       cmocka_unit_test(points_are_asked_for_once),
-                                       cmocka_unit_test(commands_before_the_first_frame_are_kept),
-                                       cmocka_unit_test(distances_stay_while_the_range_moves),
-                                       cmocka_unit_test(the_camera_s_lens_is_followed),
-                                       cmocka_unit_test(points_lie_in_the_picture),
-                                       cmocka_unit_test(rectangles_have_a_middle),
-                                       cmocka_unit_test(the_range_takes_in_the_focus)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,10 @@
 /* test_free_memory.c: how much memory is free by what Linux tells of the machine and of the
  * process's group of control, in files that are made up here. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include "line/memory.h"
 
 /* The files of the present test; what is not among them is not there. */
@@ -35,20 +32,19 @@ static int64_t kib_of(const struct made_up *files)
         "/proc/meminfo", "MemTotal:  8000000 kB\nMemFree: 100000 kB\nMemAvailable:   3000000 kB\n" \
     }
 
-static void machine(void **state)
+TEST(machine)
 {
     static const struct made_up plain[] = {MACHINE, {0}};
     static const struct made_up old[] = {{"/proc/meminfo", "MemTotal:  8000000 kB\n"}, {0}};
     static const struct made_up nothing[] = {{0}};
     const int64_t half = sysconf(_SC_PHYS_PAGES) * (int64_t)(sysconf(_SC_PAGESIZE) / 1024) / 2;
 
-    (void)state;
     assert_int_equal(kib_of(plain), 3000000);
     assert_int_equal(kib_of(old), half);
     assert_int_equal(kib_of(nothing), half);
 }
 
-static void groups(void **state)
+TEST(groups)
 {
     static const struct made_up root[] = {
         MACHINE,
@@ -76,16 +72,8 @@ static void groups(void **state)
         {0},
     };
 
-    (void)state;
     assert_int_equal(kib_of(root), 1024000);
     assert_int_equal(kib_of(inner), 500000);
     assert_int_equal(kib_of(boundless), 3000000);
     assert_int_equal(kib_of(more_than_is_free), 3000000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(machine), cmocka_unit_test(groups)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

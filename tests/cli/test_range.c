@@ -1,12 +1,9 @@
 /* test_range.c: the distance range of `refocus live` over made-up depth: an empty room stays as
  * it is, who walks in gets a disparity of his own soon and without a jump, and what is in focus
  * stays so. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 #include "live/live_depth.h"
 #include "live/live_focus.h"
@@ -133,9 +130,8 @@ static double in_focus(void)
     return room.range.far + room.d * (room.range.near - room.range.far);
 }
 
-static void a_still_scene_stays_still(void **state)
+TEST(a_still_scene_stays_still)
 {
-    (void)state;
     begin(0, 0);
     watch(20, 0);
     assert_true(room.pace == 0);
@@ -150,11 +146,10 @@ static void a_still_scene_stays_still(void **state)
     assert_true(fabs(1 / room.range.far - 4) < 0.09);
 }
 
-static void who_walks_in_has_a_disparity_of_his_own(void **state)
+TEST(who_walks_in_has_a_disparity_of_his_own)
 {
     double focus, lens;
 
-    (void)state;
     begin(0, 0);
     watch(3, 0);
     focus = in_focus();
@@ -182,11 +177,10 @@ static void who_walks_in_has_a_disparity_of_his_own(void **state)
     assert_true(room.change < 0.02);
 }
 
-static void who_leaves_leaves_the_range_slowly(void **state)
+TEST(who_leaves_leaves_the_range_slowly)
 {
     double focus;
 
-    (void)state;
     begin(0, 0);
     watch(1, 60);
     focus = in_focus();
@@ -203,9 +197,8 @@ static void who_leaves_leaves_the_range_slowly(void **state)
 }
 
 /* So is what is farther: at once there, and slowly forgotten. */
-static void a_door_is_opened_and_shut(void **state)
+TEST(a_door_is_opened_and_shut)
 {
-    (void)state;
     begin(0, 0);
     watch(1, 0);
     wall = 2 * WALL;
@@ -219,14 +212,13 @@ static void a_door_is_opened_and_shut(void **state)
 }
 
 /* Focus on the person, who then leaves: the focus stays where he was, beyond what there is. */
-static void a_focus_beyond_the_scene_stays_where_it_is(void **state)
+TEST(a_focus_beyond_the_scene_stays_where_it_is)
 {
     struct live_depth_map wide = {0};
     struct live_depth_map map = {.disparity = room.disparity, .width = W, .height = H};
     const struct live_depth_map *wider = &map;
     double focus;
 
-    (void)state;
     begin(0, 0);
     room.focus.to.point[0] = room.focus.from.point[0] = 20;
     room.focus.to.point[1] = room.focus.from.point[1] = 60;
@@ -251,11 +243,10 @@ static void a_focus_beyond_the_scene_stays_where_it_is(void **state)
 }
 
 /* A map that is wrong altogether, a long gap, times that go back. */
-static void faults_move_nothing(void **state)
+TEST(faults_move_nothing)
 {
     struct live_range range;
 
-    (void)state;
     begin(0, 0);
     watch(1, 0);
     for (int i = 0; i < 3; i++) {
@@ -275,11 +266,10 @@ static void faults_move_nothing(void **state)
 }
 
 /* A laser scanner's samples lie alone. */
-static void few_points_will_do(void **state)
+TEST(few_points_will_do)
 {
     struct live_range seen;
 
-    (void)state;
     begin(0, 0);
     for (int i = 0; i < W * H; i++)
         room.mm[i] = i / W % 3 || i % W % 3 ? 0 : i % W < W / 2 ? 2000 : 5000;
@@ -287,9 +277,8 @@ static void few_points_will_do(void **state)
     assert_true(fabs(seen.near - 0.5) < 1e-6 && fabs(seen.far - 0.2) < 1e-6);
 }
 
-static void what_is_given_stays(void **state)
+TEST(what_is_given_stays)
 {
-    (void)state;
     begin(2, 0);
     watch(2, 60);
     assert_true(room.range.near == 0.5);
@@ -310,20 +299,4 @@ static void what_is_given_stays(void **state)
     assert_true(fabs(room.range.near / room.range.far - 1.05) < 1e-9);
     assert_true(mean_at(20, 60) < 0.05);
     live_range_end(&room.ranger);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_still_scene_stays_still),
-        cmocka_unit_test(who_walks_in_has_a_disparity_of_his_own),
-        cmocka_unit_test(who_leaves_leaves_the_range_slowly),
-        cmocka_unit_test(a_door_is_opened_and_shut),
-        cmocka_unit_test(a_focus_beyond_the_scene_stays_where_it_is),
-        cmocka_unit_test(faults_move_nothing),
-        cmocka_unit_test(few_points_will_do),
-        cmocka_unit_test(what_is_given_stays),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,13 +2,10 @@
  * What the command prints and writes is not linked. */
 #define _GNU_SOURCE /* memmem */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/platform/convert.h>
 #include <refocus/refocus.h>
 #include "commands/stack_shots.h"
@@ -129,14 +126,13 @@ int output_write_file(const char *path, const void *bytes, size_t size)
     return EXIT_DONE;
 }
 
-static void size_is_asked_for(void **state)
+TEST(size_is_asked_for)
 {
     static const struct {
         double given[2];
         int32_t width, height;
     } cases[] = {{{1280, 720}, 1280, 720}, {{480, 640}, 480, 640}, {{NAN, NAN}, 0, 0}};
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         const struct shots_settings settings = {.camera = "replay::size 64x48;lens 0 2",
                                                 .steps = 2,
@@ -157,14 +153,13 @@ static void size_is_asked_for(void **state)
 /* The exposure is that of the middle, and locked as long as pictures are taken, from the farthest
  * to the nearest; then the lens is the camera's again. Damaged frames are none: half of these are.
  */
-static void the_camera_is_left_as_it_was(void **state)
+TEST(the_camera_is_left_as_it_was)
 {
     char script[4096] = "replay::size 4x4;lens 0 2;lens-speed 1";
     const struct shots_settings settings = {
         .camera = script, .steps = 3, .range = {NAN, NAN}, .average = 2, .size = {NAN, NAN}};
     struct shots shots;
 
-    (void)state;
     for (int n = 0; n < 200; n += 2)
         sprintf(script + strlen(script), ";at %d corrupt", n);
     begins = true;
@@ -175,12 +170,4 @@ static void the_camera_is_left_as_it_was(void **state)
     assert_string_equal(calls, "1 lock 0 1 2 unlock mode 0 ");
     shots_end(&shots);
     begins = false;
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(size_is_asked_for),
-                                       cmocka_unit_test(the_camera_is_left_as_it_was)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

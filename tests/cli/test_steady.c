@@ -1,9 +1,6 @@
 /* test_steady.c: depth of `refocus live` is filtered over time, and not across a gap in it. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 #include "live/live_steady.h"
 
@@ -39,18 +36,10 @@ static int filtered_after(int64_t step_ns)
     return result;
 }
 
-static void gaps(void **state)
+TEST(gaps)
 {
-    (void)state;
     assert_in_range(filtered_after(period_ns), FIRST, NEXT - 100);
     assert_in_range(filtered_after(900000000), FIRST, NEXT - 100);
     assert_int_equal(filtered_after(1100000000), NEXT);
     assert_int_equal(filtered_after(-4 * period_ns), NEXT); /* a file that begins again */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(gaps)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

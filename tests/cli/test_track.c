@@ -1,11 +1,8 @@
 /* test_track.c: the rectangle of `refocus live --focus-rectangle` stays on its subject. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 #include "live/live_track.h"
 
@@ -72,11 +69,10 @@ static double off(const struct live_tracker *tracker, double x, double y)
 }
 
 /* Errors do not add up: neither where all stands still nor where the subject comes back. */
-static void does_not_drift(void **state)
+TEST(does_not_drift)
 {
     struct live_tracker tracker = begin(SIDE);
 
-    (void)state;
     for (int t = 0; t < 200; t++) {
         draw(160, 120, 1, W);
         assert_true(follow(&tracker));
@@ -93,11 +89,10 @@ static void does_not_drift(void **state)
 }
 
 /* The rectangle does not go with what passes before its subject. */
-static void outlives_an_occluder(void **state)
+TEST(outlives_an_occluder)
 {
     struct live_tracker tracker = begin(SIDE);
 
-    (void)state;
     for (int left = -SIDE; left < W; left += 4) {
         draw(160, 120, 1, left);
         follow(&tracker);
@@ -108,9 +103,8 @@ static void outlives_an_occluder(void **state)
     assert_true(tracker.lost > 0);
 }
 
-static void grows_with_its_subject(void **state)
+TEST(grows_with_its_subject)
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         const double most = i ? 1.6 : 0.6;
         struct live_tracker tracker = begin(SIDE / 2.0);
@@ -127,7 +121,7 @@ static void grows_with_its_subject(void **state)
 }
 
 /* Y of frames is what G of pictures is, and nothing else counts. */
-static void any_format(void **state)
+TEST(any_format)
 {
     static const struct {
         uint32_t format;
@@ -135,7 +129,6 @@ static void any_format(void **state)
     } kinds[] = {{REFOCUS_FORMAT_NV12, 1}, {REFOCUS_FORMAT_YUYV, 2}};
     static uint8_t memory[2 * W * H];
 
-    (void)state;
     for (int k = 0; k < 2; k++) {
         const struct refocus_image photo = refocus_image_planar(kinds[k].format, memory, W, H);
         struct live_tracker tracker = begin(SIDE), other = tracker;
@@ -153,16 +146,4 @@ static void any_format(void **state)
         }
         assert_true(off(&tracker, 193, 98) < 3);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(does_not_drift),
-        cmocka_unit_test(outlives_an_occluder),
-        cmocka_unit_test(grows_with_its_subject),
-        cmocka_unit_test(any_format),
-    };
-
-    return cmocka_run_group_tests_name("track", tests, NULL, NULL);
 }

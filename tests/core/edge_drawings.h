@@ -4,12 +4,9 @@
 #ifndef TEST_EDGE_DRAWINGS_H
 #define TEST_EDGE_DRAWINGS_H
 
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 
 struct picture {

@@ -1,14 +1,11 @@
 /* test_aperture.c: apertures: rays against the light through the same shape, point by point. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 
 #include "aperture/aperture.h"
@@ -100,9 +97,8 @@ static struct refocus_aperture_params kind(int i)
     return p;
 }
 
-static void light(void **state)
+TEST(light)
 {
-    (void)state;
     for (int i = 0; i < 24; i++) {
         const struct refocus_aperture_params p = kind(i);
         struct refocus_aperture *a = make(&p);
@@ -126,13 +122,12 @@ static void light(void **state)
 }
 
 /* The older functions still make equal apertures. */
-static void simple(void **state)
+TEST(simple)
 {
     struct refocus_aperture_params p = refocus_aperture_params_default();
     struct refocus_aperture *a = make(&p), *b;
     struct refocus_ray is[64], wanted[64];
 
-    (void)state;
     assert_int_equal(refocus_aperture_rays(a, 64, is), REFOCUS_OK);
     assert_int_equal(refocus_aperture_rays(NULL, 64, wanted), REFOCUS_OK);
     assert_memory_equal(is, wanted, sizeof is);
@@ -162,12 +157,11 @@ static bool open_at(const struct refocus_aperture *a, double radius, double degr
     return rf_aperture_open(a, radius * cos(t), -radius * sin(t)) > 0;
 }
 
-static void blades(void **state)
+TEST(blades)
 {
     struct refocus_aperture_params p = refocus_aperture_params_default();
     struct refocus_aperture *a;
 
-    (void)state;
     p.blades = 6;
     p.rotation_deg = 10;
     for (int i = 0; i <= 4; i++) { /* the middle of a side bulges with its curvature */
@@ -199,12 +193,11 @@ static void blades(void **state)
     refocus_aperture_destroy(&a);
 }
 
-static void figures(void **state)
+TEST(figures)
 {
     struct refocus_aperture_params p = refocus_aperture_params_default();
     struct refocus_aperture *a;
 
-    (void)state;
     p.figure = REFOCUS_FIGURE_HEART; /* pointed below, notched above, two lobes */
     a = make(&p);
     assert_true(open_at(a, 0.85, 270) && !open_at(a, 0.85, 90));
@@ -229,11 +222,10 @@ static double mean_square(const struct refocus_aperture *a, bool before)
 }
 
 /* Mean squares of the profiles, which have closed forms: v is spread by its density. */
-static void profiles(void **state)
+TEST(profiles)
 {
     static const double edges[] = {-1, -0.5, 0, 0.3, 1};
 
-    (void)state;
     for (int i = 0; i < 5; i++) {
         struct refocus_aperture_params p = refocus_aperture_params_default();
         const double e = edges[i], bright = 0.5 + e / 3, faint = 0.5 + e / 6;
@@ -257,12 +249,11 @@ static void profiles(void **state)
     }
 }
 
-static void refused(void **state)
+TEST(refused)
 {
     static const uint8_t mask = 255;
     struct refocus_aperture *a;
 
-    (void)state;
     for (int i = 0; i < 24; i++) {
         struct refocus_aperture_params p = refocus_aperture_params_default();
 
@@ -352,7 +343,7 @@ static void near_to(const char *what, double is, double should, double by)
 }
 
 /* Rays of irises and figures that two circles cut off: within all three, evenly. */
-static void cut_off(void **state)
+TEST(cut_off)
 {
     enum { CORNER = 100 * 100, AMOUNT = 58982 }; /* 0.9 */
     static const struct {
@@ -372,7 +363,6 @@ static void cut_off(void **state)
     static struct refocus_ray rays[RAYS], left[RAYS];
     static struct rf_cat_shape shape;
 
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct refocus_aperture_params p = refocus_aperture_params_default();
         struct refocus_aperture *a;
@@ -428,14 +418,4 @@ static void cut_off(void **state)
     }
     rf_cat_shape_make(&shape, &rf_disc);
     assert_false(shape.is_there);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(cut_off), cmocka_unit_test(light),
-                                       cmocka_unit_test(simple),  cmocka_unit_test(blades),
-                                       cmocka_unit_test(figures), cmocka_unit_test(profiles),
-                                       cmocka_unit_test(refused)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* test_corners.c: the hidden background of a tile is looked for with the blur of each of its
  * corners where they differ, and its means lie between those of the corners. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <stdlib.h>
 
 #include "gather/corners.h"
@@ -30,7 +27,7 @@ static void make_scene(struct scene *scene, const int pixels[SIDE * SIDE])
     scene->frame.bins = scene->bins;
 }
 
-static void blurs(void **state)
+TEST(blurs)
 {
     static const int step[] = {20, 20, 12, 20, 20, 12, 20, 20, 12};
     static const int subject[] = {-5, -5, 20, -5, -5, 20, -5, -5, 20}; /* more than 10 apart */
@@ -39,7 +36,6 @@ static void blurs(void **state)
     struct rf_corners corners;
     struct scene scene;
 
-    (void)state;
     make_scene(&scene, step);
     rf_find_corners(&corners, &scene.frame, 1, 1);
     assert_true(corners.across && !corners.down && corners.count == 2);
@@ -63,14 +59,13 @@ static void blurs(void **state)
 }
 
 /* Means of a corner are those of the one before only if rays see the same, and in the same rows. */
-static void repeats(void **state)
+TEST(repeats)
 {
     static const int any[SIDE * SIDE];
     const struct rf_corners corners = {.count = 4, .blur = {8 * 256, -12 * 256, 3 * 256, -3 * 256}};
     const struct rf_tile_plan plan = {.least = 5 * 256};
     struct scene scene;
 
-    (void)state;
     make_scene(&scene, any);
     assert_false(rf_corner_repeats(&corners, 0, &scene.frame, &plan, false));
     assert_true(rf_corner_repeats(&corners, 1, &scene.frame, &plan, false));
@@ -87,13 +82,12 @@ static int weight(bool differs, bool farther, int sample, int n)
     return !differs ? 32 : farther ? part : 32 - part;
 }
 
-static void between(void **state)
+TEST(between)
 {
     static const struct rf_corner_layout layouts[] = {{1, 1}, {2, 1}, {2, 2}};
     static uint16_t mean[4][LANES], out[LANES];
     static uint32_t sum[LANES];
 
-    (void)state;
     for (int k = 0; k < 4; k++)
         for (int i = 0; i < LANES; i++)
             mean[k][i] = (uint16_t)(i % 7 == 0 ? 65535 : rand() % 65536);
@@ -116,15 +110,4 @@ static void between(void **state)
             assert_int_equal(out[i], expected / 1024);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(blurs),
-        cmocka_unit_test(repeats),
-        cmocka_unit_test(between),
-    };
-
-    return cmocka_run_group_tests_name("corners", tests, NULL, NULL);
 }

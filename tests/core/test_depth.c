@@ -1,13 +1,10 @@
 /* test_depth.c: refocus_depth_to_disparity(): samples, meanings, ranges, strides, holes. */
 #include <math.h>
-#include <setjmp.h>
 #include <stdbool.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/depth.h>
 
 #include "depth/holes.h"
@@ -39,9 +36,8 @@ static struct refocus_depth_map distances_of(uint32_t sample, const void *sample
 }
 
 /* Values of any type that stand for none are filled, and are no end of the range. */
-static void test_unknown_values(void **state)
+TEST(test_unknown_values)
 {
-    (void)state;
     static const uint8_t u8[] = {10, 7, 20, 7, 30, 9};
     static const uint16_t u16[] = {10, 65520, 20, 65520, 30, 9};
     static const float f32[] = {10, -16, 20, -16, 30, 9};
@@ -73,9 +69,8 @@ static void test_unknown_values(void **state)
     }
 }
 
-static void test_disparity_samples(void **state)
+TEST(test_disparity_samples)
 {
-    (void)state;
     static const uint8_t u8[] = {0, 1, 51, 128, 254, 255};
     static const uint16_t u16[] = {0, 1, 13107, 32768, 65534, 65535};
     static const float f32[] = {-1, -0.5f, 0, 0.5f, 1, 3};
@@ -125,9 +120,8 @@ static void test_disparity_samples(void **state)
     assert_true(report.near_m == 0.5 && isinf(report.far_m));
 }
 
-static void test_distances(void **state)
+TEST(test_distances)
 {
-    (void)state;
     static const uint16_t mm[] = {500, 1000, 2000, 4000};
     static const float metres[] = {0.5f, 1, 2, 4};
     static const uint8_t quarters[] = {1, 3, 7, 15}; /* 0.25 + v / 4 */
@@ -184,9 +178,8 @@ static void test_distances(void **state)
     assert_int_equal(report.clamped, 4);
 }
 
-static void test_unknown_samples(void **state)
+TEST(test_unknown_samples)
 {
-    (void)state;
     const float f32[] = {1, NAN, INFINITY, -INFINITY, 0, -2, 4};
     uint16_t out[7];
     struct refocus_depth_report report = refocus_depth_report_default();
@@ -219,12 +212,11 @@ static void test_unknown_samples(void **state)
 
 /* 65535 of distances is a hole where less than a hundredth of the samples has it, and far away
  * where more have it; of disparities it is the nearest. */
-static void the_greatest_distance(void **state)
+TEST(the_greatest_distance)
 {
     enum { W = 200, MOST = 350 * W };
     static uint16_t samples[MOST], out[MOST];
 
-    (void)state;
     for (int size = W; size <= MOST; size += MOST - W) {
         for (int greatest = size / 100 - 1; greatest <= size / 100; greatest++) {
             struct refocus_depth_report report = refocus_depth_report_default();
@@ -249,7 +241,7 @@ static void the_greatest_distance(void **state)
 }
 
 /* In a video 65535 changes its meaning where its share is another one by far, not at each map. */
-static void the_greatest_distance_in_video(void **state)
+TEST(the_greatest_distance_in_video)
 {
     enum { W = 100, H = 50, PERCENT = W * H / 100 };
     static const struct {
@@ -262,7 +254,6 @@ static void the_greatest_distance_in_video(void **state)
     struct refocus_depth_map map = distances_of(REFOCUS_SAMPLE_U16, samples, W, H);
     uint32_t flags = 0;
 
-    (void)state;
     for (size_t i = 0; i < sizeof maps / sizeof *maps; i++) {
         for (int k = 0; k < W * H; k++)
             samples[k] = k < maps[i].count ? 65535 : 1000;
@@ -279,13 +270,12 @@ static void the_greatest_distance_in_video(void **state)
 
 /* A round hole in a slope is filled from its sides and smoothed: what lies farthest off the slope
  * is a seventh of what it rises by from the hole's middle to its side. */
-static void holes_in_slopes(void **state)
+TEST(holes_in_slopes)
 {
     enum { W = 140, H = 110, X = 70, Y = 55, SLOPE = 30 };
     static uint16_t map[W * H];
     static uint8_t known[W * H];
 
-    (void)state;
     for (int radius = 10; radius <= 40; radius += 10) {
         int most = 0;
 
@@ -354,18 +344,16 @@ static void large_like_rows(uint32_t sample, uint32_t meaning)
     assert_true(clamped > W && clamped == all.clamped);
 }
 
-static void test_large_maps(void **state)
+TEST(test_large_maps)
 {
-    (void)state;
     large_like_rows(REFOCUS_SAMPLE_U16, REFOCUS_DEPTH_DISPARITY);
     large_like_rows(REFOCUS_SAMPLE_U16, REFOCUS_DEPTH_DISTANCE);
     large_like_rows(REFOCUS_SAMPLE_U8, REFOCUS_DEPTH_DISPARITY);
     large_like_rows(REFOCUS_SAMPLE_U8, REFOCUS_DEPTH_DISTANCE);
 }
 
-static void test_one_depth(void **state)
+TEST(test_one_depth)
 {
-    (void)state;
     static const uint8_t same[6] = {77, 77, 0, 77, 77, 77};
     static const uint8_t one = 200;
     uint16_t out[6];
@@ -388,9 +376,8 @@ static void test_one_depth(void **state)
 }
 
 /* Rows anywhere: odd addresses, odd and negative strides; nothing is written between rows. */
-static void test_strides(void **state)
+TEST(test_strides)
 {
-    (void)state;
     enum { W = 5, H = 4, STRIDE = 2 * W + 3 };
     unsigned char bytes[1 + H * STRIDE];
     uint16_t plain[W * H], out[H][W + 2], straight[W * H];
@@ -423,9 +410,8 @@ static void test_strides(void **state)
     }
 }
 
-static void test_bad_arguments(void **state)
+TEST(test_bad_arguments)
 {
-    (void)state;
     static const uint16_t samples[6] = {1, 2, 3, 4, 5, 6};
     const struct refocus_depth_map good = distances_of(REFOCUS_SAMPLE_U16, samples, 3, 2);
     struct refocus_depth_map bad[26];
@@ -479,9 +465,8 @@ static void test_bad_arguments(void **state)
 }
 
 /* The two ends of the sizes, with one sample known. */
-static void test_long_rows(void **state)
+TEST(test_long_rows)
 {
-    (void)state;
     enum { N = 65535 };
     uint16_t *samples = calloc(N, sizeof *samples);
     uint16_t *out = malloc(N * sizeof *out);
@@ -508,9 +493,8 @@ static void test_long_rows(void **state)
 }
 
 /* A near post before a far wall with the shadow beside it that a depth sensor leaves. */
-static void test_fill_takes_the_farther_side(void **state)
+TEST(test_fill_takes_the_farther_side)
 {
-    (void)state;
     enum { W = 64, H = 48 };
     float z[H][W];
     uint16_t out[H][W], again[H][W];
@@ -540,7 +524,7 @@ static void test_fill_takes_the_farther_side(void **state)
 }
 
 /* Maps and reports of an older and a newer program. */
-static void other_sizes(void **state)
+TEST(other_sizes)
 {
     struct newer_map {
         struct refocus_depth_map known;
@@ -553,7 +537,6 @@ static void other_sizes(void **state)
     static const uint16_t mm[4] = {1000, 2000, 3000, 4000};
     uint16_t plain[4], out[4];
 
-    (void)state;
     memset(&map, 0, sizeof map);
     memset(&report, 0xa5, sizeof report);
     map.known = distances_of(REFOCUS_SAMPLE_U16, mm, 4, 1);
@@ -570,25 +553,4 @@ static void other_sizes(void **state)
     assert_int_equal(refocus_depth_to_disparity(&map.known, out, 8, &report.known), REFOCUS_OK);
     assert_memory_equal(plain, out, sizeof out);
     assert_true(report.added == 9 && report.known.unknown == 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(other_sizes),
-        cmocka_unit_test(test_unknown_values),
-        cmocka_unit_test(test_disparity_samples),
-        cmocka_unit_test(test_distances),
-        cmocka_unit_test(test_unknown_samples),
-        cmocka_unit_test(the_greatest_distance),
-        cmocka_unit_test(the_greatest_distance_in_video),
-        cmocka_unit_test(test_one_depth),
-        cmocka_unit_test(test_strides),
-        cmocka_unit_test(test_bad_arguments),
-        cmocka_unit_test(test_long_rows),
-        cmocka_unit_test(holes_in_slopes),
-        cmocka_unit_test(test_large_maps),
-        cmocka_unit_test(test_fill_takes_the_farther_side),
-    };
-    return cmocka_run_group_tests_name("depth", tests, NULL, NULL);
 }

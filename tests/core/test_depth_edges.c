@@ -13,12 +13,11 @@ enum { SCENES = sizeof scenes / sizeof *scenes };
 /* ----- maps that need nothing ----- */
 
 /* Whatever the contrast of the edges, and so whatever K the map is rendered with. */
-static void exact_stays(void **state)
+TEST(exact_stays)
 {
     static const double contrasts[] = {1, 0.5, 0.125};
     struct picture p = make(WIDTH, HEIGHT);
 
-    (void)state;
     for (int i = 0; i < SCENES; i++)
         for (int k = 0; k < 3; k++) {
             struct refocus_depth_edges_report report;
@@ -33,7 +32,7 @@ static void exact_stays(void **state)
     end(&p);
 }
 
-static void exact_codes_stay(void **state)
+TEST(exact_codes_stay)
 {
     struct picture p = make(WIDTH, HEIGHT);
     uint8_t *codes = malloc(WIDTH * HEIGHT);
@@ -41,7 +40,6 @@ static void exact_codes_stay(void **state)
     const struct refocus_image photo = photo_of(&p);
     struct refocus_disparity map = refocus_disparity16(p.map, WIDTH, HEIGHT, WIDTH);
 
-    (void)state;
     assert_non_null(codes);
     map.samples = codes;
     map.bits = 8;
@@ -60,12 +58,11 @@ static void exact_codes_stay(void **state)
 }
 
 /* A photo that shows nothing tells nothing: a map that is off stays as it is. */
-static void grey_photo(void **state)
+TEST(grey_photo)
 {
     struct picture p = make(WIDTH, HEIGHT);
     struct refocus_depth_edges_report report;
 
-    (void)state;
     for (int i = 0; i < SCENES; i++) {
         draw(&p, scenes[i], 1);
         memset(p.rgb, 128, 3 * WIDTH * HEIGHT);
@@ -92,12 +89,11 @@ static bool far_from_edges(scene_fn *scene, int x, int y, int reach)
 }
 
 /* Slopes that are longer than a ramp can be stay, and so do round things. */
-static void slopes_stay(void **state)
+TEST(slopes_stay)
 {
     static scene_fn *const sloping[] = {planes, sphere, paraboloid};
     struct picture p = make(WIDTH, HEIGHT);
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         int looked_at = 0, most = 0;
 
@@ -120,13 +116,12 @@ static void slopes_stay(void **state)
 
 /* Blurred by a Gaussian of 2 pixels, 91.3 % of the pixels are within 0.02 of the exact map; all of
  * them are afterwards. A wire of 0.7 before 0.2, of which the map makes 0.39, is within 0.018. */
-static void soft_is_parted(void **state)
+TEST(soft_is_parted)
 {
     struct picture p = make(WIDTH, HEIGHT);
     struct refocus_depth_edges_report report;
     int most = 0;
 
-    (void)state;
     draw(&p, disc_and_wire, 1);
     soften(&p, 2, 0);
     assert_true(share_within(&p, p.map, 0.02) < 0.92);
@@ -147,12 +142,11 @@ static void soft_is_parted(void **state)
 
 /* A map that is smoothed by less than a pixel has mixtures of two surfaces along its edges, be they
  * one pixel wide: 1.3 to 2.8 % of the pixels. All are given to one or the other. */
-static void antialiased_is_parted(void **state)
+TEST(antialiased_is_parted)
 {
     static const double sigmas[] = {0.5, 0.7, 1};
     struct picture p = make(WIDTH, HEIGHT);
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         struct refocus_depth_edges_report report;
 
@@ -168,11 +162,10 @@ static void antialiased_is_parted(void **state)
 
 /* Lossy compression adds waves beside the edges of an exact map, so that most of its ramps look
  * soft. It stays as it is. */
-static void compressed_stays(void **state)
+TEST(compressed_stays)
 {
     struct picture p = make(WIDTH, HEIGHT);
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct refocus_depth_edges_report report;
 
@@ -200,12 +193,11 @@ static struct seen strip(double x, double y)
 }
 
 /* Edges everywhere, and none that has to do with the map. */
-static void unrelated_photo(void **state)
+TEST(unrelated_photo)
 {
     struct picture p = make(WIDTH, HEIGHT);
     int bent = 0;
 
-    (void)state;
     random_state = 23;
     for (int i = 0; i < 8 * SCENES; i++) {
         draw(&p, scenes[i % SCENES], 1);
@@ -220,12 +212,11 @@ static void unrelated_photo(void **state)
 /* Where the photo shows nothing the map itself decides: at the middle of each ramp. Of the disc
  * 99.94 % of the pixels are right, of the strip all; by votes alone its edge would be a pixel off.
  */
-static void soft_before_grey(void **state)
+TEST(soft_before_grey)
 {
     scene_fn *const scene[] = {disc, strip};
     struct picture p = make(WIDTH, HEIGHT);
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         draw(&p, scene[i], 1);
         memset(p.rgb, 128, 3 * WIDTH * HEIGHT);
@@ -239,11 +230,10 @@ static void soft_before_grey(void **state)
 
 /* One pixel of ten has a colour of the other surface. Those beside the edge that are given to it
  * are put right by their neighbours: 99.87 % of the pixels are right, without that 99.74 %. */
-static void specks_of_photo(void **state)
+TEST(specks_of_photo)
 {
     struct picture p = make(WIDTH, HEIGHT);
 
-    (void)state;
     draw(&p, disc, 1);
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         if (random_bits() % 10 == 0)
@@ -256,12 +246,11 @@ static void specks_of_photo(void **state)
 
 /* Overshoot of 0.022 on either side of an edge: 96.1 % of the pixels are within 0.02 of the exact
  * map before, 99.8 % afterwards. */
-static void overshoot_goes(void **state)
+TEST(overshoot_goes)
 {
     struct picture p = make(WIDTH, HEIGHT);
     int most = 0;
 
-    (void)state;
     draw(&p, disc, 1);
     soften(&p, 2, 1);
     for (int i = 0; i < WIDTH * HEIGHT; i++)
@@ -303,11 +292,10 @@ static int steps(const uint16_t *map)
 /* A ramp of little contrast is parted where the photo has an edge, too: 99.9 % of the pixels are
  * within 0.01 of the exact map. Where the photo has none it stays smooth, but near corners, where
  * most of what is around a pixel is on one side: 41 steps, parted 120. */
-static void weak_ramps(void **state)
+TEST(weak_ramps)
 {
     struct picture p = make(WIDTH, HEIGHT);
 
-    (void)state;
     draw(&p, unseen_part, 1);
     soften(&p, 2, 0);
     assert_true(place(&p).parted == 1);
@@ -353,12 +341,11 @@ static struct refocus_depth_edges_report place_small(const struct picture *p, in
 }
 
 /* Samples that are means over areas mix the two surfaces along edges. */
-static void small_means(void **state)
+TEST(small_means)
 {
     static const int sides[] = {2, 3, 4, 6};
     struct picture p = make(WIDTH, HEIGHT);
 
-    (void)state;
     for (int i = 0; i < 4; i++) {
         struct refocus_depth_edges_report report;
 
@@ -373,7 +360,7 @@ static void small_means(void **state)
 }
 
 /* Samples at points go through refocus_upsample() as they are, where the map lies on the photo. */
-static void small_points(void **state)
+TEST(small_points)
 {
     enum { SIDE = 5 };
     struct picture p = make(WIDTH, HEIGHT);
@@ -383,7 +370,6 @@ static void small_points(void **state)
         refocus_disparity16(p.map, WIDTH / SIDE, HEIGHT / SIDE, 2 * (WIDTH / SIDE));
     struct refocus_depth_edges_report report;
 
-    (void)state;
     draw(&p, disc, 1);
     reduce(&p, SIDE, false);
     report = place_small(&p, SIDE);
@@ -408,9 +394,8 @@ static struct seen twice_the_disc(double x, double y)
 
 /* As of a sensor beside the camera: of samples at points that are 4 pixels off; and of twice the
  * size, where the photo is reduced to half its own. */
-static void displaced_points_return(void **state)
+TEST(displaced_points_return)
 {
-    (void)state;
     for (int times = 1; times <= 2; times++) {
         scene_fn *const scene = times == 1 ? disc : twice_the_disc;
         struct picture p = make(times * WIDTH, times * HEIGHT);
@@ -446,7 +431,7 @@ static struct seen smaller_disc(double x, double y)
 
 /* A disc that was too large or too small by four pixels leaves 0.1 % of the pixels at its outline
  * wrong, where a digital disc of that radius is no circle; one that was shifted leaves none. */
-static void displaced_returns(void **state)
+TEST(displaced_returns)
 {
     static const struct {
         scene_fn *map;
@@ -454,7 +439,6 @@ static void displaced_returns(void **state)
     } cases[] = {{larger_disc, 0, 0, 4}, {smaller_disc, 0, 0, -4}, {disc, 3, -2, 0}};
     struct picture p = make(WIDTH, HEIGHT);
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         struct refocus_depth_edges_report report;
         double share;
@@ -490,12 +474,11 @@ static struct seen parted_discs(double x, double y)
 
 /* Nothing is common to all edges, but much to those near by: 94.0 % of the pixels are exact before,
  * 99.9 % after. */
-static void bent_returns(void **state)
+TEST(bent_returns)
 {
     struct picture p = make(WIDTH, HEIGHT);
     struct refocus_depth_edges_report report;
 
-    (void)state;
     draw(&p, discs, 1);
     displace(&p, parted_discs, 0, 0);
     assert_true(share_within(&p, p.map, 0) < 0.95);
@@ -508,12 +491,11 @@ static void bent_returns(void **state)
 
 /* One in 30 samples of the map is anything: 96.9 % are exact before, 99.9 % after. Of noise the
  * report says how strong it was. */
-static void specks_of_map(void **state)
+TEST(specks_of_map)
 {
     struct picture p = make(WIDTH, HEIGHT);
     struct refocus_depth_edges_report report;
 
-    (void)state;
     draw(&p, disc, 1);
     report = place(&p);
     assert_true(report.specks == 0 && report.noise == 0);
@@ -530,30 +512,4 @@ static void specks_of_map(void **state)
             p.map[i] = (uint16_t)(p.map[i] + random_bits() % 1857) - 928;
     assert_true(fabs(place(&p).noise - 0.02) < 0.003);
     end(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(exact_stays),
-        cmocka_unit_test(exact_codes_stay),
-        cmocka_unit_test(grey_photo),
-        cmocka_unit_test(unrelated_photo),
-        cmocka_unit_test(slopes_stay),
-        cmocka_unit_test(soft_is_parted),
-        cmocka_unit_test(antialiased_is_parted),
-        cmocka_unit_test(compressed_stays),
-        cmocka_unit_test(soft_before_grey),
-        cmocka_unit_test(specks_of_photo),
-        cmocka_unit_test(overshoot_goes),
-        cmocka_unit_test(weak_ramps),
-        cmocka_unit_test(small_means),
-        cmocka_unit_test(small_points),
-        cmocka_unit_test(displaced_points_return),
-        cmocka_unit_test(displaced_returns),
-        cmocka_unit_test(bent_returns),
-        cmocka_unit_test(specks_of_map),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

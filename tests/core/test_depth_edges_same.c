@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void reports_by_size(void **state)
+TEST(reports_by_size)
 {
     struct {
         struct refocus_depth_edges_report report;
@@ -19,7 +19,6 @@ static void reports_by_size(void **state)
     uint16_t *other = malloc(2 * WIDTH * HEIGHT);
     struct refocus_depth_edges_report known, untouched;
 
-    (void)state;
     assert_non_null(other);
     draw(&p, disc, 1);
     soften(&p, 2, 0);
@@ -121,11 +120,10 @@ static struct result run(const struct picture *p, const int size[4], uint32_t cp
 }
 
 /* Every instruction set and any number of threads give equal bits, of the report too. */
-static void same_everywhere(void **state)
+TEST(same_everywhere)
 {
     static const int threads[] = {1, 2, 5};
 
-    (void)state;
     for (int i = 0; i < SIZES * KINDS; i++) {
         const int *size = sizes[i / KINDS];
         struct picture p = make_any(size, i % KINDS);
@@ -164,12 +162,11 @@ static uint8_t *turn(const void *rows, size_t bytes, size_t gap, int height)
 
 /* Rows that lie bottom-up and apart, in another order of colours, come to the same; what lies
  * between the rows of the result is left alone. */
-static void same_by_other_ways(void **state)
+TEST(same_by_other_ways)
 {
     enum { GAP = 6 };
     const struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
 
-    (void)state;
     for (int i = 0; i < SIZES * KINDS; i++) {
         const int *size = sizes[i / KINDS];
         struct picture p = make_any(size, i % KINDS);
@@ -259,14 +256,13 @@ static void place_by_codes(const struct picture *p, uint32_t format, uint16_t *o
 }
 
 /* Formats that share chroma alike come to the same; grey ones to that of R, G and B. */
-static void luma_and_chroma(void **state)
+TEST(luma_and_chroma)
 {
     for (int i = 0; i < 2; i++) {
         struct picture p = make(WIDTH - i, HEIGHT - i);
         const size_t bytes = 2 * (size_t)p.width * (size_t)p.height;
         uint16_t *first = malloc(bytes);
 
-        (void)state;
         assert_non_null(first);
         draw(&p, disc, 1);
         soften(&p, 2, 0);
@@ -289,16 +285,4 @@ static void luma_and_chroma(void **state)
         free(first);
         end(&p);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reports_by_size),
-        cmocka_unit_test(same_everywhere),
-        cmocka_unit_test(same_by_other_ways),
-        cmocka_unit_test(luma_and_chroma),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* test_depth_holes.c: holes at the border of a depth map, with a thin thing or a wide one beside.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/depth.h>
 
 #include "depth/holes.h"
@@ -63,9 +60,8 @@ static int near_in_hole(int border)
 }
 
 /* A thing as wide as the hole is deep, or with a gap behind it, ends where it was measured. */
-static void thin_things_end(void **nothing)
+TEST(thin_things_end)
 {
-    (void)nothing;
     for (int border = 0; border < 4; border++) {
         for (int gap = 0; gap <= 6; gap += 6) {
             fill(border, HOLE, 60000, gap);
@@ -78,9 +74,8 @@ static void thin_things_end(void **nothing)
 }
 
 /* A wider thing goes on to the border, and so does one that is nearer by less than half. */
-static void wide_things_go_on(void **nothing)
+TEST(wide_things_go_on)
 {
-    (void)nothing;
     for (int border = 0; border < 4; border++) {
         fill(border, HOLE + 1, 60000, 0);
         assert_int_equal(near_in_hole(border), HOLE);
@@ -109,18 +104,16 @@ static int fill_beside_near(int border)
 
 /* Without an other side, a step of 60000 outweighs 30 / 4 * 60000 / 65535 = 6.9 samples, and the
  * way to the border is longer by half of what it goes to the side: 13 samples. */
-static void surfaces_go_on_to_the_border(void **nothing)
+TEST(surfaces_go_on_to_the_border)
 {
-    (void)nothing;
     for (int border = 0; border < 4; border++)
         assert_in_range(fill_beside_near(border), 12, 14);
 }
 
 /* A dent of the hole at the top, between known samples of its rows, has nothing that the samples
  * above it do not have, however far what is left of them. */
-static void dents_follow_what_is_above(void **nothing)
+TEST(dents_follow_what_is_above)
 {
-    (void)nothing;
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) {
             map[y][x] = x < 60 ? FAR : 42000;
@@ -134,9 +127,8 @@ static void dents_follow_what_is_above(void **nothing)
 }
 
 /* Lines without a known sample, and maps of one line, have nothing to look behind. */
-static void lines_without_samples(void **nothing)
+TEST(lines_without_samples)
 {
-    (void)nothing;
     memset(map, 0, sizeof map);
     memset(state, RF_SAMPLE_UNKNOWN, sizeof state);
     map[9][7] = 60000;
@@ -175,11 +167,10 @@ static void fill_sparse(uint32_t percent, int strip)
  * far, but holes are still farther. Gaps end two distances of samples off: 9.4 pixels with 5
  * percent.
  */
-static void gaps_are_no_holes(void **nothing)
+TEST(gaps_are_no_holes)
 {
     enum { EDGE = 6, STRIP = 24 };
 
-    (void)nothing;
     for (uint32_t percent = 5; percent <= 40; percent += 5) {
         int near = 0;
 
@@ -205,9 +196,8 @@ static void gaps_are_no_holes(void **nothing)
 }
 
 /* A map that is dense where it has any samples, a fifth of it, is no sparse one. */
-static void parts_are_dense(void **nothing)
+TEST(parts_are_dense)
 {
-    (void)nothing;
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) {
             map[y][x] = x < 54 ? FAR : 62000;
@@ -221,9 +211,8 @@ static void parts_are_dense(void **nothing)
 
 /* A tilted, noisy floor with a round hole: inpainted near its plane, and rows inside do not
  * differ from those above and below more than the surface itself does. */
-static void fill_leaves_no_streaks(void **test)
+TEST(fill_leaves_no_streaks)
 {
-    (void)test;
     enum { W = 160, H = 120, R = 24 };
     static uint16_t v[H][W], out[H][W];
     uint32_t seed = 1;
@@ -303,12 +292,11 @@ static int silhouette_by(const struct refocus_repair_params *given, uint8_t near
 
 /* A hole is filled from the surface that looks like it, in memory of the caller as well; and from
  * the farther one where both look the same. */
-static void photo_says_which_side(void **nothing)
+TEST(photo_says_which_side)
 {
     struct refocus_repair_params params = refocus_repair_params_default();
     const size_t photo_bytes = (size_t)6 * SIDE * SIDE;
 
-    (void)nothing;
     assert_int_equal(silhouette_by(&params, 200, 60), SILHOUETTE);
     assert_int_equal(silhouette_by(&params, 60, 200), SILHOUETTE);
     assert_int_equal(silhouette_by(&params, 100, 100), HOLE_FROM);
@@ -318,21 +306,4 @@ static void photo_says_which_side(void **nothing)
     assert_non_null(params.memory);
     assert_int_equal(silhouette_by(&params, 200, 60), SILHOUETTE);
     free(params.memory);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(thin_things_end),
-        cmocka_unit_test(wide_things_go_on),
-        cmocka_unit_test(surfaces_go_on_to_the_border),
-        cmocka_unit_test(dents_follow_what_is_above),
-        cmocka_unit_test(lines_without_samples),
-        cmocka_unit_test(gaps_are_no_holes),
-        cmocka_unit_test(parts_are_dense),
-        cmocka_unit_test(fill_leaves_no_streaks),
-        cmocka_unit_test(photo_says_which_side),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,14 +2,11 @@
  * is left.
  *
  * This program is linked with --wrap=malloc and so on. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 
 #include "failing.h"
@@ -59,7 +56,7 @@ static int upsample_in_threads(void)
 }
 
 /* No plane but the result has the photo's size. */
-static void stated_upsample(void **state)
+TEST(stated_upsample)
 {
     enum { WIDTH = 300, HEIGHT = 1200, COLUMNS = 75, ROWS = 300, SHARE = 40000 };
     const size_t most = 8 * COLUMNS * ROWS + 330 * WIDTH * (HEIGHT / ROWS + 1) + SHARE;
@@ -70,7 +67,6 @@ static void stated_upsample(void **state)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, WIDTH, HEIGHT, 3 * WIDTH);
     const struct refocus_disparity map = refocus_disparity16(samples, COLUMNS, ROWS, 2 * COLUMNS);
 
-    (void)state;
     assert_true(pixels && samples && result);
     params.threads = 1;
     failing.held = failing.peak = 0;
@@ -177,7 +173,7 @@ static int repair_large(void)
 
 /* In memory that is given nothing is allocated, the result is the same, and no byte behind it is
  * touched; with less, or beside its alignment, it is refused. */
-static void repairs_in_memory_given(void **state)
+TEST(repairs_in_memory_given)
 {
     static uint16_t allocated[W * H];
     const size_t bytes = (size_t)refocus_repair_memory(260, 260, 4);
@@ -186,7 +182,6 @@ static void repairs_in_memory_given(void **state)
     struct refocus_depth_map map = refocus_depth_map_default();
     const struct refocus_image image = photo();
 
-    (void)state;
     assert_non_null(work);
     assert_int_equal(bytes, 458752 + 5 * 260 * 260);
     assert_int_equal(refocus_repair_memory(260, 260, 0), 458752 + 260 * 260);
@@ -327,16 +322,14 @@ static void fail_each(int (*run)(void), int least, int whole)
     assert_int_equal(failing.live, 0);
 }
 
-static void failing_upsample(void **state)
+TEST(failing_upsample)
 {
-    (void)state;
     fail_each(upsample_alone, 1, 1);
     fail_each(upsample_in_threads, 1, 1);
 }
 
-static void failing_edges(void **state)
+TEST(failing_edges)
 {
-    (void)state;
     fail_each(place_sharp_edges, 1, 0);
     fail_each(place_soft_edges, 1, 0);
     fail_each(place_coarse_edges, 1, 0);
@@ -344,7 +337,7 @@ static void failing_edges(void **state)
 
 /* The memory for the largest picture that there can be is counted in 64 bits, and nothing is read
  * before it is there. */
-static void largest_edges(void **state)
+TEST(largest_edges)
 {
     const struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
     const int64_t side = REFOCUS_MAX_SIDE;
@@ -353,7 +346,6 @@ static void largest_edges(void **state)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, n, n, (ptrdiff_t)(3 * side));
     const struct refocus_disparity map = refocus_disparity16(fine, n, n, (ptrdiff_t)(2 * side));
 
-    (void)state;
     memset(out, UNTOUCHED & 255, sizeof out);
     failing.calls = failing.live = 0;
     failing.fail_at = 1;
@@ -364,34 +356,20 @@ static void largest_edges(void **state)
     assert_true(is_untouched());
 }
 
-static void failing_repair(void **state)
+TEST(failing_repair)
 {
-    (void)state;
     fail_each(repair, 2, 0);
     fail_each(repair_large, 3, 0);
 }
 
-static void failing_filter(void **state)
+TEST(failing_filter)
 {
-    (void)state;
     fail_each(filter, 2, 1);
 }
 
-static void failing_stack(void **state)
+TEST(failing_stack)
 {
-    (void)state;
     fail_each(make_of_stack, 2, 1);
     fail_each(make_of_light, 3, 1);
     fail_each(make_of_apertures, 2, 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(failing_upsample), cmocka_unit_test(stated_upsample),
-        cmocka_unit_test(failing_edges),    cmocka_unit_test(largest_edges),
-        cmocka_unit_test(failing_repair),   cmocka_unit_test(repairs_in_memory_given),
-        cmocka_unit_test(failing_filter),   cmocka_unit_test(failing_stack)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* test_dequantise.c: which maps are taken for maps of few codes, and what becomes of them. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 
 #include "depth/dequantise.h"
 #include "support/pool.h"
@@ -33,13 +30,12 @@ static struct refocus_disparity map_of(const uint16_t *map)
     return refocus_disparity16(map, WIDTH, HEIGHT, 2 * WIDTH);
 }
 
-static void steps_of_maps(void **state)
+TEST(steps_of_maps)
 {
     static uint16_t map[PIXELS];
     static uint8_t bytes[PIXELS];
     struct refocus_disparity d = map_of(map);
 
-    (void)state;
     draw(map, 1);
     assert_int_equal(rf_code_step(&d), 0);
     draw(map, 257);
@@ -67,12 +63,11 @@ static void steps_of_maps(void **state)
 }
 
 /* 40 boards one behind the other, 1600 apart: each edge is real. */
-static void boards_stay(void **state)
+TEST(boards_stay)
 {
     static uint16_t map[PIXELS];
     const struct refocus_disparity d = map_of(map);
 
-    (void)state;
     for (int i = 0; i < PIXELS; i++)
         map[i] = (uint16_t)(i % WIDTH / 5 * 1600);
     assert_int_equal(rf_code_step(&d), 0);
@@ -128,13 +123,12 @@ static void run(uint16_t *map, int step, uint32_t cpu, int threads)
     rf_pool_end(&pool);
 }
 
-static void slopes_come_back(void **state)
+TEST(slopes_come_back)
 {
     static uint16_t map[PIXELS], coarse[PIXELS], other[PIXELS];
     double before, after;
     int most_before, most_after, edges = 0;
 
-    (void)state;
     draw(coarse, 257);
     memcpy(map, coarse, sizeof map);
     run(map, 257, REFOCUS_CPU_C, 1);
@@ -160,9 +154,8 @@ static void slopes_come_back(void **state)
 }
 
 /* Codes at both ends of the range, and pictures smaller than the reach. */
-static void ends_and_small_maps(void **state)
+TEST(ends_and_small_maps)
 {
-    (void)state;
     for (int width = 1; width <= 20; width++)
         for (int height = 1; height <= 20; height++) {
             uint16_t map[400], spare[2][400];
@@ -193,7 +186,7 @@ static void ends_and_small_maps(void **state)
 
 /* A few pixels by themselves are as in the whole map: at its corners, sides and within, and without
  * a step as they came. */
-static void patches(void **state)
+TEST(patches)
 {
     enum { SIDE = RF_DEQUANTISE_PATCH };
     static const int at[][4] = {
@@ -205,7 +198,6 @@ static void patches(void **state)
     uint32_t cpu = REFOCUS_CPU_AUTO;
     uint16_t patch[SIDE * SIDE];
 
-    (void)state;
     assert_true(rf_kernels_select(&kernels, &cpu));
     draw(map, 257);
     memcpy(whole, map, sizeof whole);
@@ -219,14 +211,4 @@ static void patches(void **state)
                 assert_memory_equal(patch + y * at[i][2], from + y * WIDTH,
                                     (size_t)at[i][2] * sizeof *patch);
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(steps_of_maps), cmocka_unit_test(boards_stay),
-        cmocka_unit_test(slopes_come_back), cmocka_unit_test(ends_and_small_maps),
-        cmocka_unit_test(patches)};
-
-    return cmocka_run_group_tests_name("dequantise", tests, NULL, NULL);
 }

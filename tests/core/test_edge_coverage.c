@@ -44,12 +44,11 @@ static void cover(struct picture *p, scene_fn *scene)
 
 /* A mean of two disparities would be blurred whether the one or the other is in focus: 0.6 to 1.0 %
  * of the pixels are such. Afterwards all but 0.02 % are within 0.02 of the exact map. */
-static void silhouettes(void **state)
+TEST(silhouettes)
 {
     scene_fn *const scenes[] = {disc, square, half};
     struct picture p = make(WIDTH, HEIGHT);
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         struct refocus_depth_edges_report report;
 
@@ -65,12 +64,11 @@ static void silhouettes(void **state)
 
 /* Means spread what is thin over a pixel and no farther. The square is at 0.8, and wires that are
  * nearer than 0.7 were taken for softer ones. */
-static void thin_wires(void **state)
+TEST(thin_wires)
 {
     struct picture p = make(WIDTH, HEIGHT);
     int most = 0;
 
-    (void)state;
     draw(&p, square_and_wires, 1);
     cover(&p, square_and_wires);
     assert_true(place(&p).parted == 1);
@@ -78,14 +76,4 @@ static void thin_wires(void **state)
         most = p.out[i] > most ? p.out[i] : most;
     assert_in_range(most, 65535 * 7 / 10, 65535 * 81 / 100);
     end(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(silhouettes),
-        cmocka_unit_test(thin_wires),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -68,32 +68,20 @@ static double place_wires(width_fn *wider, struct refocus_depth_edges_report *re
 }
 
 /* Two pixels of all wires too many are taken away, and none of the wires themselves. */
-static void even_growth(void **state)
+TEST(even_growth)
 {
     struct refocus_depth_edges_report report;
 
-    (void)state;
     assert_true(place_wires(even, &report) == 1);
     assert_true(report.grown == 2);
 }
 
 /* Where wires are too wide by different lengths no one length is taken away: they would have gaps.
  */
-static void uneven_growth(void **state)
+TEST(uneven_growth)
 {
     struct refocus_depth_edges_report report;
 
-    (void)state;
     assert_true(place_wires(uneven, &report) == 1);
     assert_true(report.grown == 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(even_growth),
-        cmocka_unit_test(uneven_growth),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

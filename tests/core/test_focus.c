@@ -1,12 +1,9 @@
 /* test_focus.c: the focus that a tap, a rectangle, three points or a line mean. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 
 enum { W = 60, H = 40 };
@@ -28,9 +25,8 @@ static int tap(int x, int y, int radius)
     return (int)floor((double)focus * 65535 + 0.5);
 }
 
-static void taps(void **state)
+TEST(taps)
 {
-    (void)state;
     halves(12345, 54321);
     assert_int_equal(tap(5, 5, 0), 12345);
     assert_int_equal(tap(55, 5, 0), 54321);
@@ -54,24 +50,22 @@ static void taps(void **state)
     assert_int_equal(tap(3, 3, 1), 65535);
 }
 
-static void eight_bits(void **state)
+TEST(eight_bits)
 {
     static uint8_t bytes[W * H];
     const struct refocus_disparity small = refocus_disparity8(bytes + (H - 1) * W, W, H, -W);
     float focus;
 
-    (void)state;
     for (int i = 0; i < W * H; i++)
         bytes[i] = i / W < 10 ? 77 : 200; /* bottom-up */
     assert_int_equal(refocus_focus_at_point(&small, 30, H - 5, 2, &focus), REFOCUS_OK);
     assert_true(fabs(focus - 77 / 255.0) < 1e-6);
 }
 
-static void rectangles(void **state)
+TEST(rectangles)
 {
     float focus;
 
-    (void)state;
     halves(10000, 40000);
     assert_int_equal(refocus_focus_in_rectangle(&map, 0, 0, W, H, &focus), REFOCUS_OK);
     assert_true(fabs(focus - 40000 / 65535.0) < 1e-6);
@@ -81,7 +75,7 @@ static void rectangles(void **state)
     assert_true(fabs(focus - 40000 / 65535.0) < 1e-6);
 }
 
-static void bad_picks(void **state)
+TEST(bad_picks)
 {
     const struct refocus_disparity bad[] = {{0},
                                             {sizeof map, 16, W, H, NULL, 2 * W},
@@ -91,7 +85,6 @@ static void bad_picks(void **state)
     static const int outside[][4] = {{-1, 0, 1, 1}, {0, -1, 1, 1}, {W, 0, 1, 1}, {0, H, 1, 1}};
     float focus = 0.25f;
 
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         assert_int_equal(refocus_focus_at_point(&bad[i], 1, 1, 1, &focus), REFOCUS_ERR_ARGUMENT);
         assert_int_equal(refocus_focus_in_rectangle(&bad[i], 1, 1, 1, 1, &focus),
@@ -122,13 +115,12 @@ static double at(const struct refocus_focus_plane *p, double x, double y)
     return p->focus_disparity + p->across * (x - p->x) + p->down * (y - p->y);
 }
 
-static void planes(void **state)
+TEST(planes)
 {
     const struct refocus_focus_point p[3] = {
         {0.1f, 0.9f, 0.8f}, {0.8f, 0.7f, 0.6f}, {0.4f, 0.2f, 0.1f}};
     struct refocus_focus_plane plane;
 
-    (void)state;
     assert_int_equal(refocus_focus_plane_of_points(&plane, p), REFOCUS_OK);
     for (int i = 0; i < 3; i++)
         assert_true(fabs(at(&plane, p[i].x, p[i].y) - p[i].disparity) < 1e-6);
@@ -151,13 +143,12 @@ static void planes(void **state)
     assert_true(fabs(at(&plane, p[1].x, p[1].y) - p[0].disparity) < 1e-6);
 }
 
-static void bad_planes(void **state)
+TEST(bad_planes)
 {
     const struct refocus_focus_point a = {0.2f, 0.2f, 0.5f}, b = {0.4f, 0.4f, 0.1f},
                                      c = {0.8f, 0.8f, 0.2f}, out = {1.2f, 0, 0};
     struct refocus_focus_plane plane;
 
-    (void)state;
     assert_int_equal(
         refocus_focus_plane_of_points(&plane, (struct refocus_focus_point[3]){a, b, c}),
         REFOCUS_ERR_ARGUMENT);
@@ -177,13 +168,4 @@ static void bad_planes(void **state)
     assert_int_equal(refocus_focus_plane_of_line(&plane, &a, &b, 1, NAN), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_focus_plane_of_line(&plane, &a, &b, 1, 89.9), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_focus_plane_of_line(&plane, &a, NULL, 1, 0), REFOCUS_ERR_ARGUMENT);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(taps),       cmocka_unit_test(eight_bits),
-                                       cmocka_unit_test(rectangles), cmocka_unit_test(bad_picks),
-                                       cmocka_unit_test(planes),     cmocka_unit_test(bad_planes)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

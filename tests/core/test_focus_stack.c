@@ -1,20 +1,16 @@
 /* test_focus_stack.c: depth and the photo in focus everywhere, of focus stacks that are drawn. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include "stack_scene.h"
 
-static void finds_surfaces(void **state)
+TEST(finds_surfaces)
 {
     static const struct scene scenes[] = {
         {.left = 0, .right = 4}, {.left = 1, .right = 3}, {.left = 2.4, .right = 0.5}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         struct refocus_stack_result result;
 
@@ -28,7 +24,7 @@ static void finds_surfaces(void **state)
 }
 
 /* Few frames: surfaces between them are found by how their sharpness compares. */
-static void finds_surfaces_in_any_number(void **state)
+TEST(finds_surfaces_in_any_number)
 {
     static const struct {
         int frames;
@@ -42,7 +38,6 @@ static void finds_surfaces_in_any_number(void **state)
         {2, {.left = 0, .right = 0.5}, 0.9},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof stacks / sizeof *stacks; i++) {
         frames = stacks[i].frames;
         draw(&stacks[i].scene);
@@ -52,7 +47,7 @@ static void finds_surfaces_in_any_number(void **state)
     frames = FRAMES;
 }
 
-static void takes_positions(void **state)
+TEST(takes_positions)
 {
     static const struct scene scene = {.left = 1, .right = 3}, apart = {.left = 1, .right = 6};
     static const int order[FRAMES] = {3, 0, 4, 2, 1};
@@ -60,7 +55,6 @@ static void takes_positions(void **state)
     static uint8_t photo_before[3 * PIXELS];
     static uint16_t before[PIXELS];
 
-    (void)state;
     draw(&scene);
     run(NULL, NULL, REFOCUS_STACK_ALIGN_NONE);
     memcpy(before, disparity, sizeof before);
@@ -76,26 +70,24 @@ static void takes_positions(void **state)
     assert_true(fabs(disparity[48 * W + 108] / 65535.0 - 0.6) < 0.03);
 }
 
-static void tells_disorder(void **state)
+TEST(tells_disorder)
 {
     static const struct scene scene = {.left = 1, .right = 3, .scale = 0.003};
     static const int order[FRAMES] = {3, 0, 4, 2, 1}, reversed[FRAMES] = {4, 3, 2, 1, 0};
 
-    (void)state;
     draw(&scene);
     assert_true(run(NULL, NULL, REFOCUS_STACK_ALIGN_SIMILARITY).disorder < 0.05f);
     assert_true(run(reversed, NULL, REFOCUS_STACK_ALIGN_SIMILARITY).disorder < 0.05f);
     assert_true(run(order, NULL, REFOCUS_STACK_ALIGN_SIMILARITY).disorder > 0.5f);
 }
 
-static void undoes_breathing_and_shake(void **state)
+TEST(undoes_breathing_and_shake)
 {
     static const struct scene scenes[] = {
         {.left = 1, .right = 3, .scale = 0.0075},
         {.left = 1, .right = 3, .shift_x = 1.3, .shift_y = -0.8},
         {.left = 3, .right = 1, .scale = -0.005, .shift_x = -0.6, .shift_y = 0.4}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         const struct scene *s = &scenes[i];
         /* The way of the corners of the first and the last frame. */
@@ -115,14 +107,13 @@ static void undoes_breathing_and_shake(void **state)
 
 /* The frame that is focused on the right surface does not show its right end, and ends where that
  * is flat: the other frames, which show texture out of focus there, are not taken for sharp. */
-static void measures_nothing_beyond_the_border(void **state)
+TEST(measures_nothing_beyond_the_border)
 {
     static const struct scene scenes[] = {
         {.left = 0, .right = 4, .flat = 1, .shift_x = 14},
         {.left = 0, .right = 4, .flat = 1, .shift_x = 14, .noise = 2},
         {.left = 0, .right = 4, .flat = 1, .shift_x = 10}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         const double d = scenes[i].right / (FRAMES - 1);
         int wrong = 0;
@@ -138,12 +129,11 @@ static void measures_nothing_beyond_the_border(void **state)
 
 /* The first frame is sharp on the left, but shows nothing of the first six columns, nor the second
  * one of the first three: these are as in the reference, not smeared from beside. */
-static void covers_the_border(void **state)
+TEST(covers_the_border)
 {
     static const struct scene scene = {.left = 0, .right = 3, .shift_x = 3};
     int wrong = 0;
 
-    (void)state;
     draw(&scene);
     run(NULL, NULL, REFOCUS_STACK_ALIGN_SIMILARITY);
     for (int y = 0; y < H; y++)
@@ -154,12 +144,11 @@ static void covers_the_border(void **state)
 
 /* Where the first frame ends, at column 6, the photo goes over from it to the second within two
  * pixels, of a size of 128 and more. */
-static void fades_where_a_frame_ends(void **state)
+TEST(fades_where_a_frame_ends)
 {
     static const struct scene scene = {.left = 0, .right = 3, .shift_x = 3};
     double from_mix = 0, from_first = 0;
 
-    (void)state;
     draw(&scene);
     run(NULL, NULL, REFOCUS_STACK_ALIGN_SIMILARITY);
     for (int y = 8; y < H - 8; y++)
@@ -174,11 +163,10 @@ static void fades_where_a_frame_ends(void **state)
     assert_true(from_mix < from_first / 2);
 }
 
-static void fills_what_is_flat(void **state)
+TEST(fills_what_is_flat)
 {
     static const struct scene scene = {.left = 1, .right = 3, .flat = 1};
 
-    (void)state;
     draw(&scene);
     run(NULL, NULL, REFOCUS_STACK_ALIGN_NONE);
     assert_true(right_share(&scene) > 0.98);
@@ -186,11 +174,10 @@ static void fills_what_is_flat(void **state)
     assert_int_equal(confidence[48 * W + 20], 255);
 }
 
-static void makes_no_blob_of_a_lamp(void **state)
+TEST(makes_no_blob_of_a_lamp)
 {
     static const struct scene scene = {.left = 1, .right = 3, .lamp = 1};
 
-    (void)state;
     draw(&scene);
     run(NULL, NULL, REFOCUS_STACK_ALIGN_NONE);
     assert_true(right_share(&scene) > 0.98);
@@ -215,7 +202,7 @@ static int largest_step_on_wall(void)
 
 /* A wall between surfaces at the two ends of focus, clean or with noise: depth goes over from one
  * to the other without a step, whatever the noise looks like. */
-static void is_smooth_where_nothing_is_measured(void **state)
+TEST(is_smooth_where_nothing_is_measured)
 {
     static const struct scene scenes[] = {
         {.left = 0, .right = 8, .wall = 1},
@@ -223,7 +210,6 @@ static void is_smooth_where_nothing_is_measured(void **state)
         {.left = 0, .right = 8, .wall = 1, .noise = 16},
     };
 
-    (void)state;
     frames = MOST;
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         int sure = 0;
@@ -242,11 +228,10 @@ static void is_smooth_where_nothing_is_measured(void **state)
 }
 
 /* Noise is as sharp in each frame. */
-static void takes_no_noise_for_texture(void **state)
+TEST(takes_no_noise_for_texture)
 {
     static const struct scene scene = {.left = 1, .right = 3, .flat = 1, .noise = 12};
 
-    (void)state;
     draw(&scene);
     run(NULL, NULL, REFOCUS_STACK_ALIGN_NONE);
     assert_true(right_share(&scene) > 0.98);
@@ -268,14 +253,13 @@ static int mixed_of(int k, int l)
 
 /* A disc that walks is in the photo once, where the reference has it, and changes no depth where it
  * was in other frames. */
-static void shows_what_moves_once(void **state)
+TEST(shows_what_moves_once)
 {
     static const struct scene scene = {.left = 1, .right = 3, .walks = 1},
                               without = {.left = 1, .right = 3};
     struct refocus_stack_result result;
     int wrong = 0, right = 0;
 
-    (void)state;
     draw(&scene);
     result = run(NULL, NULL, REFOCUS_STACK_ALIGN_NONE);
     for (int i = 0; i < PIXELS; i++) {
@@ -294,11 +278,10 @@ static void shows_what_moves_once(void **state)
     assert_true(run(NULL, NULL, REFOCUS_STACK_ALIGN_NONE).moving == 0);
 }
 
-static void says_when_frames_are_alike(void **state)
+TEST(says_when_frames_are_alike)
 {
     struct refocus_stack_result result;
 
-    (void)state;
     for (int k = 0; k < FRAMES; k++)
         for (int i = 0; i < 3 * PIXELS; i++)
             frame[k][i] = (uint8_t)(i * 37 % 251);
@@ -312,11 +295,10 @@ static void says_when_frames_are_alike(void **state)
 
 /* The bytes of a stack of noise, which no library of mathematics draws, by any number of threads.
  */
-static void is_the_same_everywhere(void **state)
+TEST(is_the_same_everywhere)
 {
     uint32_t seed = 3;
 
-    (void)state;
     for (int k = 0; k < FRAMES; k++)
         for (int i = 0; i < 3 * PIXELS; i++) {
             const int other = k ? frame[k - 1][i] : 128;
@@ -337,7 +319,7 @@ static void is_the_same_everywhere(void **state)
     threads = 0;
 }
 
-static void keeps_its_states(void **state)
+TEST(keeps_its_states)
 {
     struct refocus_stack_params params = refocus_stack_params_default(W, H, 3);
     struct refocus_stack_result result = refocus_stack_result_default();
@@ -346,7 +328,6 @@ static void keeps_its_states(void **state)
                                                             3 * W);
     struct refocus_stack *stack = NULL;
 
-    (void)state;
     params.reference = 3;
     assert_int_equal(refocus_stack_create(&stack, &params), REFOCUS_OK);
     assert_int_equal(refocus_stack_finish(stack, &result), REFOCUS_ERR_STATE);
@@ -373,26 +354,6 @@ static void keeps_its_states(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finds_surfaces),
-        cmocka_unit_test(finds_surfaces_in_any_number),
-        cmocka_unit_test(takes_positions),
-        cmocka_unit_test(tells_disorder),
-        cmocka_unit_test(undoes_breathing_and_shake),
-        cmocka_unit_test(measures_nothing_beyond_the_border),
-        cmocka_unit_test(covers_the_border),
-        cmocka_unit_test(fades_where_a_frame_ends),
-        cmocka_unit_test(fills_what_is_flat),
-        cmocka_unit_test(is_smooth_where_nothing_is_measured),
-        cmocka_unit_test(makes_no_blob_of_a_lamp),
-        cmocka_unit_test(says_when_frames_are_alike),
-        cmocka_unit_test(is_the_same_everywhere),
-        cmocka_unit_test(keeps_its_states),
-
-        cmocka_unit_test(takes_no_noise_for_texture),
-        cmocka_unit_test(shows_what_moves_once),
-    };
-
     make_waves();
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* test_grain_coarse.c: noise that is coarser than a pixel is told from texture, which is so too. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 
 #include "look/look.h"
 
@@ -106,9 +103,8 @@ static double grain_of(double codes)
 
 /* Noise of a deviation of 1.4 pixels still has the grain that is finer than two pixels, which is
  * 0.45 of it. */
-static void coarse_noise_stays(void **state)
+TEST(coarse_noise_stays)
 {
-    (void)state;
     for (int seed = 1; seed <= 3; seed++) {
         for (int times = 0; times <= 4; times++) {
             const double least = times < 2 ? 0.9 : times == 2 ? 0.65 : 0.4;
@@ -123,9 +119,8 @@ static void coarse_noise_stays(void **state)
     }
 }
 
-static void coarse_texture_goes(void **state)
+TEST(coarse_texture_goes)
 {
-    (void)state;
     for (int seed = 1; seed <= 3; seed++) {
         random_state = (uint32_t)seed;
         draw_texture();
@@ -151,9 +146,8 @@ static void vary(void)
 
 /* Sharpened fur and gravel differ from pixel to pixel as noise does, but not alike in all places.
  * Noise as strong keeps more than three quarters of its grain. */
-static void strong_texture_goes(void **state)
+TEST(strong_texture_goes)
 {
-    (void)state;
     for (int seed = 1; seed <= 3; seed++) {
         for (int times = 0; times <= 1; times++) {
             random_state = (uint32_t)seed;
@@ -167,13 +161,4 @@ static void strong_texture_goes(void **state)
                     fail_msg("%d, texture of %d codes: %g", seed, codes, grain_of(codes));
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(coarse_noise_stays),
-                                       cmocka_unit_test(coarse_texture_goes),
-                                       cmocka_unit_test(strong_texture_goes)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

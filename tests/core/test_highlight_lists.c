@@ -1,12 +1,9 @@
 /* test_highlight_lists.c: runs of highlights are found in their list, and rows of one highlight are
  * splatted as one, however many runs lie between them; noise of the map parts no runs and makes no
  * silhouettes. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <string.h>
 
 #include "highlights/estimate.h"
@@ -22,13 +19,12 @@ static uint32_t noise(uint32_t *seed)
 }
 
 /* Each place around, by a search from the first run on. */
-static void the_first_run_is_found(void **state)
+TEST(the_first_run_is_found)
 {
     enum { RUNS = 40, SIDE = 12 };
     static struct rf_highlight run[RUNS];
     uint32_t seed = 5;
 
-    (void)state;
     for (int count = 0; count <= RUNS; count++) {
         for (int i = 0; i < count; i++)
             run[i] = (struct rf_highlight){.x = (uint16_t)(noise(&seed) % SIDE),
@@ -48,7 +44,7 @@ static void the_first_run_is_found(void **state)
 
 /* A window of 16 rows that is all one highlight, in runs of 4 pixels: more in a row than a byte
  * counts. */
-static void rows_of_wide_photos_are_stacked(void **state)
+TEST(rows_of_wide_photos_are_stacked)
 {
     enum { WIDTH = 4096, COUNT = 4, IN_ROW = WIDTH / COUNT, BLUR = 40 * 256 };
     const uint32_t runs = IN_ROW * RF_TILE;
@@ -68,7 +64,6 @@ static void rows_of_wide_photos_are_stacked(void **state)
     struct rf_pool pool;
     const struct rf_executor exec = {.pool = &pool};
 
-    (void)state;
     assert_non_null(blur);
     assert_non_null(run);
     assert_non_null(bins);
@@ -97,7 +92,7 @@ static void rows_of_wide_photos_are_stacked(void **state)
 }
 
 /* A run whose blurs differ by noise alone has one blur, their mean. */
-static void noise_parts_no_runs(void **state)
+TEST(noise_parts_no_runs)
 {
     enum { COUNT = 16, BLUR = 10 * 256, NOISE = 300 };
     int16_t blur[RF_TILE * RF_TILE];
@@ -116,7 +111,6 @@ static void noise_parts_no_runs(void **state)
     struct rf_pool pool;
     const struct rf_executor exec = {.pool = &pool};
 
-    (void)state;
     assert_int_equal(rf_pool_start(&pool, 1, NULL, NULL), REFOCUS_OK);
     for (int i = 0; i < RF_TILE * RF_TILE; i++)
         blur[i] = (int16_t)(BLUR + (i % 2 ? NOISE : -NOISE));
@@ -166,12 +160,11 @@ static uint32_t silhouettes_of(int codes, bool mottled)
 }
 
 /* Noise of the map makes none, and takes none away where a jump is more than noise. */
-static void noise_makes_no_silhouettes(void **state)
+TEST(noise_makes_no_silhouettes)
 {
     enum { NOISE = 2300 }; /* a standard deviation of 2 % */
     const uint32_t clean = silhouettes_of(0, false);
 
-    (void)state;
     assert_int_equal(clean, 4 * SIDE_OF_IT);
     assert_in_range(silhouettes_of(NOISE, false), clean, clean * 5 / 4);
     assert_true(silhouettes_of(NOISE, true) < 3 * silhouettes_of(0, true));
@@ -179,14 +172,13 @@ static void noise_makes_no_silhouettes(void **state)
 
 /* Where a photo is looked at: no pixel that has lost as much lies elsewhere, however many pixels
  * its cells are wide. */
-static void lost_light_is_found(void **state)
+TEST(lost_light_is_found)
 {
     enum { SIDE = 4096 };
     static float lost[2 * RF_GRID_SIDE];
     uint32_t seed = 7;
     int found = 0;
 
-    (void)state;
     for (int width = 1; width < SIDE; width += 1 + width / 9) {
         const struct rf_photo_source photo = {.width = width, .height = 2};
         const struct rf_light_grid grid = {
@@ -209,14 +201,4 @@ static void lost_light_is_found(void **state)
         }
     }
     assert_true(found > SIDE);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_first_run_is_found), cmocka_unit_test(rows_of_wide_photos_are_stacked),
-        cmocka_unit_test(noise_parts_no_runs),    cmocka_unit_test(noise_makes_no_silhouettes),
-        cmocka_unit_test(lost_light_is_found),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

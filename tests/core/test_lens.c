@@ -1,11 +1,8 @@
 /* test_lens.c: refocus/lens.h against Potmesil & Chakravarty 1981, Table 1, against the
  * reference scenes, and against itself. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/lens.h>
 
 static void assert_close(double value, double expected, double relative)
@@ -26,9 +23,8 @@ static const struct {
 };
 
 /* All 12 rows, as printed: rounded to millimetres, the field from the rounded limits. */
-static void test_potmesil_table(void **state)
+TEST(test_potmesil_table)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof table1 / sizeof *table1; i++) {
         const struct refocus_lens lens = {55, table1[i].f_number, 36};
         const double h = refocus_hyperfocal_m(&lens, 1000);
@@ -44,9 +40,8 @@ static void test_potmesil_table(void **state)
     }
 }
 
-static void test_hyperfocal(void **state)
+TEST(test_hyperfocal)
 {
-    (void)state;
     const struct refocus_lens lens = {50, 8, 36};
     const double h = refocus_hyperfocal_m(&lens, 1000);
 
@@ -89,9 +84,8 @@ static const struct {
      0.010366784711794731, 2.4115481024272105},
 };
 
-static void test_reference_scenes(void **state)
+TEST(test_reference_scenes)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof references / sizeof *references; i++) {
         const struct refocus_lens lens = {50, references[i].f_number, 36};
         const struct refocus_depth_range range = {references[i].z0, references[i].z1};
@@ -110,9 +104,8 @@ static void test_reference_scenes(void **state)
 
 /* The circle on the sensor is that of eq. 2, but for the picture's growth 1 / (1 - f/zf)
  * when the lens moves out to focus. */
-static void test_circle_of_confusion(void **state)
+TEST(test_circle_of_confusion)
 {
-    (void)state;
     static const double depths[] = {0.4, 0.5, 0.87, 1, 2, 17, 300, INFINITY};
     enum { N = sizeof depths / sizeof *depths };
     const struct refocus_lens lens = {50, 2, 36};
@@ -138,9 +131,8 @@ static void test_circle_of_confusion(void **state)
     assert_true(isnan(refocus_circle_of_confusion_m(&lens, 1, 0.05)));
 }
 
-static void test_round_trips(void **state)
+TEST(test_round_trips)
 {
-    (void)state;
     static const struct refocus_depth_range ranges[] = {
         {0.5, 8}, {0.5, INFINITY}, {1e-3, 1e6}, {3, 3.0001}};
 
@@ -163,9 +155,8 @@ static void test_round_trips(void **state)
     assert_close(refocus_f_number_of_blur(&lens, ranges, 4000, 2 * k), 0.9, 1e-14);
 }
 
-static void test_bad_arguments(void **state)
+TEST(test_bad_arguments)
 {
-    (void)state;
     static const double bad[] = {0, -1, NAN, INFINITY, -INFINITY};
     const struct refocus_lens good = {50, 2, 36};
     const struct refocus_depth_range range = {1, 5};
@@ -214,12 +205,11 @@ static void test_bad_arguments(void **state)
 /* Mulder & van Liere 2000, section 2: the circle on the retina, and as large on a screen as it has
  * to look. A pupil of E is the lens with f / N = E whose picture is seen at the same angle; the
  * distances of retina and screen do not matter. */
-static void test_pupil(void **state)
+TEST(test_pupil)
 {
     const double pupil = 0.008, retina = 0.017, angle = 50 * 3.14159265358979323846 / 180;
     const double screen_m[] = {0.4, 2}, depth_m[] = {0.33, 0.9, 1.47}, width = 512;
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 3; j++) {
             const double focus = 0.83, d = depth_m[j];
@@ -235,18 +225,4 @@ static void test_pupil(void **state)
             assert_close(2 * refocus_max_blur_radius(&lens, &range, width), pixels, 1e-12);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_potmesil_table),
-        cmocka_unit_test(test_hyperfocal),
-        cmocka_unit_test(test_reference_scenes),
-        cmocka_unit_test(test_circle_of_confusion),
-        cmocka_unit_test(test_round_trips),
-        cmocka_unit_test(test_bad_arguments),
-        cmocka_unit_test(test_pupil),
-    };
-    return cmocka_run_group_tests_name("lens", tests, NULL, NULL);
 }

@@ -1,11 +1,8 @@
 /* test_mixed_pixels.c: mixed pixels along silhouettes go to the nearer surface. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 
 #include "depth/mixed_pixels.h"
@@ -113,12 +110,11 @@ static struct stage *make(void)
 }
 
 /* Across a ramp of 6 pixels, those with 15 % and more of the disc are within 2.1 pixels of it. */
-static void soft_photo(void **state)
+TEST(soft_photo)
 {
     struct stage *s = make();
     int taken = 0;
 
-    (void)state;
     draw(s, 6, 120);
     run(s, 2);
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
@@ -148,11 +144,10 @@ static int taken_within(const struct stage *s, double most)
 
 /* A small photo that is sharp stays as it is. In a large one a mixed pixel lies across its edges,
  * half of it beyond the map's at most, unless it is a frame of a video. */
-static void sharp_photo(void **state)
+TEST(sharp_photo)
 {
     struct stage *s = make();
 
-    (void)state;
     draw(s, 1, 120);
     run(s, 1);
     assert_memory_equal(s->map, s->before, sizeof s->map);
@@ -170,11 +165,10 @@ static void sharp_photo(void **state)
 }
 
 /* Where the photo does not show the edge the map stays. */
-static void unseen_edge(void **state)
+TEST(unseen_edge)
 {
     struct stage *s = make();
 
-    (void)state;
     draw(s, 6, 10);
     run(s, 1);
     assert_memory_equal(s->map, s->before, sizeof s->map);
@@ -200,11 +194,10 @@ static int taken_beside_ring(double first, double last, double part)
 }
 
 /* Neither the far nor the near surface may have a pattern across a silhouette. */
-static void patterns(void **state)
+TEST(patterns)
 {
     const int plain = taken_beside_ring(0, 0, 0);
 
-    (void)state;
     assert_true(plain > RADIUS);
     assert_true(taken_beside_ring(2, 4, 0.05) > plain / 2);
     assert_true(taken_beside_ring(2, 4, 0.4) < plain / 2);   /* shares rise */
@@ -214,12 +207,11 @@ static void patterns(void **state)
 }
 
 /* A line of one pixel, some pixels from what is taken, is not smoothed away. */
-static void thin_surface(void **state)
+TEST(thin_surface)
 {
     enum { COLUMN = WIDTH / 2 - RADIUS - 9 };
     struct stage *s = make();
 
-    (void)state;
     draw(s, 6, 120);
     for (int y = 0; y < HEIGHT; y++)
         s->before[y * WIDTH + COLUMN] = s->map[y * WIDTH + COLUMN] = NEAR;
@@ -254,9 +246,8 @@ static int taken_where(int off, bool far_side)
 
 /* A surface goes on if it stays within half of what lies between the two. Where an edge lies
  * slantwise, no pixel that is looked at is away from it. */
-static void surfaces_that_go_on(void **state)
+TEST(surfaces_that_go_on)
 {
-    (void)state;
     assert_true(taken_where(0, true) > 2 * 3 * RADIUS);
     assert_true(taken_where(-14999, true) > 2 * taken_where(-15000, true));
     assert_true(taken_where(14999, true) > 2 * taken_where(15000, true));
@@ -278,11 +269,10 @@ static int teeth_of(const uint16_t *map)
 }
 
 /* Every seventh column of the photo has a softer edge, so that more of it is taken. */
-static void teeth(void **state)
+TEST(teeth)
 {
     struct stage *softer = make(), *s = make();
 
-    (void)state;
     draw(softer, 9, 120);
     draw(s, 5, 120);
     for (int i = 0; i < WIDTH * HEIGHT; i++)
@@ -295,11 +285,10 @@ static void teeth(void **state)
     free(s);
 }
 
-static void threads(void **state)
+TEST(threads)
 {
     struct stage *one = make(), *three = make();
 
-    (void)state;
     draw(one, 6, 120);
     draw(three, 6, 120);
     run(one, 1);
@@ -307,15 +296,4 @@ static void threads(void **state)
     assert_memory_equal(one->map, three->map, sizeof one->map);
     free(one);
     free(three);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(soft_photo),   cmocka_unit_test(sharp_photo),
-        cmocka_unit_test(unseen_edge),  cmocka_unit_test(patterns),
-        cmocka_unit_test(thin_surface), cmocka_unit_test(surfaces_that_go_on),
-        cmocka_unit_test(teeth),        cmocka_unit_test(threads)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

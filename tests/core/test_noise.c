@@ -1,13 +1,10 @@
 /* test_noise.c: how much noise, of either kind, a map of disparities is found to have, and what is
  * left of it. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 
 #include "depth/impulses.h"
 #include "depth/noise.h"
@@ -59,11 +56,10 @@ static int noise_found(void)
     return rf_noise_of(plane(map), WIDTH, HEIGHT, 0);
 }
 
-static void is_measured(void **state)
+TEST(is_measured)
 {
     static const double noises[] = {400, 655, 1311, 3277};
 
-    (void)state;
     for (size_t i = 0; i < sizeof noises / sizeof *noises; i++) {
         draw(noises[i]);
         assert_in_range(noise_found(), 0.8 * noises[i], 1.2 * noises[i]);
@@ -71,9 +67,8 @@ static void is_measured(void **state)
 }
 
 /* Exact maps, those of 8 bits, little noise, and depths that change at every few pixels. */
-static void is_none(void **state)
+TEST(is_none)
 {
-    (void)state;
     draw(0);
     assert_int_equal(noise_found(), 0);
     for (int i = 0; i < PIXELS; i++)
@@ -93,11 +88,10 @@ static void is_none(void **state)
 
 /* Where a plane rises by 0.4 codes of 8 bits to the right and down, four of five pixels lie off
  * their line, by a code; with noise, by more. */
-static void is_more_than_codes(void **state)
+TEST(is_more_than_codes)
 {
     static const double noises[] = {655, 1311, 3277};
 
-    (void)state;
     for (int i = 0; i < PIXELS; i++)
         map[i] = (uint16_t)(lrint(10 + 0.4 * (i % WIDTH) + 0.4 * (i / WIDTH)) * 257);
     assert_true(noise_found() > 600);
@@ -112,7 +106,7 @@ static void is_more_than_codes(void **state)
 }
 
 /* Between surfaces nothing is averaged, and no pixel goes farther than two deviations. */
-static void is_smoothed_within_surfaces(void **state)
+TEST(is_smoothed_within_surfaces)
 {
     static const double noises[] = {655, 1311, 3277};
     static uint16_t noisy[PIXELS];
@@ -122,7 +116,6 @@ static void is_smoothed_within_surfaces(void **state)
     struct rf_kernels kernels;
     uint32_t cpu = 0;
 
-    (void)state;
     assert_true(rf_kernels_select(&kernels, &cpu));
     atomic_init(&run.state, RF_RUN_RUNNING);
     assert_int_equal(rf_pool_start(&pool, 2, NULL, &run), 0);
@@ -160,9 +153,8 @@ static void add_impulses(int every)
 }
 
 /* Exact maps, few impulses, surfaces with noise, wires of a pixel. */
-static void no_impulses(void **state)
+TEST(no_impulses)
 {
-    (void)state;
     draw(0);
     assert_int_equal(impulses_found(), 0);
     draw(1311);
@@ -181,14 +173,13 @@ static void no_impulses(void **state)
 /* Impulses are 4 % of the samples, and 3 % so far off all around them that they are told. After, a
  * thousandth of all samples is off, and a thousandth that was right has moved: at the silhouette of
  * the ball. */
-static void impulses_go(void **state)
+TEST(impulses_go)
 {
     static uint16_t hit[PIXELS];
     struct rf_pool pool;
     struct rf_run run = {.looked_at = NULL};
     int left = 0, moved = 0;
 
-    (void)state;
     add_impulses(25);
     memcpy(hit, map, sizeof hit);
     assert_in_range(impulses_found(), 0.02 * 65536, 0.04 * 65536);
@@ -203,14 +194,4 @@ static void impulses_go(void **state)
     assert_in_range(left, 0, PIXELS / 1000);
     assert_in_range(moved, 0, PIXELS / 1000);
     assert_int_equal(impulses_found(), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(is_measured),        cmocka_unit_test(is_none),
-        cmocka_unit_test(is_more_than_codes), cmocka_unit_test(is_smoothed_within_surfaces),
-        cmocka_unit_test(no_impulses),        cmocka_unit_test(impulses_go)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

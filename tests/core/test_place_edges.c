@@ -1,14 +1,11 @@
 /* test_place_edges.c: edges of disparity maps in memory and with threads of the caller. */
 #include <limits.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 
 #include "depth/upsample.h"
@@ -112,7 +109,7 @@ static void end(struct stage *s)
 
 /* Memory for the largest photo with any map is enough for all that are smaller, and the result is
  * that of refocus_depth_edges(). */
-static void memory_for_all(void **state)
+TEST(memory_for_all)
 {
     static const int sizes[][4] = {{WIDTH, HEIGHT, WIDTH, HEIGHT},
                                    {WIDTH, HEIGHT, 30, 20},
@@ -125,7 +122,6 @@ static void memory_for_all(void **state)
                                    {70, 80, 1, 1}};
     const struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
 
-    (void)state;
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         const int *size = sizes[i];
         struct stage s = {.bytes = rf_place_edges_bytes(WIDTH, HEIGHT, WIDTH + 1, HEIGHT + 1)};
@@ -149,12 +145,11 @@ static void memory_for_all(void **state)
 }
 
 /* Wherever the run is cancelled, it ends. */
-static void cancelled(void **state)
+TEST(cancelled)
 {
     static const int columns[] = {WIDTH, WIDTH / 4};
     int ended = 0;
 
-    (void)state;
     for (int i = 0; i < 2 * LOOKS; i += 7) {
         struct stage s = {.last = 1 + i / 2,
                           .bytes = rf_place_edges_bytes(WIDTH, HEIGHT, WIDTH + 1, HEIGHT + 1)};
@@ -170,12 +165,11 @@ static void cancelled(void **state)
 
 /* Whoever cancels waits for the next look: none takes long, of all that is done. The best of a few
  * is taken, as others are busy, too. */
-static void looks_often(void **state)
+TEST(looks_often)
 {
     enum { W = 2000, H = 1500, TIMES = 5, PARTS = 25 };
     double worst = 1;
 
-    (void)state;
     for (int i = 0; i < TIMES && worst * PARTS > 1; i++) {
         struct stage s = {.last = INT_MAX, .bytes = rf_place_edges_bytes(W, H, W + 1, H + 1)};
         clock_t began;
@@ -189,12 +183,4 @@ static void looks_often(void **state)
     }
     print_message("the longest way to a look is 1/%.0f of all\n", 1 / worst);
     assert_true(worst * PARTS <= 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(memory_for_all),
-                                       cmocka_unit_test(cancelled), cmocka_unit_test(looks_often)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,8 @@
 /* test_pool.c: the pool: each item once, whoever is asleep; it neither waits for nor keeps awake
  * in vain. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "unit_test.h"
 #include <time.h>
 
 #include <refocus/status.h>
@@ -41,11 +38,10 @@ static void rest_ms(long ms)
     nanosleep(&(struct timespec){ms / 1000, ms % 1000 * 1000000}, NULL);
 }
 
-static void each_item_once(void **state)
+TEST(each_item_once)
 {
     static const int threads[] = {1, 2, 3, 8, 64};
 
-    (void)state;
     for (size_t t = 0; t < sizeof threads / sizeof threads[0]; t++) {
         static struct loop loop;
         struct rf_pool pool;
@@ -72,13 +68,12 @@ static void each_item_once(void **state)
     }
 }
 
-static void cancelled(void **state)
+TEST(cancelled)
 {
     static struct loop loop;
     struct rf_pool pool;
     int taken = 0;
 
-    (void)state;
     loop = (struct loop){.cancel_at = 0};
     assert_int_equal(rf_pool_start(&pool, 2, NULL, &loop.run), REFOCUS_OK);
     atomic_store(&loop.run.state, RF_RUN_CANCELLED);
@@ -113,12 +108,11 @@ static void wait_item(void *context, int item, int worker)
     rest_ms(1);
 }
 
-static void cancelled_on_the_way(void **state)
+TEST(cancelled_on_the_way)
 {
     static struct loop loop;
     struct rf_pool pool;
 
-    (void)state;
     loop = (struct loop){.cancel_at = -1};
     assert_int_equal(rf_pool_start(&pool, 3, NULL, &loop.run), REFOCUS_OK);
     rf_pool_run(&pool, wait_item, &loop, 100000);
@@ -136,11 +130,10 @@ static double cpu_seconds(void)
 
 /* A pool with nothing to do costs nothing, whether there is a processor for each thread
  * or not: if they stayed awake, they would take all that the machine has. */
-static void idle_sleeps(void **state)
+TEST(idle_sleeps)
 {
     static const int threads[] = {2, 16};
 
-    (void)state;
     for (int t = 0; t < 2; t++) {
         struct rf_pool pool;
         atomic_int items = 0;
@@ -157,9 +150,8 @@ static void idle_sleeps(void **state)
     }
 }
 
-static void short_lives(void **state)
+TEST(short_lives)
 {
-    (void)state;
     for (int round = 0; round < 200; round++) {
         struct rf_pool pool;
         atomic_int items = 0;
@@ -170,15 +162,4 @@ static void short_lives(void **state)
         rf_pool_end(&pool);
         assert_int_equal(atomic_load(&items), round % 2 ? round : 0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_item_once),       cmocka_unit_test(cancelled),
-        cmocka_unit_test(cancelled_on_the_way), cmocka_unit_test(idle_sleeps),
-        cmocka_unit_test(short_lives),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

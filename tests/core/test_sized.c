@@ -1,12 +1,9 @@
 /* test_sized.c: structs of older and newer programs are read as sized.h says, and not a byte behind
  * their size. */
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h>
+#include "unit_test.h"
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -30,14 +27,13 @@ struct third {
 };
 enum { FIRST = REFOCUS_SIZE_TO(struct second, a) };
 
-static void older_and_newer(void **state)
+TEST(older_and_newer)
 {
     struct first old = {sizeof old, 2};
     struct first *volatile given = &old; /* the compiler does not know its size: no warning */
     struct third new = {sizeof new, 3, 4, 0};
     struct second own;
 
-    (void)state;
     memset(&own, 0xff, sizeof own);
     assert_int_equal(refocus_struct_read(&own, sizeof own, FIRST, given), REFOCUS_OK);
     assert_true(own.struct_size == sizeof own && own.a == 2 && own.b == 0);
@@ -49,14 +45,13 @@ static void older_and_newer(void **state)
     assert_true(own.a == 3);
 }
 
-static void filled(void **state)
+TEST(filled)
 {
     const struct second own = {sizeof own, 5, 6};
     struct first old = {sizeof old, 0};
     struct first *volatile given = &old;
     struct third new = {sizeof new, 0, 0, 7};
 
-    (void)state;
     assert_int_equal(refocus_struct_write(given, FIRST, &own, sizeof own), REFOCUS_OK);
     assert_true(old.struct_size == sizeof old && old.a == 5);
     assert_int_equal(refocus_struct_write(&new, FIRST, &own, sizeof own), REFOCUS_OK);
@@ -64,14 +59,13 @@ static void filled(void **state)
 }
 
 /* A struct that ends where memory does. */
-static void not_a_byte_behind(void **state)
+TEST(not_a_byte_behind)
 {
     const size_t page = (size_t)sysconf(_SC_PAGESIZE);
     unsigned char *pages =
         mmap(NULL, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     struct third own;
 
-    (void)state;
     assert_true(pages != MAP_FAILED);
     assert_int_equal(mprotect(pages + page, page, PROT_NONE), 0);
     for (uint32_t size = 0; size <= 2 * sizeof own; size += 4) {
@@ -90,7 +84,7 @@ static void not_a_byte_behind(void **state)
 }
 
 /* A feature that is left out is one with its defaults, field by field. */
-static void defaults(void **state)
+TEST(defaults)
 {
     enum { W = 64, H = 48 };
     static uint8_t photo[3 * W * H], plain[3 * W * H], set[3 * W * H];
@@ -103,7 +97,6 @@ static void defaults(void **state)
     struct refocus_settings settings = refocus_settings_default(0.7f, 8);
     struct refocus_renderer *renderer;
 
-    (void)state;
     for (int i = 0; i < W * H; i++) {
         depth[i] = (uint16_t)(i * 40503u >> 4);
         for (int c = 0; c < 3; c++)
@@ -118,13 +111,4 @@ static void defaults(void **state)
         assert_memory_equal(plain, set, sizeof plain);
     }
     refocus_renderer_destroy(&renderer);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(older_and_newer), cmocka_unit_test(filled),
-                                       cmocka_unit_test(not_a_byte_behind),
-                                       cmocka_unit_test(defaults)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* test_slabs.c: slabs of a tile cover all blurs that reach it, and what is far out of focus shares
  * a slab with the same blurs in every tile. The number of
  * slabs is bounded, the more where they are noise. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <stdbool.h>
 #include <string.h>
 
@@ -107,9 +104,8 @@ static void expect_same(float largest, uint32_t seed)
                  set[0].blur[0] / 256.0, set[0].blur[1] / 256.0);
 }
 
-static void same_slabs(void **state)
+TEST(same_slabs)
 {
-    (void)state;
     for (uint32_t i = 0; i < SETS; i++) {
         expect_same(30, i);
         expect_same(60, i);
@@ -119,11 +115,10 @@ static void same_slabs(void **state)
 
 /* Blurs beyond 16 pixels share a slab with the same ones in a tile that has all of them: what is in
  * one slab does not occlude each other, so that the border of the tile would show. */
-static void crowded_tiles(void **state)
+TEST(crowded_tiles)
 {
     static const int K[] = {30, 60, 127};
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         const float largest = (float)K[i];
         struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
@@ -183,9 +178,8 @@ static int slabs_of_range(float largest, int least, int most, int16_t noise)
     return plan.slabs - closing;
 }
 
-static void few_slabs(void **state)
+TEST(few_slabs)
 {
-    (void)state;
     for (int K = 10; K <= 127; K += 9) {
         const float largest = (float)K;
 
@@ -200,12 +194,11 @@ static void few_slabs(void **state)
 }
 
 /* Noise of two pixels around 8 is one slab; what is clean has slabs of a pixel. */
-static void noise_is_merged(void **state)
+TEST(noise_is_merged)
 {
     struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
     struct rf_tile_plan plan;
 
-    (void)state;
     assert_int_equal(slabs_of_range(30, 7 * 256, 9 * 256, 256), 1);
     assert_int_equal(slabs_of_range(30, 7 * 256, 9 * 256, 0), 3);
     add_blur(&bins, 30, 7 * 256); /* a gap wider than a pixel ends a slab */
@@ -258,13 +251,12 @@ static void plan_level(const int16_t middle[2], int noise, struct rf_tile_plan *
 }
 
 /* A level surface with noise is one slab, and sharp in the focus; two that meet are two slabs. */
-static void level_surfaces(void **state)
+TEST(level_surfaces)
 {
     static const int16_t sharp[2] = {20, -20}, blurred[2] = {6 * 256, 6 * 256};
     static const int16_t apart[2] = {0, 8 * 256};
     struct rf_tile_plan plan;
 
-    (void)state;
     plan_level(sharp, 3, &plan);
     assert_int_equal(plan.slabs, 1);
     assert_int_equal(plan.slab[0].centre, 0);
@@ -280,24 +272,13 @@ static void level_surfaces(void **state)
 }
 
 /* So it is beside a tile whose blocks are cut by a silhouette, but for one. */
-static void silhouettes_are_noisy(void **state)
+TEST(silhouettes_are_noisy)
 {
     static const int16_t apart[2] = {0, 20 * 256};
     struct rf_tile_plan plan;
 
-    (void)state;
     plan_corner(apart, 3, RF_CELL, &plan);
     assert_int_equal(plan.slab[0].centre, 0);
     assert_true(plan.slab[0].low <= -3 * 256);
     assert_int_equal(plan.slabs, 2);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_slabs),     cmocka_unit_test(crowded_tiles),
-        cmocka_unit_test(few_slabs),      cmocka_unit_test(noise_is_merged),
-        cmocka_unit_test(level_surfaces), cmocka_unit_test(silhouettes_are_noisy)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

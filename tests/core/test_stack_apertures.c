@@ -1,13 +1,10 @@
 /* test_stack_apertures.c: depth of frames of one focus and several apertures, which are drawn. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/stack.h>
 
 enum {
@@ -162,13 +159,12 @@ static void has_blur(const struct refocus_stack_result *result, const struct sce
                     within);
 }
 
-static void finds_blur(void **state)
+TEST(finds_blur)
 {
     struct refocus_stack_params params = params_of(2, REFOCUS_STACK_APERTURE_NEAREST);
     static const int reversed[] = {1, 0};
     struct refocus_stack_result result;
 
-    (void)state;
     draw(&pair);
     result = run(&params, NULL, NULL);
     has_blur(&result, &pair, 0.6);
@@ -189,7 +185,7 @@ static void finds_blur(void **state)
 }
 
 /* With diameters 1, 2 and 4 radii are in these proportions; the narrowest is blurred, too. */
-static void takes_several_apertures(void **state)
+TEST(takes_several_apertures)
 {
     static const struct scene scene = {
         .frames = 3, .blur = {{0, 1, 3}, {0, 2, 6}, {0, 4, 12}}, .coarse = 3};
@@ -198,7 +194,6 @@ static void takes_several_apertures(void **state)
     const struct refocus_stack_params params = params_of(3, REFOCUS_STACK_APERTURE_NEAREST);
     struct refocus_stack_result result;
 
-    (void)state;
     draw(&scene);
     result = run(&params, order, diameter);
     has_blur(&result, &scene, 1);
@@ -207,13 +202,12 @@ static void takes_several_apertures(void **state)
 }
 
 /* Other exposures, dark corners and a hand that moves are undone. */
-static void takes_frames_as_lenses_make_them(void **state)
+TEST(takes_frames_as_lenses_make_them)
 {
     const struct refocus_stack_params params = params_of(2, REFOCUS_STACK_APERTURE_NEAREST);
     struct scene scene = pair;
     struct refocus_stack_result result;
 
-    (void)state;
     scene.exposure = 1.3;
     draw(&scene);
     result = run(&params, NULL, NULL);
@@ -232,26 +226,24 @@ static void takes_frames_as_lenses_make_them(void **state)
 }
 
 /* More blur than labels have: samples become larger. */
-static void takes_large_blur(void **state)
+TEST(takes_large_blur)
 {
     static const struct scene scene = {.frames = 2, .blur = {{0}, {0, 15, 30}}, .coarse = 6};
     const struct refocus_stack_params params = params_of(2, REFOCUS_STACK_APERTURE_NEAREST);
     struct refocus_stack_result result;
 
-    (void)state;
     draw(&scene);
     result = run(&params, NULL, NULL);
     has_blur(&result, &scene, 3);
 }
 
 /* The disc of a clipped lamp tells nothing, and the place is as what is around it. */
-static void leaves_clipped_lamps(void **state)
+TEST(leaves_clipped_lamps)
 {
     const struct refocus_stack_params params = params_of(2, REFOCUS_STACK_APERTURE_NEAREST);
     struct scene scene = pair;
     struct refocus_stack_result result;
 
-    (void)state;
     scene.lamp = 1;
     draw(&scene);
     assert_true(frame[1][3 * (LAMP_Y * W + LAMP_X)] == 255);
@@ -260,13 +252,12 @@ static void leaves_clipped_lamps(void **state)
     assert_true(confidence[LAMP_Y * W + LAMP_X] < 128);
 }
 
-static void tells_frames_that_are_alike(void **state)
+TEST(tells_frames_that_are_alike)
 {
     static const struct scene scene = {.frames = 2, .blur = {{0}, {0}}, .coarse = 2};
     const struct refocus_stack_params params = params_of(2, REFOCUS_STACK_APERTURE_NEAREST);
     struct refocus_stack_result result;
 
-    (void)state;
     draw(&scene);
     result = run(&params, NULL, NULL);
     /* All is in focus: the range is the least there is. */
@@ -277,13 +268,12 @@ static void tells_frames_that_are_alike(void **state)
     assert_true(run(&params, NULL, NULL).measured == 0);
 }
 
-static void refuses_what_is_no_aperture(void **state)
+TEST(refuses_what_is_no_aperture)
 {
     struct refocus_stack_params params = params_of(3, REFOCUS_STACK_APERTURE_FARTHEST);
     const struct refocus_image image = image_of(0);
     struct refocus_stack *stack = NULL;
 
-    (void)state;
     params.reference = 1;
     assert_int_equal(refocus_stack_create(&stack, &params), REFOCUS_ERR_ARGUMENT);
     params.reference = 0;
@@ -302,11 +292,10 @@ static void refuses_what_is_no_aperture(void **state)
 }
 
 /* Frames of all sides from the least on, of noise: what is found has its bounds. */
-static void takes_any_size(void **state)
+TEST(takes_any_size)
 {
     static const int side[][2] = {{16, 16}, {17, 240}, {240, 19}, {63, 64}, {65, 70}};
 
-    (void)state;
     draw(&pair);
     for (size_t i = 0; i < sizeof side / sizeof *side; i++) {
         struct refocus_stack_params params =
@@ -334,12 +323,11 @@ static void takes_any_size(void **state)
     }
 }
 
-static void is_the_same_everywhere(void **state)
+TEST(is_the_same_everywhere)
 {
     struct refocus_stack_params params = params_of(2, REFOCUS_STACK_APERTURE_NEAREST);
     uint32_t hash = 0x811c9dc5u;
 
-    (void)state;
     /* Drawn without pow(), whose last bit differs between libraries. */
     for (int i = 0; i < 3 * PIXELS; i++) {
         const int x = i / 3 % W, y = i / 3 / W;
@@ -361,21 +349,4 @@ static void is_the_same_everywhere(void **state)
     for (int i = 0; i < PIXELS; i++)
         hash = (hash ^ confidence[i]) * 0x01000193u;
     assert_int_equal(hash, 0x653eeab8);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finds_blur),
-        cmocka_unit_test(takes_several_apertures),
-        cmocka_unit_test(takes_frames_as_lenses_make_them),
-        cmocka_unit_test(takes_large_blur),
-        cmocka_unit_test(leaves_clipped_lamps),
-        cmocka_unit_test(tells_frames_that_are_alike),
-        cmocka_unit_test(refuses_what_is_no_aperture),
-        cmocka_unit_test(takes_any_size),
-        cmocka_unit_test(is_the_same_everywhere),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* test_stack_clipped.c: taps that are several pixels apart see a highlight alike, wherever it lies
  * between them. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include "focus_stack/focus_stack.h"
 
 enum { W = 40, H = 30, LABELS = 8, NEAR = 40000, X = 17, Y = 13 };
@@ -45,9 +42,8 @@ static void paint(int reduced)
     moved[Y / reduced * ((W + reduced - 1) / reduced) + X / reduced] = NEAR;
 }
 
-static void is_seen_by_any_lattice(void **state)
+TEST(is_seen_by_any_lattice)
 {
-    (void)state;
     paint(1);
     for (int apart = 1; apart <= 5; apart++) {
         const struct rf_stack_clipped found = find(1, apart);
@@ -67,11 +63,10 @@ static void is_seen_by_any_lattice(void **state)
 }
 
 /* One pixel of the 4 x 4 of a sample is clipped, or of the 4 x 2 of that in the corner. */
-static void samples_have_a_share(void **state)
+TEST(samples_have_a_share)
 {
     struct rf_stack_clipped found;
 
-    (void)state;
     paint(4);
     found = find(4, 4);
     assert_int_equal(found.share[Y / 4 * (W / 4) + X / 4], RF_STACK_CLIPPED / 16);
@@ -80,14 +75,4 @@ static void samples_have_a_share(void **state)
     memset(rgb + sizeof rgb - 3, 255, 3);
     found = find(4, 4);
     assert_int_equal(found.share[(H + 3) / 4 * (W / 4) - 1], RF_STACK_CLIPPED / 8);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(is_seen_by_any_lattice),
-        cmocka_unit_test(samples_have_a_share),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,6 @@
 /* test_stack_input.c: focus stacks as they should not be: out of order, moved, of other places. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include "stack_scene.h"
 
 static const struct scene still = {.left = 1, .right = 3, .scale = 0.003};
@@ -19,12 +16,11 @@ static struct refocus_stack_result found(const int *order)
 }
 
 /* All orders of five frames give the same depth, or, where more pairs are turned, its reverse. */
-static void finds_the_order(void **state)
+TEST(finds_the_order)
 {
     static const int five[][FRAMES] = {{0, 1, 2, 3, 4}, {3, 0, 4, 2, 1}, {1, 0, 2, 4, 3},
                                        {4, 3, 2, 1, 0}, {2, 4, 3, 0, 1}, {0, 4, 1, 3, 2}};
 
-    (void)state;
     draw(&still);
     for (size_t i = 0; i < sizeof five / sizeof *five; i++) {
         const struct refocus_stack_result result = found(five[i]);
@@ -51,12 +47,11 @@ static void finds_the_order(void **state)
 }
 
 /* A surface at one depth says no more than which frames are as far from it. */
-static void says_when_the_order_is_doubtful(void **state)
+TEST(says_when_the_order_is_doubtful)
 {
     static const struct scene plane = {.left = 2, .right = 2};
     static const int order[FRAMES] = {3, 0, 4, 2, 1};
 
-    (void)state;
     draw(&plane);
     assert_true(found(order).order_margin < 0.01f);
     memset(frame, 90, sizeof frame);
@@ -69,7 +64,7 @@ static void says_when_the_order_is_doubtful(void **state)
 }
 
 /* A hand that moves on by 15 % of the picture from frame to frame, and turns. */
-static void follows_a_camera_that_moves(void **state)
+TEST(follows_a_camera_that_moves)
 {
     static const struct scene scenes[] = {{.left = 1, .right = 3, .shift_x = 14},
                                           {.left = 1, .right = 3, .shift_x = -22},
@@ -77,7 +72,6 @@ static void follows_a_camera_that_moves(void **state)
                                           {.left = 1, .right = 3, .turn = 0.1},
                                           {.left = 1, .right = 3, .scale = 0.08}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
         struct refocus_stack_result result;
 
@@ -93,12 +87,11 @@ static void follows_a_camera_that_moves(void **state)
     assert_true(run(NULL, NULL, REFOCUS_STACK_ALIGN_SIMILARITY).alike > 0.8f);
 }
 
-static void says_when_a_frame_shows_another_place(void **state)
+TEST(says_when_a_frame_shows_another_place)
 {
     static const struct scene odd = {.left = 1, .right = 3, .odd = 1};
     struct refocus_stack_result result;
 
-    (void)state;
     draw(&odd);
     result = run(NULL, NULL, REFOCUS_STACK_ALIGN_SIMILARITY);
     assert_true(result.alike < 0.5f);
@@ -120,7 +113,7 @@ static void expose(uint8_t *rgb, const double gain[3])
 }
 
 /* Few blocks of a picture are flat, or none: frames of other light and white are matched yet. */
-static void matches_exposures_of_what_is_not_flat(void **state)
+TEST(matches_exposures_of_what_is_not_flat)
 {
     static const struct {
         int flat;
@@ -135,7 +128,6 @@ static void matches_exposures_of_what_is_not_flat(void **state)
         {0, {{1, 1, 1}, {1, 1, 1}}, 0, 1},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const struct scene scene = {.left = 1, .right = 3, .flat = cases[i].flat};
         struct refocus_stack_result result;
@@ -154,14 +146,6 @@ static void matches_exposures_of_what_is_not_flat(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finds_the_order),
-        cmocka_unit_test(says_when_the_order_is_doubtful),
-        cmocka_unit_test(follows_a_camera_that_moves),
-        cmocka_unit_test(says_when_a_frame_shows_another_place),
-        cmocka_unit_test(matches_exposures_of_what_is_not_flat),
-    };
-
     make_waves();
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* test_stack_light.c: the light of highlights that are clipped in focus is told by frames in which
  * they are blurred. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <math.h>
 #include <refocus/stack.h>
 
@@ -125,9 +122,8 @@ static int set_up(void **state)
 }
 
 /* Means over a highlight lie within 15 %, and what is not clipped is as the photo has it. */
-static void light_is_found(void **state)
+TEST(light_is_found)
 {
-    (void)state;
     for (int i = 0; i < COUNT; i++)
         for (int c = 0; c < 3; c++) {
             double sum = 0;
@@ -151,11 +147,10 @@ static void light_is_found(void **state)
 }
 
 /* The border, beyond which nothing is seen, is no brighter than what is beside it. */
-static void borders_are_no_lamps(void **state)
+TEST(borders_are_no_lamps)
 {
     float most = 0;
 
-    (void)state;
     for (int y = 0; y < WALL; y++)
         for (int x = 0; x < W; x++)
             for (int c = 0; c < 3; c++)
@@ -165,7 +160,7 @@ static void borders_are_no_lamps(void **state)
 }
 
 /* Any number of threads gives the same bits; halves are those rounded; the photo needs no light. */
-static void is_the_same(void **state)
+TEST(is_the_same)
 {
     const struct refocus_image floats =
         refocus_image_packed(REFOCUS_FORMAT_RGB_FLOAT, other, W, H, sizeof *other);
@@ -173,7 +168,6 @@ static void is_the_same(void **state)
         refocus_image_packed(REFOCUS_FORMAT_RGB_HALF, half, W, H, sizeof *half);
     struct refocus_stack *stack = stacked(3);
 
-    (void)state;
     assert_int_equal(finish(stack, alone, &floats), REFOCUS_OK);
     refocus_stack_destroy(&stack);
     assert_memory_equal(light, other, sizeof light);
@@ -196,14 +190,13 @@ static void is_the_same(void **state)
 
 /* Whites that noise and JPEG leave some codes short do not tell of light of 1. The second highlight
  * is clipped wherever it is blurred, but for its edge. */
-static void noisy_white_is_clipped(void **state)
+TEST(noisy_white_is_clipped)
 {
     const struct refocus_image floats =
         refocus_image_packed(REFOCUS_FORMAT_RGB_FLOAT, other, W, H, sizeof *other);
     struct refocus_stack *stack;
     uint32_t seed = 5;
 
-    (void)state;
     for (int k = 0; k < FRAMES; k++)
         for (int i = 0; i < 3 * W * H; i++) {
             seed = seed * 1664525 + 1013904223;
@@ -224,13 +217,12 @@ static void noisy_white_is_clipped(void **state)
     }
 }
 
-static void wrong_images_are_refused(void **state)
+TEST(wrong_images_are_refused)
 {
     struct refocus_stack *stack = stacked(1);
     struct refocus_image into =
         refocus_image_packed(REFOCUS_FORMAT_RGB_FLOAT, other, W, H, sizeof *other);
 
-    (void)state;
     assert_int_equal(finish(stack, NULL, &into), REFOCUS_ERR_ARGUMENT); /* without the photo */
     into.height = H - 1;
     assert_int_equal(finish(stack, photo, &into), REFOCUS_ERR_ARGUMENT);
@@ -250,13 +242,5 @@ static void wrong_images_are_refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(light_is_found),
-        cmocka_unit_test(borders_are_no_lamps),
-        cmocka_unit_test(is_the_same),
-        cmocka_unit_test(wrong_images_are_refused),
-        cmocka_unit_test(noisy_white_is_clipped),
-    };
-
-    return cmocka_run_group_tests(tests, set_up, NULL);
+    return unit_test_run(set_up, NULL);
 }

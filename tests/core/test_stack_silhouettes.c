@@ -1,14 +1,11 @@
 /* test_stack_silhouettes.c: a blurred bar lies over the background of a focus stack; depth ends at
  * the bar, and the photo in focus everywhere shows the background beside it without its blur. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/stack.h>
 
 enum { W = 320, H = 120, FRAMES = 5, RADIUS = 8, LEFT = 140, RIGHT = 180, PIXELS = W * H };
@@ -174,9 +171,8 @@ static int teeth(void)
     return sum;
 }
 
-static void ends_at_silhouettes(void **state)
+TEST(ends_at_silhouettes)
 {
-    (void)state;
     draw_surfaces(1);
     run();
     /* One pixel of a row of 320 is allowed; windows alone are wrong at 12. */
@@ -186,12 +182,11 @@ static void ends_at_silhouettes(void **state)
 }
 
 /* The bar's edge is as blurred as the bar is, whatever is brighter. */
-static void tells_which_end_is_far(void **state)
+TEST(tells_which_end_is_far)
 {
     static const int shuffled[FRAMES] = {3, 0, 4, 2, 1};
     static const double brightness[] = {1, 0.08}; /* the bar's: more and less than what is behind */
 
-    (void)state;
     for (size_t i = 0; i < sizeof brightness / sizeof *brightness; i++) {
         struct refocus_stack_result result;
 
@@ -236,11 +231,10 @@ static void draw_floor(void)
 }
 
 /* It has no edges. */
-static void lower_is_nearer(void **state)
+TEST(lower_is_nearer)
 {
     struct refocus_stack_result result;
 
-    (void)state;
     draw_floor();
     result = run_order(far_first, REFOCUS_STACK_ORDER_EITHER, false);
     assert_in_range(1000 * result.direction, 160, 240);
@@ -283,11 +277,10 @@ static void draw_patch(double brightness)
 
 /* The votes of the patch are wrong: they are outweighed by what lies lower, or left out as they are
  * clipped. */
-static void weighs_edges_with_what_lies_lower(void **state)
+TEST(weighs_edges_with_what_lies_lower)
 {
     static const double brightness[] = {3, 30};
 
-    (void)state;
     for (int clipped = 0; clipped < 2; clipped++) {
         struct refocus_stack_result result;
 
@@ -301,13 +294,12 @@ static void weighs_edges_with_what_lies_lower(void **state)
 }
 
 /* A camera that measures the light for each frame: tones are those of the reference. */
-static void matches_exposures(void **state)
+TEST(matches_exposures)
 {
     static const double metered[FRAMES] = {0.85, 1.1, 1, 0.9, 1.2};
     const double even[FRAMES] = {1, 1, 1, 1, 1};
     struct refocus_stack_result result;
 
-    (void)state;
     draw_surfaces(1);
     memcpy(exposure, metered, sizeof exposure);
     result = run_order(far_first, REFOCUS_STACK_ORDER_ADDED, true);
@@ -325,26 +317,14 @@ static void matches_exposures(void **state)
 
 /* The bar is five times as bright as white: none of its light that is blurred over the background
  * stays there, although nobody knows how much it is. */
-static void leaves_no_disc_of_what_is_clipped(void **state)
+TEST(leaves_no_disc_of_what_is_clipped)
 {
     double of_frame;
 
-    (void)state;
     draw_surfaces(15);
     memcpy(photo, draw(0), sizeof photo);
     of_frame = error_beside();
     run();
     assert_true(of_frame > 100);
     assert_true(error_beside() < 12);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ends_at_silhouettes), cmocka_unit_test(tells_which_end_is_far),
-        cmocka_unit_test(lower_is_nearer),     cmocka_unit_test(weighs_edges_with_what_lies_lower),
-        cmocka_unit_test(matches_exposures),   cmocka_unit_test(leaves_no_disc_of_what_is_clipped),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,8 @@
 /* test_stack_upsample.c: depth of samples that are several pixels wide becomes depth of pixels. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include "focus_stack/focus_stack.h"
 
 enum { BY = 3, COLUMNS = 16, ROWS = 4, W = BY * COLUMNS, H = BY * ROWS, FRAMES = 5, SUB = 3 };
@@ -47,11 +44,10 @@ static void paint(int column)
 }
 
 /* Depth of a slope changes from pixel to pixel, not in blocks. */
-static void slopes_are_smooth(void **state)
+TEST(slopes_are_smooth)
 {
     static const uint32_t kinds[] = {REFOCUS_STACK_FOCUS, REFOCUS_STACK_APERTURE_NEAREST};
 
-    (void)state;
     paint(COLUMNS);
     for (size_t n = 0; n < sizeof kinds / sizeof *kinds; n++) {
         const struct refocus_stack *stack = make_stack(kinds[n]);
@@ -65,11 +61,10 @@ static void slopes_are_smooth(void **state)
 }
 
 /* A silhouette stays where the photo has it: no pixel has a depth between both surfaces. */
-static void silhouettes_stay_sharp(void **state)
+TEST(silhouettes_stay_sharp)
 {
     const struct refocus_stack *stack = make_stack(REFOCUS_STACK_FOCUS);
 
-    (void)state;
     paint(COLUMNS / 2);
     /* A pixel of the samples left of the silhouette shows what is right of it. */
     for (int y = 0; y < H; y++)
@@ -82,14 +77,4 @@ static void silhouettes_stay_sharp(void **state)
         assert_int_equal(row[W / 2 - 1], 256 * (FRAMES - 1));
         assert_int_equal(row[W / 2], 256 * (FRAMES - 1));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slopes_are_smooth),
-        cmocka_unit_test(silhouettes_stay_sharp),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* test_stack_white.c: what is clipped is white in the photo of a focus stack, and what is bright is
  * as bright as it was. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/stack.h>
 
 enum { W = 64, H = 32, FRAMES = 2 };
@@ -43,9 +40,8 @@ static void fill(int most)
     }
 }
 
-static void clipped_is_white(void **state)
+TEST(clipped_is_white)
 {
-    (void)state;
     fill(255); /* 250 to 255 */
     compose();
     for (int i = 0; i < W * H; i++) {
@@ -58,33 +54,20 @@ static void clipped_is_white(void **state)
     }
 }
 
-static void paper_stays(void **state)
+TEST(paper_stays)
 {
-    (void)state;
     fill(250); /* 245 to 250 */
     compose();
     assert_memory_equal(photo, frame, sizeof frame);
 }
 
 /* From 240 to 255, as before: it grows, by steps of three codes at the most. */
-static void gradients_have_no_steps(void **state)
+TEST(gradients_have_no_steps)
 {
-    (void)state;
     for (int i = 0; i < 3 * W * H; i++)
         frame[i] = (uint8_t)(240 + i / 3 % W / 4);
     compose();
     for (int x = 1; x < W; x++)
         assert_in_range(photo[3 * x] - photo[3 * (x - 1)], 0, 3);
     assert_int_equal(photo[3 * (W - 1)], 255);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(clipped_is_white),
-        cmocka_unit_test(paper_stays),
-        cmocka_unit_test(gradients_have_no_steps),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,8 @@
 /* test_strays.c: samples that are far nearer than all others do not decide the range of distances.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/depth.h>
 
 /* 70,000 samples: whole numbers go by a table, and fewer than 70 may be strays. */
@@ -53,9 +50,8 @@ static void slope(uint16_t *mm, int count, int step, int without)
 static uint16_t mm[SAMPLES], out[SAMPLES], expected[SAMPLES];
 
 /* Samples by themselves and fewer than a thousandth are as if they held no value. */
-static void strays_are_filled(void **state)
+TEST(strays_are_filled)
 {
-    (void)state;
     static const struct {
         int count, step;
     } some[] = {{1, 1}, {2, 1}, {2, 800}, {33, 1}, {FEWEST - 1, 997}};
@@ -77,10 +73,8 @@ static void strays_are_filled(void **state)
 }
 
 /* A thousandth is a thing, and so is what a caller's range reaches to. */
-static void many_and_given_ones_stay(void **state)
+TEST(many_and_given_ones_stay)
 {
-    (void)state;
-
     for (uint32_t sample = REFOCUS_SAMPLE_U16; sample <= REFOCUS_SAMPLE_F32; sample++) {
         struct refocus_depth_report report;
 
@@ -96,9 +90,8 @@ static void many_and_given_ones_stay(void **state)
 }
 
 /* Nine samples in a square are a thing, at any border; eight of them are none. */
-static void small_things_stay(void **state)
+TEST(small_things_stay)
 {
-    (void)state;
     static const int left[] = {0, 100, W - 3}, top[] = {0, 120, H - 3};
 
     for (int at = 0; at < 9; at++) {
@@ -118,9 +111,8 @@ static void small_things_stay(void **state)
 }
 
 /* Ranks from 0.5 to 2 of 1/m: a single one counts that leaves them more than half of the range. */
-static void less_than_half_the_range_stays(void **state)
+TEST(less_than_half_the_range_stays)
 {
-    (void)state;
     struct refocus_depth_report report;
 
     slope(mm, 1, 1, 0);
@@ -133,9 +125,8 @@ static void less_than_half_the_range_stays(void **state)
 }
 
 /* The rest may be of one depth: then all is 0. */
-static void one_depth_is_left(void **state)
+TEST(one_depth_is_left)
 {
-    (void)state;
     static uint8_t confidence[SAMPLES];
     struct refocus_repair_params params = refocus_repair_params_default();
     struct refocus_depth_report report = refocus_depth_report_default();
@@ -150,15 +141,4 @@ static void one_depth_is_left(void **state)
     assert_true(report.strays == 1 && report.specks == 0);
     for (int i = 0; i < SAMPLES; i++)
         assert_true(out[i] == 0 && confidence[i] == (i == 9 ? 0 : 255));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(strays_are_filled), cmocka_unit_test(many_and_given_ones_stay),
-        cmocka_unit_test(small_things_stay), cmocka_unit_test(less_than_half_the_range_stays),
-        cmocka_unit_test(one_depth_is_left),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

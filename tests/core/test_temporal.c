@@ -1,12 +1,9 @@
 /* test_temporal.c: the temporal filter of depth. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 
 #include "depth/temporal.h"
@@ -73,9 +70,8 @@ static double error_of(const uint16_t *map)
 }
 
 /* Noise falls by half or more where nothing moves, and edges stay where they are. */
-static void calms(void **state)
+TEST(calms)
 {
-    (void)state;
     for (int with_photo = 0; with_photo < 2; with_photo++) {
         struct refocus_temporal *filter = make();
 
@@ -91,9 +87,8 @@ static void calms(void **state)
 }
 
 /* A square that moves leaves nothing behind: no sample is ever of the wrong surface. */
-static void leaves_no_ghosts(void **state)
+TEST(leaves_no_ghosts)
 {
-    (void)state;
     for (int with_photo = 0; with_photo < 2; with_photo++) {
         for (int speed = 1; speed <= 6; speed++) {
             struct refocus_temporal *filter = make();
@@ -116,11 +111,10 @@ static void leaves_no_ghosts(void **state)
 
 /* A sample that jumps while the photo stands still is not believed before six of seven looks agree;
  * a surface that does so is, a frame later. */
-static void waits_for_more_looks(void **state)
+TEST(waits_for_more_looks)
 {
     struct refocus_temporal *filter = make();
 
-    (void)state;
     for (int t = 0; t < 6; t++) {
         draw(30);
         if (t == 4)
@@ -149,12 +143,11 @@ static void waits_for_more_looks(void **state)
 }
 
 /* Strength 0 changes nothing; neither does a reset filter in its first frame. */
-static void can_be_off(void **state)
+TEST(can_be_off)
 {
     struct refocus_temporal_params params = refocus_temporal_params_default(W, H);
     struct refocus_temporal *off, *on = make();
 
-    (void)state;
     params.strength = 0;
     assert_int_equal(refocus_temporal_create(&off, &params), REFOCUS_OK);
     for (int t = 0; t < 3; t++) {
@@ -174,7 +167,7 @@ static void can_be_off(void **state)
  * vote where nothing jumps, though those before the climb are most alike. A jump is not
  * believed before the second frame. A change from depth to a photo that is as bright forgets the
  * past; another scale is rounded, and clamped. */
-static void equation(void **state)
+TEST(equation)
 {
     const struct refocus_temporal_params params = refocus_temporal_params_default(1, 1);
     uint8_t grey[3];
@@ -184,7 +177,6 @@ static void equation(void **state)
     struct refocus_temporal *filter;
     int n = 0;
 
-    (void)state;
     assert_int_equal(refocus_temporal_create(&filter, &params), REFOCUS_OK);
     for (int t = 0; t < 600; t++) {
         const int climbed = t < 19 ? 0 : t < 22 ? t - 19 : 3, last = p;
@@ -224,11 +216,10 @@ static void equation(void **state)
 }
 
 /* 8 bits, bottom-up rows, in place, and sizes down to one sample. */
-static void any_layout(void **state)
+TEST(any_layout)
 {
     static const int sizes[][2] = {{1, 1}, {1, 9}, {9, 1}, {8, 8}, {17, 31}};
 
-    (void)state;
     for (int k = 0; k < 5; k++) {
         const int w = sizes[k][0], h = sizes[k][1];
         const struct refocus_temporal_params params = refocus_temporal_params_default(w, h);
@@ -264,7 +255,7 @@ static void any_layout(void **state)
 
 /* The guide for a photo is its brightness: where it is that of the grey photo, the maps are the
  * same, whatever U and V and lower bytes are. */
-static void any_photo(void **state)
+TEST(any_photo)
 {
     enum { UPPER = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ };
     static const struct {
@@ -277,7 +268,6 @@ static void any_photo(void **state)
     static uint8_t memory[8 * W * SCALE * H * SCALE];
     const int width = W * SCALE, height = H * SCALE;
 
-    (void)state;
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         struct refocus_image photo = refocus_image_planar(kinds[k].format, memory, width, height);
         const struct refocus_disparity map = refocus_disparity16(v.map, W, H, 2 * W);
@@ -310,9 +300,8 @@ static void any_photo(void **state)
 
 /* A range that widens to twice what it was, after four frames: a filter that is told of it gives
  * the maps of one that has seen the new scale alone, to a code; one that is not told forgets. */
-static void follows_the_range(void **state)
+TEST(follows_the_range)
 {
-    (void)state;
     for (int with_photo = 0; with_photo < 2; with_photo++) {
         struct refocus_temporal *told = make(), *narrow = make();
         uint16_t after[W * H];
@@ -347,14 +336,13 @@ static void follows_the_range(void **state)
 
 /* Without a photo depth is its own guide, of the new scale too: here the near half would else be
  * looked for on the far one, whose codes were what the near half's are now. */
-static void guides_itself(void **state)
+TEST(guides_itself)
 {
     const struct refocus_temporal_params params = refocus_temporal_params_default(16, 8);
     uint16_t d[16 * 8], out[16 * 8];
     const struct refocus_disparity map = refocus_disparity16(d, 16, 8, 32);
     struct refocus_temporal *filter;
 
-    (void)state;
     assert_int_equal(refocus_temporal_create(&filter, &params), REFOCUS_OK);
     for (int t = 0; t < 2; t++) {
         for (int i = 0; i < 16 * 8; i++)
@@ -368,13 +356,12 @@ static void guides_itself(void **state)
     refocus_temporal_destroy(&filter);
 }
 
-static void bad_arguments(void **state)
+TEST(bad_arguments)
 {
     struct refocus_temporal_params params = refocus_temporal_params_default(W, H), bad[9];
     struct refocus_temporal *filter;
     struct refocus_disparity map = refocus_disparity16(v.map, W, H, 2 * W);
 
-    (void)state;
     for (int i = 0; i < 9; i++)
         bad[i] = params;
     bad[0].struct_size = 1;
@@ -415,11 +402,10 @@ static void draw_hill(uint8_t *guide, int x, int gain)
     }
 }
 
-static void tells_cuts(void **state)
+TEST(tells_cuts)
 {
     static uint8_t a[W * H], b[W * H];
 
-    (void)state;
     draw_hill(a, 20, 4);
     draw_hill(b, 60, 4); /* another scene */
     assert_true(rf_is_cut(b, a, W, H));
@@ -444,11 +430,10 @@ static void tells_cuts(void **state)
 }
 
 /* The first map after a cut is as it came, though much of the photo is as bright as it was. */
-static void forgets_at_a_cut(void **state)
+TEST(forgets_at_a_cut)
 {
     struct refocus_temporal *filter = make();
 
-    (void)state;
     for (int frame = 0; frame < 8; frame++) {
         draw(5);
         run(filter, true);
@@ -464,7 +449,7 @@ static void forgets_at_a_cut(void **state)
     refocus_temporal_destroy(&filter);
 }
 
-static void vectors_spread(void **state)
+TEST(vectors_spread)
 {
     enum { COLUMNS = W / RF_BLOCK, ROWS = (H + RF_BLOCK - 1) / RF_BLOCK, FIRST = 3 };
     static uint16_t near[2][W * H];
@@ -473,7 +458,6 @@ static void vectors_spread(void **state)
     const struct rf_motion moved = {7, 5};
     struct rf_motion list[(ROWS + 2) * COLUMNS], *const motion = list + COLUMNS;
 
-    (void)state;
     v.seed = 3;
     for (int i = 0; i < W * H; i++)
         guide[1][i] = (uint8_t)noise(127);
@@ -513,7 +497,7 @@ static void cancel_later(void *user)
 
 /* A cancelled run ends within eight rows, wherever it is: the looks are counted, not time. Nothing
  * is written, and the past is forgotten: the next map comes out as it is. */
-static void is_cancelled(void **state)
+TEST(is_cancelled)
 {
     static uint16_t untouched[W * H];
     struct refocus_temporal *filter = make();
@@ -524,7 +508,6 @@ static void is_cancelled(void **state)
     const struct refocus_disparity map = refocus_disparity16(v.map, W, H, 2 * W);
     int looks;
 
-    (void)state;
     memset(untouched, 0x5a, sizeof untouched);
     draw(30);
     run(filter, true);
@@ -549,19 +532,4 @@ static void is_cancelled(void **state)
         assert_memory_equal(v.out, v.map, sizeof v.map);
     }
     refocus_temporal_destroy(&filter);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(calms),          cmocka_unit_test(leaves_no_ghosts),
-        cmocka_unit_test(can_be_off),     cmocka_unit_test(waits_for_more_looks),
-        cmocka_unit_test(equation),       cmocka_unit_test(any_layout),
-        cmocka_unit_test(any_photo),      cmocka_unit_test(follows_the_range),
-        cmocka_unit_test(guides_itself),  cmocka_unit_test(bad_arguments),
-        cmocka_unit_test(tells_cuts),     cmocka_unit_test(forgets_at_a_cut),
-        cmocka_unit_test(vectors_spread), cmocka_unit_test(is_cancelled),
-    };
-
-    return cmocka_run_group_tests_name("temporal", tests, NULL, NULL);
 }

@@ -1,14 +1,11 @@
 /* test_temporal_history.c: earlier frames show a sample of this one, and vote on its depth. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 
 #include "depth/temporal.h"
 
 /* Frames with weights vote against a surface at 1000. */
-static void majorities(void **state)
+TEST(majorities)
 {
     static const struct {
         struct rf_history history;
@@ -25,7 +22,6 @@ static void majorities(void **state)
         {{1, {9000, 0, 0, 0, 0, 0, 0}, {12, 0, 0, 0, 0, 0, 0}}, 1, 9000},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         uint16_t mean = 0;
 
@@ -35,7 +31,7 @@ static void majorities(void **state)
 }
 
 /* The history follows a sample back until it was nowhere; what shows other things has no vote. */
-static void goes_back(void **state)
+TEST(goes_back)
 {
     uint16_t disparity[4][9];
     uint8_t guide[4][9];
@@ -43,7 +39,6 @@ static void goes_back(void **state)
     struct rf_frame frame[4];
     struct rf_history history;
 
-    (void)state;
     for (int k = 0; k < 4; k++) {
         frame[k] = (struct rf_frame){disparity[k], guide[k], from[k]};
         for (int i = 0; i < 9; i++) {
@@ -63,14 +58,4 @@ static void goes_back(void **state)
     assert_int_equal(history.count, 1);
     rf_history_take(&history, frame, 1, 3, 4);
     assert_int_equal(history.count, 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(majorities),
-        cmocka_unit_test(goes_back),
-    };
-
-    return cmocka_run_group_tests_name("temporal_history", tests, NULL, NULL);
 }

@@ -1,13 +1,10 @@
 /* test_thread_faults.c: threads, locks and conditions fail at each of the calls that make them:
  * REFOCUS_ERR_THREAD, and nothing stays behind: no thread, lock, condition or memory. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
+#include "unit_test.h"
 #include <errno.h>
 #include <pthread.h>
 
@@ -148,11 +145,10 @@ static int finish_stack(void)
     return make_stack(true);
 }
 
-static void each_call(void **state)
+TEST(each_call)
 {
     int (*const acts[])(void) = {create, upsample, place_edges, add_to_stack, finish_stack};
 
-    (void)state;
     for (size_t i = 0; i < sizeof acts / sizeof *acts; i++) {
         const long blocks = failing.live;
         int made;
@@ -174,11 +170,4 @@ static void each_call(void **state)
         assert_int_equal(live, 0);
         assert_int_equal(failing.live, blocks);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(each_call)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,12 +1,9 @@
 /* test_upsample.c: the depth upsampler through its public face. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 
 static uint32_t random_state;
@@ -75,9 +72,8 @@ static const int sizes[][4] = {{64, 48, 16, 12}, {97, 61, 13, 29}, {40, 31, 1, 1
 enum { SIZES = sizeof sizes / sizeof *sizes };
 
 /* Every instruction set and any number of threads give equal bits. */
-static void same_everywhere(void **state)
+TEST(same_everywhere)
 {
-    (void)state;
     for (int i = 0; i < 2 * SIZES; i++) {
         const int *size = sizes[i / 2];
         struct scene s = make(size[0], size[1], size[2], size[3]);
@@ -110,11 +106,10 @@ static void same_everywhere(void **state)
 }
 
 /* No disparity that no sample is near: means are of one surface only. */
-static void invents_nothing(void **state)
+TEST(invents_nothing)
 {
     struct refocus_upsample_params params = refocus_upsample_params_default();
 
-    (void)state;
     for (int i = 0; i < SIZES; i++) {
         struct scene s = make(sizes[i][0], sizes[i][1], sizes[i][2], sizes[i][3]);
 
@@ -129,12 +124,11 @@ static void invents_nothing(void **state)
 }
 
 /* One disparity stays what it is, to the bit; a ramp stays a ramp. */
-static void keeps_planes(void **state)
+TEST(keeps_planes)
 {
     static const uint16_t values[] = {0, 1, 77, 32768, 65534, 65535};
     struct refocus_upsample_params params = refocus_upsample_params_default();
 
-    (void)state;
     for (int i = 0; i < SIZES; i++) {
         struct scene s = make(sizes[i][0], sizes[i][1], sizes[i][2], sizes[i][3]);
 
@@ -184,9 +178,8 @@ static void follows_the_photo_to(uint16_t far, bool sure)
     }
 }
 
-static void follows_the_photo(void **state)
+TEST(follows_the_photo)
 {
-    (void)state;
     follows_the_photo_to(8000, false);
     follows_the_photo_to(8000, true);
     follows_the_photo_to(0, true);
@@ -240,9 +233,8 @@ static void weighs_small_errors_at(int u, int v)
     end(&s);
 }
 
-static void weighs_confidence(void **state)
+TEST(weighs_confidence)
 {
-    (void)state;
     weighs_confidence_at(6, 6);
     weighs_confidence_at(2, 9);
     weighs_confidence_at(9, 3);
@@ -251,7 +243,7 @@ static void weighs_confidence(void **state)
 }
 
 /* A map that has the photo's size comes out as it is, of 8 and 16 bits and bottom-up. */
-static void same_size(void **state)
+TEST(same_size)
 {
     struct refocus_upsample_params params = refocus_upsample_params_default();
     struct scene s = make(31, 22, 31, 22);
@@ -260,7 +252,6 @@ static void same_size(void **state)
     uint8_t bytes[31 * 22];
     struct refocus_disparity map = refocus_disparity16(s.map + 31 * 21, 31, 22, -2 * 31);
 
-    (void)state;
     assert_int_equal(run(&s, &params, s.out), REFOCUS_OK);
     assert_memory_equal(s.out, s.map, 2 * 31 * 22);
     assert_int_equal(refocus_upsample(&photo, &map, &params, s.out, 2 * 31), REFOCUS_OK);
@@ -276,7 +267,7 @@ static void same_size(void **state)
 }
 
 /* refocus_prepare() and formats, strides and 8 bits come to the same. */
-static void same_by_other_ways(void **state)
+TEST(same_by_other_ways)
 {
     struct refocus_upsample_params params = refocus_upsample_params_default();
     struct scene s = make(75, 50, 20, 17);
@@ -287,7 +278,6 @@ static void same_by_other_ways(void **state)
     struct refocus_disparity map = refocus_disparity16(s.map, 20, 17, 40);
     uint8_t *bgra = malloc(4 * 75 * 50), bytes[20 * 17];
 
-    (void)state;
     assert_non_null(bgra);
     assert_int_equal(run(&s, &params, s.out), REFOCUS_OK);
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
@@ -323,14 +313,13 @@ static void same_by_other_ways(void **state)
     end(&s);
 }
 
-static void bad_arguments(void **state)
+TEST(bad_arguments)
 {
     struct scene s = make(20, 20, 5, 5);
     struct refocus_upsample_params params = refocus_upsample_params_default(), bad[5];
     const struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, s.rgb, 20, 20, 60);
     const struct refocus_disparity map = refocus_disparity16(s.map, 5, 5, 10);
 
-    (void)state;
     for (int i = 0; i < 5; i++)
         bad[i] = params;
     bad[0].struct_size = 4;
@@ -354,7 +343,7 @@ static void bad_arguments(void **state)
 }
 
 /* Specks go, thin lines and large patches stay; codes and confidence. */
-static void repair(void **state)
+TEST(repair)
 {
     enum { W = 40, H = 30 };
     static uint16_t in[W * H], out[W * H];
@@ -372,7 +361,6 @@ static void repair(void **state)
     struct refocus_repair_params params = refocus_repair_params_default();
     struct refocus_depth_report report = refocus_depth_report_default();
 
-    (void)state;
     for (int i = 0; i < W * H; i++)
         in[i] = 20000;
     for (int i = 0; i < 20; i++)
@@ -404,21 +392,4 @@ static void repair(void **state)
     params.speckle = 256;
     assert_int_equal(refocus_depth_repair(&map, &params, out, 2 * W, &report),
                      REFOCUS_ERR_ARGUMENT);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_everywhere),
-        cmocka_unit_test(invents_nothing),
-        cmocka_unit_test(keeps_planes),
-        cmocka_unit_test(follows_the_photo),
-        cmocka_unit_test(weighs_confidence),
-        cmocka_unit_test(same_size),
-        cmocka_unit_test(same_by_other_ways),
-        cmocka_unit_test(bad_arguments),
-        cmocka_unit_test(repair),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,8 @@
 /* test_upsample_strips.c: refocus_upsample() goes through a photo in strips of 64 rows of samples,
  * and refocus_prepare() at once: the bits are the same. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 
 enum { MOST = 70 * 700 };
@@ -55,9 +52,8 @@ static void prepare(const struct size *s, const struct refocus_image *photo,
     refocus_renderer_destroy(&renderer);
 }
 
-static void same_in_strips(void **state)
+TEST(same_in_strips)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         const struct size *const s = &sizes[i];
         const struct refocus_image photo =
@@ -75,11 +71,4 @@ static void same_in_strips(void **state)
             assert_memory_equal(out, expected, 2 * (size_t)s->width * (size_t)s->height);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_in_strips)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

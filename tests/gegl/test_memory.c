@@ -1,10 +1,7 @@
 /* test_memory.c: each allocation of the operation's own fails once: the photo goes through as it
  * is, and a line says why. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <string.h>
 #include "failing.h"
 #include "graph.h"

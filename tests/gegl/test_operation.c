@@ -1,9 +1,6 @@
 /* test_operation.c: the operation in graphs of GEGL makes what the library makes. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <math.h>
 #include <string.h>
 #include <refocus/refocus.h>

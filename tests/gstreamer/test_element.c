@@ -1,11 +1,8 @@
 /* test_element.c: the element's frames are the library's own, whatever the caps, times and events.
  */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <string.h>
 #include "frames.h"
 #include "plugin.h"
@@ -56,13 +53,12 @@ static void check_frame(const char *caps, const char *depth_caps, int bits, int 
     bench_close(&bench);
 }
 
-static void formats(void **state)
+TEST(formats)
 {
     static const char *const names[] = {"NV12", "NV21", "I420", "YV12", "YUY2", "GRAY8",
                                         "RGB",  "BGR",  "RGBA", "BGRA", "RGBx", "BGRx"};
     char caps[128];
 
-    (void)state;
     for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
         g_snprintf(caps, sizeof caps, "video/x-raw,format=%s," SIZE, names[i]);
         check_frame(caps, DEPTH, 16, 64, 48);
@@ -72,14 +68,13 @@ static void formats(void **state)
 
 /* Matrices and ranges; BT.2020 of 8 bits is nearest to BT.709. In numbers of GStreamer: the range
  * is 1 for 0 to 255 and 2 for 16 to 235. */
-static void colours(void **state)
+TEST(colours)
 {
     static const char *const kinds[] = {"NV12,colorimetry=bt709", "NV12,colorimetry=bt2020",
                                         "NV12,colorimetry=1:4:0:0", "I420,colorimetry=1:3:0:0",
                                         "GRAY8,colorimetry=2:4:0:0"};
     char caps[128];
 
-    (void)state;
     for (size_t i = 0; i < G_N_ELEMENTS(kinds); i++) {
         g_snprintf(caps, sizeof caps, "video/x-raw,format=%s," SIZE, kinds[i]);
         check_frame(caps, DEPTH, 16, 64, 48);
@@ -87,12 +82,11 @@ static void colours(void **state)
 }
 
 /* Ten bits by the curves of video, PQ and HLG. */
-static void ten_bits(void **state)
+TEST(ten_bits)
 {
     static const char *const colours[] = {"bt601", "bt2100-pq", "bt2100-hlg"};
     char caps[160];
 
-    (void)state;
     for (size_t i = 0; i < G_N_ELEMENTS(colours); i++) {
         g_snprintf(caps, sizeof caps, "video/x-raw,format=P010_10LE,colorimetry=%s," SIZE,
                    colours[i]);
@@ -102,9 +96,8 @@ static void ten_bits(void **state)
                 DEPTH, 16, 64, 48);
 }
 
-static void depth_of_other_kinds(void **state)
+TEST(depth_of_other_kinds)
 {
-    (void)state;
     check_frame(NV12, "video/x-raw,format=GRAY8," SIZE, 8, 64, 48);
     check_frame(RGB, "video/x-raw,format=GRAY16_LE,width=31,height=23,framerate=5/1", 16, 31, 23);
     check_frame(NV12, "video/x-raw,format=GRAY8,width=21,height=90,framerate=0/1", 8, 21, 90);
@@ -149,12 +142,11 @@ static bool lamps_come_alone(struct bench *bench, int side, int ms)
 }
 
 /* Light of highlights follows that of the last frame, unless that shows another moment. */
-static void steady_light(void **state)
+TEST(steady_light)
 {
     struct bench bench;
     GstSegment segment;
 
-    (void)state;
     bench_open(&bench, NV12, "video/x-raw,format=GRAY8,width=1,height=1,framerate=25/1");
     g_object_set(bench.element, "focus", 1.0, "blur", 8.0, "highlights", 6.0, NULL);
     assert_int_equal(
@@ -180,18 +172,8 @@ static void steady_light(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(formats),
-        cmocka_unit_test(colours),
-#if G_BYTE_ORDER == G_LITTLE_ENDIAN
-        cmocka_unit_test(ten_bits),
-#endif
-        cmocka_unit_test(depth_of_other_kinds),
-        cmocka_unit_test(steady_light),
-    };
-
     gst_init(NULL, NULL);
     if (!rf_gst_register(NULL))
         return 1;
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

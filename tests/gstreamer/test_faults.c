@@ -1,11 +1,8 @@
 /* test_faults.c: faults of cameras, depth sensors and what is between, as the element meets them:
  * the stream goes on. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <string.h>
 #include "frames.h"
 #include "plugin.h"
@@ -101,50 +98,43 @@ static GstBuffer *laid_out(gsize bytes, int stride, gsize chroma)
     return frame;
 }
 
-static void short_frame(void **state)
+TEST(short_frame)
 {
-    (void)state;
     is_left_out(gst_buffer_new_allocate(NULL, LUMA, NULL));
 }
 
-static void empty_frame(void **state)
+TEST(empty_frame)
 {
-    (void)state;
     is_left_out(gst_buffer_new());
 }
 
-static void rows_beyond_memory(void **state)
+TEST(rows_beyond_memory)
 {
-    (void)state;
     is_left_out(laid_out(LUMA * 3 / 2, 96, LUMA));
 }
 
-static void chroma_beyond_memory(void **state)
+TEST(chroma_beyond_memory)
 {
-    (void)state;
     is_left_out(laid_out(LUMA * 3 / 2, 64, LUMA + 640));
 }
 
-static void rows_too_narrow(void **state)
+TEST(rows_too_narrow)
 {
-    (void)state;
     is_left_out(laid_out(LUMA * 3 / 2, 32, LUMA));
 }
 
-static void another_size_than_said(void **state)
+TEST(another_size_than_said)
 {
     GstBuffer *const frame = gst_buffer_new_allocate(NULL, LUMA * 6, NULL);
 
-    (void)state;
     gst_buffer_add_video_meta(frame, GST_VIDEO_FRAME_FLAG_NONE, GST_VIDEO_FORMAT_NV12, 128, 96);
     is_left_out(frame);
 }
 
-static void odd_strides(void **state)
+TEST(odd_strides)
 {
     struct bench bench;
 
-    (void)state;
     begin(&bench);
     end_depth(&bench);
     gst_buffer_unref(through(&bench, laid_out(71 * 72 + 9, 71, 71 * 48 + 9)));
@@ -152,12 +142,11 @@ static void odd_strides(void **state)
     finish(&bench);
 }
 
-static void long_frame(void **state)
+TEST(long_frame)
 {
     struct bench bench;
     GstBuffer *const frame = frame_make(NV12, 0, ms(40));
 
-    (void)state;
     begin(&bench);
     end_depth(&bench);
     gst_buffer_append_memory(frame, gst_allocator_alloc(NULL, 100, NULL));
@@ -184,25 +173,22 @@ static void flag_stays(GstBufferFlags flag)
 }
 
 /* Sources flag what a driver calls damaged. */
-static void corrupt_frame(void **state)
+TEST(corrupt_frame)
 {
-    (void)state;
     flag_stays(GST_BUFFER_FLAG_CORRUPTED);
 }
 
-static void dropped_frames(void **state)
+TEST(dropped_frames)
 {
-    (void)state;
     flag_stays(GST_BUFFER_FLAG_DISCONT);
 }
 
 /* Frames whose times run backwards, or are a hundred seconds off, come out in order of arrival. */
-static void times_out_of_order(void **state)
+TEST(times_out_of_order)
 {
     static const int times[] = {80, 40, 100000, 120, 0};
     struct bench bench;
 
-    (void)state;
     begin(&bench);
     end_depth(&bench);
     for (size_t i = 0; i < G_N_ELEMENTS(times); i++)
@@ -210,11 +196,10 @@ static void times_out_of_order(void **state)
     finish(&bench);
 }
 
-static void frames_without_times(void **state)
+TEST(frames_without_times)
 {
     struct bench bench;
 
-    (void)state;
     begin(&bench);
     end_depth(&bench);
     for (int i = 0; i < 3; i++) {
@@ -229,11 +214,10 @@ static void frames_without_times(void **state)
     finish(&bench);
 }
 
-static void unknown_rate(void **state)
+TEST(unknown_rate)
 {
     struct bench bench;
 
-    (void)state;
     begin(&bench);
     end_depth(&bench);
     gst_harness_set_src_caps_str(bench.video, UNTIMED);
@@ -243,12 +227,11 @@ static void unknown_rate(void **state)
 }
 
 /* The map before it serves on. */
-static void damaged_map(void **state)
+TEST(damaged_map)
 {
     struct bench bench;
     GstBuffer *const map = gst_buffer_new_allocate(NULL, 64, NULL);
 
-    (void)state;
     begin(&bench);
     assert_int_equal(gst_harness_push(bench.video, frame_make(NV12, 3, 0)), GST_FLOW_OK);
     GST_BUFFER_PTS(map) = ms(40);
@@ -263,12 +246,11 @@ static void damaged_map(void **state)
 }
 
 /* A depth camera whose lens is covered: the map before it serves on, and the next one counts. */
-static void map_without_readings(void **state)
+TEST(map_without_readings)
 {
     static const int samples[] = {0, 1, 255, 2}; /* no value, 257 mm, no value, 514 mm */
     struct bench bench;
 
-    (void)state;
     bench_open(&bench, NV12, MM);
     g_object_set(bench.element, "depth-unit", "mm", "near", 0.257, "far", 0.514, "focus", 1.0,
                  "blur", 8.0, "threads", 1, "invalid", "max", NULL);
@@ -290,11 +272,10 @@ static void map_without_readings(void **state)
     finish(&bench);
 }
 
-static void damaged_first_map(void **state)
+TEST(damaged_first_map)
 {
     struct bench bench;
 
-    (void)state;
     bench_open(&bench, NV12, DEPTH);
     g_object_set(bench.element, "focus", 1.0, "blur", 8.0, "threads", 1, NULL);
     assert_int_equal(gst_harness_push(bench.depth, gst_buffer_new_allocate(NULL, 1, NULL)),
@@ -307,11 +288,10 @@ static void damaged_first_map(void **state)
     finish(&bench);
 }
 
-static void maps_without_times(void **state)
+TEST(maps_without_times)
 {
     struct bench bench;
 
-    (void)state;
     bench_open(&bench, NV12, DEPTH);
     g_object_set(bench.element, "focus", 1.0, "blur", 8.0, "threads", 1, NULL);
     for (int i = 0; i < 3; i++) {
@@ -323,11 +303,10 @@ static void maps_without_times(void **state)
     finish(&bench);
 }
 
-static void maps_back_in_time(void **state)
+TEST(maps_back_in_time)
 {
     struct bench bench;
 
-    (void)state;
     begin(&bench);
     assert_int_equal(gst_harness_push(bench.video, frame_make(NV12, 3, 0)), GST_FLOW_OK);
     assert_int_equal(gst_harness_push(bench.depth, frame_flat(DEPTH, BLURRED, ms(160))),
@@ -341,11 +320,10 @@ static void maps_back_in_time(void **state)
     finish(&bench);
 }
 
-static void maps_of_another_size(void **state)
+TEST(maps_of_another_size)
 {
     struct bench bench;
 
-    (void)state;
     begin(&bench);
     assert_int_equal(gst_harness_push(bench.video, frame_make(NV12, 3, 0)), GST_FLOW_OK);
     gst_harness_set_src_caps_str(bench.depth, SMALL);
@@ -358,11 +336,10 @@ static void maps_of_another_size(void **state)
 }
 
 /* The last map holds. */
-static void depth_camera_gone(void **state)
+TEST(depth_camera_gone)
 {
     struct bench bench;
 
-    (void)state;
     begin(&bench);
     end_depth(&bench);
     for (int i = 0; i < 4; i++)
@@ -371,11 +348,10 @@ static void depth_camera_gone(void **state)
 }
 
 /* A frame that waits for its map does not keep the element from being stopped. */
-static void stopped_while_waiting(void **state)
+TEST(stopped_while_waiting)
 {
     struct bench bench;
 
-    (void)state;
     bench_open(&bench, NV12, DEPTH);
     assert_int_equal(gst_harness_push(bench.video, frame_make(NV12, 3, 0)), GST_FLOW_OK);
     assert_int_equal(gst_element_set_state(bench.element, GST_STATE_NULL),
@@ -385,22 +361,8 @@ static void stopped_while_waiting(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(short_frame),           cmocka_unit_test(empty_frame),
-        cmocka_unit_test(rows_beyond_memory),    cmocka_unit_test(chroma_beyond_memory),
-        cmocka_unit_test(rows_too_narrow),       cmocka_unit_test(another_size_than_said),
-        cmocka_unit_test(odd_strides),           cmocka_unit_test(long_frame),
-        cmocka_unit_test(corrupt_frame),         cmocka_unit_test(dropped_frames),
-        cmocka_unit_test(times_out_of_order),    cmocka_unit_test(frames_without_times),
-        cmocka_unit_test(unknown_rate),          cmocka_unit_test(damaged_map),
-        cmocka_unit_test(damaged_first_map),     cmocka_unit_test(map_without_readings),
-        cmocka_unit_test(maps_without_times),    cmocka_unit_test(maps_back_in_time),
-        cmocka_unit_test(maps_of_another_size),  cmocka_unit_test(depth_camera_gone),
-        cmocka_unit_test(stopped_while_waiting),
-    };
-
     gst_init(NULL, NULL);
     if (!rf_gst_register(NULL))
         return 1;
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

@@ -1,10 +1,7 @@
 /* test_memory.c: each allocation of the element's own fails once, and ends in an error in words. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <string.h>
 #include "failing.h"
 #include "frames.h"
@@ -49,11 +46,10 @@ static bool run_once(long fail_at)
     return false;
 }
 
-static void memory(void **state)
+TEST(memory)
 {
     long calls;
 
-    (void)state;
     assert_true(run_once(0));
     calls = failing.calls;
     assert_true(calls >= 3); /* chroma of both frames, disparities */
@@ -64,10 +60,8 @@ static void memory(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(memory)};
-
     gst_init(NULL, NULL);
     if (!rf_gst_register(NULL))
         return 1;
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

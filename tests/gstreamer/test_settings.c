@@ -1,11 +1,8 @@
 /* test_settings.c: properties that change while frames come, one after the other or to what cannot
  * be: the stream goes on. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <string.h>
 #include "frames.h"
 #include "plugin.h"
@@ -52,13 +49,12 @@ static void comes_as(struct bench *bench, GstBuffer *expected, bool warned)
 }
 
 /* Both are changed while frames come, and one is changed first. */
-static void near_before_far(void **state)
+TEST(near_before_far)
 {
     GstBuffer *const sharp = frame_make(NV12, 3, 0);
     GstBuffer *before;
     struct bench bench;
 
-    (void)state;
     begin(&bench, "mm", 0.5, 4);
     before = next(&bench);
     assert_non_null(before);
@@ -74,12 +70,11 @@ static void near_before_far(void **state)
 }
 
 /* A range that cannot be is not kept with maps that need none, either. */
-static void lens_before_range(void **state)
+TEST(lens_before_range)
 {
     GstBuffer *before, *by_lens, *wider;
     struct bench bench;
 
-    (void)state;
     begin(&bench, "disparity", 0, 0);
     before = next(&bench);
     assert_non_null(before);
@@ -102,12 +97,11 @@ static void lens_before_range(void **state)
 }
 
 /* The frame is that of the greatest blur, which is told once. */
-static void more_blur_than_the_method_has(void **state)
+TEST(more_blur_than_the_method_has)
 {
     GstBuffer *most;
     struct bench bench;
 
-    (void)state;
     begin(&bench, "disparity", 0, 0);
     gst_util_set_object_arg(G_OBJECT(bench.element), "method", "search");
     g_object_set(bench.element, "blur", 127.0, NULL);
@@ -123,12 +117,11 @@ static void more_blur_than_the_method_has(void **state)
     bench_close(&bench);
 }
 
-static void unknown_aperture(void **state)
+TEST(unknown_aperture)
 {
     GstBuffer *before;
     struct bench bench;
 
-    (void)state;
     begin(&bench, "disparity", 0, 0);
     before = next(&bench);
     assert_non_null(before);
@@ -159,7 +152,7 @@ static GstBuffer *by_codes(struct bench *bench, int code, int count)
 
 /* Whether 65535 is a distance does not change from map to map, and codes that are said to hold no
  * value do not. */
-static void samples_without_a_value(void **state)
+TEST(samples_without_a_value)
 {
     static const struct {
         const char *unit, *invalid;
@@ -171,7 +164,6 @@ static void samples_without_a_value(void **state)
                 {"disparity", NULL, 65535, 400, false}, {"disparity", "max", 65535, 400, true}};
     struct bench bench;
 
-    (void)state;
     for (size_t i = 0; i < G_N_ELEMENTS(maps); i++) {
         GstBuffer *plain, *out;
 
@@ -187,13 +179,12 @@ static void samples_without_a_value(void **state)
 }
 
 /* Before the first frame there is nothing to go on with. */
-static void wrong_from_the_beginning(void **state)
+TEST(wrong_from_the_beginning)
 {
     static const char *const wrong[][3] = {
         {"aperture", "polygon", "aperture 'polygon' is not known"},
         {"invalid", "zero,x", "invalid 'zero,x' is not known; give zero, max or numbers"}};
 
-    (void)state;
     for (size_t i = 0; i < G_N_ELEMENTS(wrong); i++) {
         struct bench bench;
         char *words;
@@ -211,17 +202,8 @@ static void wrong_from_the_beginning(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(near_before_far),
-        cmocka_unit_test(lens_before_range),
-        cmocka_unit_test(more_blur_than_the_method_has),
-        cmocka_unit_test(unknown_aperture),
-        cmocka_unit_test(samples_without_a_value),
-        cmocka_unit_test(wrong_from_the_beginning),
-    };
-
     gst_init(NULL, NULL);
     if (!rf_gst_register(NULL))
         return 1;
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

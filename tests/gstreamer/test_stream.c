@@ -1,9 +1,6 @@
 /* test_stream.c: times, events, states and failures of the element in a stream. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <math.h>
 #include <string.h>
 #include <gst/controller/gstdirectcontrolbinding.h>
@@ -58,11 +55,10 @@ static bool comes_out_sharp(struct bench *bench, int ms)
 
 /* Maps of 10 a second, frames of 25: the nearest in time counts, the earlier of two. A pad holds
  * one map, so the next is pushed when a frame has taken the last. */
-static void pairing(void **state)
+TEST(pairing)
 {
     struct bench bench;
 
-    (void)state;
     bench_open(&bench, NV12, DEPTH);
     g_object_set(bench.element, "focus", 1.0, "blur", 8.0, NULL);
     assert_int_equal(push_depth(&bench, 255, 0), GST_FLOW_OK);
@@ -82,7 +78,7 @@ static void pairing(void **state)
     bench_close(&bench);
 }
 
-static void new_caps(void **state)
+TEST(new_caps)
 {
     struct refocus_settings settings = frame_settings(1, 5);
     const char *const caps[] = {NV12, P010, RGB, P010, NV12};
@@ -91,7 +87,6 @@ static void new_caps(void **state)
     struct bench bench;
     GstMapInfo map;
 
-    (void)state;
     bench_open(&bench, NV12, DEPTH);
     g_object_set(bench.element, "focus", 1.0, "blur", 5.0, NULL);
     assert_int_equal(push(bench.depth, gst_buffer_ref(depth)), GST_FLOW_OK);
@@ -148,9 +143,8 @@ static void check_error(const char *properties, bool depth, int map, const char 
     bench_close(&bench);
 }
 
-static void errors(void **state)
+TEST(errors)
 {
-    (void)state;
     check_error(NULL, false, -1, "link the pad depth, or give depth-location");
     check_error(NULL, true, -1, "ended without a depth map");
     check_error("aperture polygon:2", true, 9, "aperture 'polygon:2' is not known");
@@ -162,7 +156,7 @@ static void errors(void **state)
     check_error("method raytrace", true, 9, "not");
 }
 
-static void shapes(void **state)
+TEST(shapes)
 {
     static const char *const good[] = {"disc",  "polygon:3", "polygon:16:-15.5",
                                        "heart", "star",      "star:7"};
@@ -185,7 +179,6 @@ static void shapes(void **state)
     struct refocus_aperture *aperture;
     struct refocus_aperture_params shape;
 
-    (void)state;
     for (size_t i = 0; i < G_N_ELEMENTS(good); i++) {
         assert_true(rf_gst_read_shape(good[i], &shape));
         assert_int_equal(refocus_aperture_create(&aperture, &shape), REFOCUS_OK);
@@ -197,12 +190,11 @@ static void shapes(void **state)
 }
 
 /* Frames before the depth, depth before the frames, and either end first. */
-static void ends(void **state)
+TEST(ends)
 {
     struct bench bench;
     GstBuffer *out;
 
-    (void)state;
     for (int order = 0; order < 3; order++) {
         bench_open(&bench, NV12, DEPTH);
         if (order == 0) { /* frames first */
@@ -246,11 +238,10 @@ static void flush(GstHarness *harness)
 }
 
 /* After a seek back the map of the end must not serve the beginning. */
-static void seek(void **state)
+TEST(seek)
 {
     struct bench bench;
 
-    (void)state;
     bench_open(&bench, NV12, DEPTH);
     g_object_set(bench.element, "focus", 1.0, "blur", 8.0, NULL);
     assert_int_equal(push_depth(&bench, 255, 5000), GST_FLOW_OK);
@@ -264,11 +255,10 @@ static void seek(void **state)
     bench_close(&bench);
 }
 
-static void states(void **state)
+TEST(states)
 {
     struct bench bench;
 
-    (void)state;
     bench_open(&bench, NV12, DEPTH);
     g_object_set(bench.element, "focus", 1.0, "blur", 8.0, NULL);
     for (int i = 0; i < 5; i++) {
@@ -293,7 +283,7 @@ static void states(void **state)
 }
 
 /* A focus pull from 0 to 1 within a second, by the times of the frames. */
-static void controller(void **state)
+TEST(controller)
 {
     GstControlSource *const source = gst_interpolation_control_source_new();
     GstBuffer *const depth = frame_make(DEPTH, 4, 0);
@@ -301,7 +291,6 @@ static void controller(void **state)
     struct bench bench;
     GstMapInfo map;
 
-    (void)state;
     bench_open(&bench, NV12, DEPTH);
     g_object_set(source, "mode", GST_INTERPOLATION_MODE_LINEAR, NULL);
     gst_timed_value_control_source_set(GST_TIMED_VALUE_CONTROL_SOURCE(source), 0, 0);
@@ -351,7 +340,7 @@ static bool is_focused(struct bench *bench, GstBuffer *frame, int value, double 
 
 /* The focus on a place settles within some frames, and is there at once where nothing was before.
  */
-static void focus_of_a_place(void **state)
+TEST(focus_of_a_place)
 {
     static const struct {
         int ms, value;
@@ -370,7 +359,6 @@ static void focus_of_a_place(void **state)
     struct bench bench;
     double at = 0;
 
-    (void)state;
     bench_open(&bench, NV12, DEPTH);
     g_object_set(bench.element, "focus", 0.2, "focus-y", 1.0, "blur", 40.0, "near", 1.0, NULL);
     assert_int_equal(push_depth(&bench, step[0].value, step[0].ms), GST_FLOW_OK);
@@ -391,13 +379,12 @@ static void focus_of_a_place(void **state)
     bench_close(&bench);
 }
 
-static void lateness(void **state)
+TEST(lateness)
 {
     struct bench bench;
     GstMessage *message;
     guint64 rendered, dropped;
 
-    (void)state;
     bench_open(&bench, NV12, DEPTH);
     g_object_set(bench.element, "focus", 1.0, "blur", 8.0, NULL);
     assert_int_equal(push_depth(&bench, 255, 0), GST_FLOW_OK);
@@ -425,12 +412,11 @@ static void lateness(void **state)
 }
 
 /* A live element says when its frames come, and a depth camera that is silent does not stop it. */
-static void live(void **state)
+TEST(live)
 {
     struct bench bench;
     GstBuffer *frame, *out;
 
-    (void)state;
     bench_open(&bench, NV12, DEPTH);
     gst_harness_set_live(bench.video, TRUE);
     gst_harness_set_live(bench.depth, TRUE);
@@ -470,14 +456,13 @@ static void count(GstElement *element, GstSegment *segment, guint64 pts, guint64
 }
 
 /* Flags, offsets and metas of a buffer stay; who asks is told when it is taken. */
-static void metas(void **state)
+TEST(metas)
 {
     int selected = 0;
     GstCaps *const reference = gst_caps_new_empty_simple("timestamp/x-test");
     struct bench bench;
     GstBuffer *frame, *out;
 
-    (void)state;
     bench_open(&bench, NV12, DEPTH);
     g_object_set(bench.element, "emit-signals", TRUE, NULL);
     g_signal_connect(bench.element, "samples-selected", G_CALLBACK(count), &selected);
@@ -499,11 +484,10 @@ static void metas(void **state)
 }
 
 /* Gaps on either pad. */
-static void gaps(void **state)
+TEST(gaps)
 {
     struct bench bench;
 
-    (void)state;
     bench_open(&bench, NV12, DEPTH);
     g_object_set(bench.element, "focus", 1.0, "blur", 8.0, NULL);
     push_depth(&bench, 255, 0);
@@ -518,24 +502,8 @@ static void gaps(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pairing),
-        cmocka_unit_test(new_caps),
-        cmocka_unit_test(errors),
-        cmocka_unit_test(shapes),
-        cmocka_unit_test(ends),
-        cmocka_unit_test(seek),
-        cmocka_unit_test(states),
-        cmocka_unit_test(controller),
-        cmocka_unit_test(focus_of_a_place),
-        cmocka_unit_test(lateness),
-        cmocka_unit_test(live),
-        cmocka_unit_test(metas),
-        cmocka_unit_test(gaps),
-    };
-
     gst_init(NULL, NULL);
     if (!rf_gst_register(NULL))
         return 1;
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

@@ -7,7 +7,7 @@
 
 /* A near disc, its edge sharp and its middle blurred, before a far wall: the field is a picture
  * that is white in the middle. Red before green: green in the middle means it leaks. */
-static void figure_2(void **state)
+TEST(figure_2)
 {
     enum { SIDE = 120, RADIUS = 40, EDGE = 8 };
     struct picture p = picture_flat(SIDE, SIDE, (uint8_t[3]){0, 200, 0}, 0);
@@ -18,7 +18,6 @@ static void figure_2(void **state)
     struct refocus_renderer *renderer;
     double naive_leak = 0;
 
-    (void)state;
     for (int i = 0; i < SIDE * SIDE; i++) {
         const double r = hypot(i % SIDE - SIDE / 2, i / SIDE - SIDE / 2);
 
@@ -62,7 +61,7 @@ static void figure_2(void **state)
 
 /* The two solvers within a grey level; blur of the whole K in every field. The times are said,
  * not judged: papers.py measures them. */
-static void solvers(void **state)
+TEST(solvers)
 {
     enum { MOST = 96 * 64 };
     static const struct { /* steps grow with the square of the blur */
@@ -76,7 +75,6 @@ static void solvers(void **state)
     static uint8_t out[2][3 * MOST];
     int bad = 0;
 
-    (void)state;
     for (uint32_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const int w = cases[i].width, h = cases[i].height;
         struct refocus_renderer *renderer;
@@ -115,12 +113,11 @@ static void solvers(void **state)
     assert_int_equal(bad, 0);
 }
 
-static void terms(void **state)
+TEST(terms)
 {
     static const double radii[] = {5, 10, 20, 40, 80, 127};
     struct rf_series series;
 
-    (void)state;
     for (int i = 0; i < 6; i++) {
         const int steps = (int)ceil(radii[i] * radii[i] / (2 * 0.125));
 
@@ -149,7 +146,7 @@ static double extrapolated(const struct rf_diffusion_layer *layer, int count, in
 
 /* Edge pixels farther than a tile count together, a tile of them at a time: how far that is from
  * eq. 3. Two objects, the one with blur that goes up and down along its edge. */
-static void lumped_edges(void **state)
+TEST(lumped_edges)
 {
     enum { W = 150, H = 110, TILES_X = (W + 15) / 16, TILES_Y = (H + 15) / 16 };
     static uint8_t member[W * H];
@@ -177,7 +174,6 @@ static void lumped_edges(void **state)
     double worst = 0, sum = 0;
     int count = 0, pixels = 0;
 
-    (void)state;
     for (int i = 0; i < W * H; i++) {
         const int px = i % W, py = i / W;
 
@@ -211,7 +207,7 @@ static void lumped_edges(void **state)
 /* The layer that a blurred object uncovers counts as whole wherever there is any of it: a red strip
  * of 13 pixels before a green wall, both blurred, gives red of 13 pixels to a row, though the wall,
  * cut out behind the strip, flows into the gap and is thin there. */
-static void under_layer(void **state)
+TEST(under_layer)
 {
     enum { SIDE = 96, STRIP = 13, RED = 240 };
     struct picture p = picture_flat(SIDE, SIDE, (uint8_t[3]){0, RED, 0}, 0);
@@ -222,7 +218,6 @@ static void under_layer(void **state)
     struct refocus_renderer *renderer;
     int red = 0, mixed = 0;
 
-    (void)state;
     for (int i = 0; i < SIDE * SIDE; i++) {
         if (abs(i % SIDE - SIDE / 2) > STRIP / 2)
             continue;
@@ -246,12 +241,4 @@ static void under_layer(void **state)
     assert_true(abs(red - STRIP * RED) < STRIP * RED * 3 / 100);
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(figure_2), cmocka_unit_test(solvers),
-                                       cmocka_unit_test(terms), cmocka_unit_test(lumped_edges),
-                                       cmocka_unit_test(under_layer)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

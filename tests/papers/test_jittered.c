@@ -17,13 +17,12 @@ static void render(struct refocus_renderer *renderer, uint32_t method, int cell,
     assert_int_equal(refocus_render_settings(renderer, &params, &image), 0);
 }
 
-static void seeds(void **state)
+TEST(seeds)
 {
     struct picture p = picture_make(W, H, 5);
     struct refocus_renderer *one = prepared(&p, 6, 1), *three = prepared(&p, 6, 3);
     uint8_t a[3 * W * H], b[3 * W * H];
 
-    (void)state;
     for (int cell = 2; cell <= 4; cell++) {
         render(one, REFOCUS_METHOD_JITTERED, cell, 9, a);
         render(three, REFOCUS_METHOD_JITTERED, cell, 9, b);
@@ -38,7 +37,7 @@ static void seeds(void **state)
 
 /* Cells of one pixel leave nothing to chance: full tracing, but for how mask pixels at the edge
  * count. Larger cells scatter about it without a bias. */
-static void mean_of_many(void **state)
+TEST(mean_of_many)
 {
     enum { MANY = 40 };
     struct picture p = picture_make(W, H, 6);
@@ -47,7 +46,6 @@ static void mean_of_many(void **state)
     static double sum[3 * W * H];
     double bias = 0, scatter = 0, edge = 0;
 
-    (void)state;
     render(renderer, REFOCUS_METHOD_RAYTRACE, 2, 0, full);
     render(renderer, REFOCUS_METHOD_JITTERED, 1, 0, exact);
     for (uint32_t seed = 0; seed < MANY; seed++) {
@@ -66,10 +64,4 @@ static void mean_of_many(void **state)
                  sqrt(bias));
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(seeds), cmocka_unit_test(mean_of_many)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

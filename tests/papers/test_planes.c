@@ -40,7 +40,7 @@ static void differences(const uint8_t *a, const uint8_t *b, double *mean, int *m
     *mean /= count;
 }
 
-static void one_plane(void **state)
+TEST(one_plane)
 {
     /* The methods count mask pixels at the edge differently, and Mulder's discs are 2 K +
      * 1 across. */
@@ -57,7 +57,6 @@ static void one_plane(void **state)
     double mean;
     int most;
 
-    (void)state;
     for (int i = 0; i < W * H; i++)
         p.disparity[i] = 65535;
     renderer = prepared(&p, K, 2);
@@ -77,7 +76,7 @@ static void one_plane(void **state)
 }
 
 /* A triangle that points to the side: a lens that is turned about would be seen. */
-static void triangle(void **state)
+TEST(triangle)
 {
     static uint8_t truth[3 * W * H], out[3 * W * H];
     struct picture p = picture_make(W, H, 78);
@@ -85,7 +84,6 @@ static void triangle(void **state)
     double mean;
     int most;
 
-    (void)state;
     for (int i = 0; i < W * H; i++)
         p.disparity[i] = 65535;
     renderer = prepared(&p, K, 2);
@@ -101,7 +99,7 @@ static void triangle(void **state)
 
 /* A white half before a black one that is in focus. Light falls off beyond the edge as the share
  * of rays that the near half catches; on its own side too, by the views of the light field. */
-static void falls_off(void **state)
+TEST(falls_off)
 {
     static const struct {
         uint32_t method;
@@ -114,7 +112,6 @@ static void falls_off(void **state)
     static uint8_t out[3 * W * H];
     struct refocus_renderer *renderer;
 
-    (void)state;
     for (int i = 0; i < W * H; i++) {
         if (i % W < W / 2) {
             memset(p.rgb + 3 * i, 200, 3);
@@ -141,7 +138,7 @@ static void falls_off(void **state)
 
 /* Outside of the centre of attention a near white half spreads over the black one in focus, about
  * as far as a disc does, and no seam is left on its own side. */
-static void pyramids_fall_off(void **state)
+TEST(pyramids_fall_off)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, 0);
     struct refocus_settings params = refocus_settings_default(0, K);
@@ -149,7 +146,6 @@ static void pyramids_fall_off(void **state)
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
     struct refocus_renderer *renderer;
 
-    (void)state;
     for (int i = 0; i < W * H; i++) {
         if (i % W < W / 2) {
             memset(p.rgb + 3 * i, 200, 3);
@@ -177,7 +173,7 @@ static void pyramids_fall_off(void **state)
 
 /* The light field takes what is hidden from both sides alike, where both are as far: a pole before
  * a wall that is red to its left and blue to its right leaves as much of either. */
-static void both_sides(void **state)
+TEST(both_sides)
 {
     static const uint8_t black[3];
     static uint8_t out[3 * W * H];
@@ -185,7 +181,6 @@ static void both_sides(void **state)
     struct refocus_renderer *renderer;
     double red = 0, blue = 0;
 
-    (void)state;
     for (int i = 0; i < W * H; i++) {
         if (abs(2 * (i % W) - (W - 1)) < 5) /* four pixels */
             p.disparity[i] = 65535;
@@ -201,12 +196,4 @@ static void both_sides(void **state)
     assert_true(fabs(red - blue) < 0.001 * red);
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_plane), cmocka_unit_test(triangle), cmocka_unit_test(falls_off),
-        cmocka_unit_test(pyramids_fall_off), cmocka_unit_test(both_sides)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,14 +21,13 @@ static double interpolator(double circle, double c0, double r1, double r2)
     return fmin(1, 0.5 + 0.5 * (circle - r1 * c0) / (r2 * c0 - r1 * c0));
 }
 
-static void table(void **state)
+TEST(table)
 {
     static const struct {
         double f, N, focus, near, far;
     } lens[] = {{0.05, 1.8, 2, 0.8, 1e9}, {0.085, 1.4, 3, 1, 40}, {0.028, 2.8, 0.6, 0.4, 9}};
     const double pixels_per_metre = 720 / 0.036, c0 = 0.7, r1 = 3, r2 = 9;
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         const double a = 1 / lens[i].near, b = 1 / lens[i].far;
         const double df = (1 / lens[i].focus - b) / (a - b);
@@ -67,7 +66,7 @@ static void render(struct refocus_renderer *renderer, const struct picture *p, f
 
 /* Inside the cone the bytes are those of the exact technique, outside of its fading side those
  * of the fast one. */
-static void volume(void **state)
+TEST(volume)
 {
     enum { W = 160, H = 90 };
     struct picture p = picture_make(W, H, 17);
@@ -76,7 +75,6 @@ static void volume(void **state)
     const double radius = W / 2.0 * tan(10 * pi / 180) / tan(30 * pi / 180);
     int in = 0, out = 0, differ = 0;
 
-    (void)state;
     render(renderer, &p, 165, 1, all);
     render(renderer, &p, 0, 1, none);
     render(renderer, &p, 20, 1, some);
@@ -119,14 +117,13 @@ static void render_far(const struct picture *far, float blur, float angle, uint8
 
 /* The fast technique treats all borders alike: a photo turned upside down becomes the picture
  * upside down, to within what the places of samples do, whatever the size. */
-static void turned(void **state)
+TEST(turned)
 {
     enum { MOST = 97 };
     static const float blurs[] = {5, 20, 60};
     static const uint8_t black[3];
     static uint8_t out[3 * MOST * MOST], back[3 * MOST * MOST];
 
-    (void)state;
     for (int k = 0; k < 12; k++) {
         const int side = MOST - k / 3, last = side * side - 1;
         struct picture p = picture_flat(side, side, black, 0);
@@ -149,13 +146,12 @@ static void turned(void **state)
 
 /* The exact technique spreads a point of light over the pixels whose middles are in a disc of an
  * odd diameter, that which is nearest to the circle of confusion's. */
-static void diameters(void **state)
+TEST(diameters)
 {
     enum { SIDE = 41, MIDDLE = SIDE / 2 };
     static const uint8_t black[3];
     static uint8_t out[3 * SIDE * SIDE];
 
-    (void)state;
     for (float r = 0.25f; r < 12; r += 0.25f) {
         struct picture p = picture_flat(SIDE, SIDE, black, 0);
         int widest = 0;
@@ -170,11 +166,4 @@ static void diameters(void **state)
                              hypot(i % SIDE - MIDDLE, i / SIDE - MIDDLE) < widest + 0.5);
         picture_free(&p);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(table), cmocka_unit_test(volume),
-                                       cmocka_unit_test(turned), cmocka_unit_test(diameters)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -49,11 +49,10 @@ static double by_printed_series(double u, double v)
     return 4 / (u * u) * (U[1] * U[1] + U[2] * U[2]);
 }
 
-static void lommel(void **state)
+TEST(lommel)
 {
     static const double us[] = {0.5, 1, 3, 4 * pi, 10, 20, 45, 90};
 
-    (void)state;
     for (int i = 0; i < 8; i++) {
         const double u = us[i];
 
@@ -74,9 +73,8 @@ static void lommel(void **state)
 }
 
 /* Eq. 12: in focus, u to 0, it is Airy's pattern (2 J1(v) / v)^2. */
-static void airy(void **state)
+TEST(airy)
 {
-    (void)state;
     for (double v = 0.001; v <= 0.01; v += 0.001)
         assert_true(fabs(rf_lommel(0.01, v) - pow(2 * bessel(1, v) / v, 2)) < 1e-5);
     assert_true(fabs(rf_lommel(0.01, 0.009) - 1) < 1e-4);
@@ -85,14 +83,13 @@ static void airy(void **state)
 /* Eq. 17 to 19 by the paper's quantities: lambda = 550 nm, N = F / d = 22, pixels of 2 micrometres.
  * Where V_p lies z beyond the image plane at F, u = k (d / 2F)^2 z and the circle's radius is
  * z / 2N; the middle is dark where u = 4 pi, and bright at half of that. */
-static void quantities(void **state)
+TEST(quantities)
 {
     enum { REACH = 25 };
     const double lambda = 0.55, N = 22, pixel = 2, k = 2 * pi / lambda;
     const double airy_radius = 1.2197 * lambda * N / pixel; /* J1(3.8317) = 0 in eq. 12 */
     double middle[2], around;
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         const double z = (i ? 2 : 4) * pi / (k / (4 * N * N));
         uint32_t share[(2 * REACH + 1) * (REACH + 1)];
@@ -112,11 +109,10 @@ static void quantities(void **state)
 }
 
 /* The light of a circle that lands in pixels, of all of it: 1, for every table. */
-static void energy(void **state)
+TEST(energy)
 {
     static const double radii[] = {5, 20, 40, 127};
 
-    (void)state;
     for (int r = 0; r < 4; r++) {
         const int tables = rf_spread_tables(radii[r]);
         uint32_t *share = malloc(sizeof *share * 256 * 129);
@@ -150,13 +146,12 @@ static void energy(void **state)
 }
 
 /* A uniform circle: each pixel gets its own area of it. */
-static void uniform_shares(void **state)
+TEST(uniform_shares)
 {
     uint32_t share[31 * 16];
     struct rf_spread_table table = {12.3, 15, share};
     const double each = RF_SPREAD_ONE / (pi * 12.3 * 12.3);
 
-    (void)state;
     rf_spread_fill(&table, REFOCUS_SPREAD_UNIFORM, 1, NULL);
     for (int y = 0; y < 16; y++) {
         for (int x = -15; x <= 15; x++) {
@@ -171,7 +166,7 @@ static void uniform_shares(void **state)
 }
 
 /* One white pixel on black, out of focus: the sum of light over the picture is what it was. */
-static void point(void **state)
+TEST(point)
 {
     enum { SIDE = 61 };
     struct picture p = picture_flat(SIDE, SIDE, (uint8_t[3]){0, 0, 0}, 0);
@@ -182,7 +177,6 @@ static void point(void **state)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, SIDE, SIDE, 3 * SIDE);
     double sum = 0;
 
-    (void)state;
     memset(p.rgb + 3 * (30 * SIDE + 30), 255, 3);
     renderer = prepared(&p, 6, 2);
     params.render.method = REFOCUS_METHOD_SCATTER;
@@ -200,12 +194,4 @@ static void point(void **state)
     assert_true(out[3 * (42 * SIDE + 42)] < 20);
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(lommel),         cmocka_unit_test(airy),
-                                       cmocka_unit_test(quantities),     cmocka_unit_test(energy),
-                                       cmocka_unit_test(uniform_shares), cmocka_unit_test(point)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -456,23 +456,23 @@ static void a_camera_that_ends_is_gone(void **state)
 int main(void)
 {
     static uint32_t grey = SPA_VIDEO_FORMAT_GRAY16_LE, jpeg = SPA_VIDEO_FORMAT_ENCODED;
-#define TEST(name) cmocka_unit_test_setup_teardown(name, open_camera, close_camera)
+#define WITH_CAMERA(name) cmocka_unit_test_setup_teardown(name, open_camera, close_camera)
 #define TEST_OF(name, format)                                                                      \
     cmocka_unit_test_prestate_setup_teardown(name, open_camera, close_camera, &format)
     const struct CMUnitTest tests[] = {
-        TEST(strides_and_offsets_are_followed),
+        WITH_CAMERA(strides_and_offsets_are_followed),
         cmocka_unit_test_setup_teardown(memory_of_devices_is_mapped, open_device, close_camera),
         cmocka_unit_test_setup_teardown(memory_that_ends_early_is_refused, open_device,
                                         close_camera),
-        TEST(what_does_not_fit_is_corrupt),
+        WITH_CAMERA(what_does_not_fit_is_corrupt),
         TEST_OF(grey_of_16_bits, grey),
         TEST_OF(jpeg_has_its_length, jpeg),
-        TEST(times_and_numbers_are_the_camera_s),
-        TEST(other_clocks_are_not_said_to_be_ours),
-        TEST(a_frame_that_is_out_outlives_a_change_of_size),
-        TEST(everything_is_given_back),
-        TEST(modes_are_listed),
-        TEST(a_camera_that_ends_is_gone),
+        WITH_CAMERA(times_and_numbers_are_the_camera_s),
+        WITH_CAMERA(other_clocks_are_not_said_to_be_ours),
+        WITH_CAMERA(a_frame_that_is_out_outlives_a_change_of_size),
+        WITH_CAMERA(everything_is_given_back),
+        WITH_CAMERA(modes_are_listed),
+        WITH_CAMERA(a_camera_that_ends_is_gone),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

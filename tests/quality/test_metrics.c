@@ -1,12 +1,9 @@
 /* test_metrics.c: the metrics themselves, on cases with answers worked out by hand. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "unit_test.h"
 
 #include "metrics.h"
 
@@ -20,12 +17,11 @@ static void fill_noise(uint8_t *rgb, uint32_t seed)
     }
 }
 
-static void equal_pictures(void **state)
+TEST(equal_pictures)
 {
     uint8_t a[3 * W * H];
     struct quality_scores s;
 
-    (void)state;
     fill_noise(a, 1);
     assert_int_equal(quality_score(a, a, W, H, 2, NULL, &s), 0);
     assert_true(s.rmse == 0 && isinf(s.psnr) && s.psnr > 0);
@@ -34,12 +30,11 @@ static void equal_pictures(void **state)
     assert_true(isnan(s.edge_psnr));
 }
 
-static void known_psnr(void **state)
+TEST(known_psnr)
 {
     uint8_t a[3 * W * H], b[3 * W * H];
     long pixels;
 
-    (void)state;
     memset(a, 100, sizeof a);
     memset(b, 103, sizeof b);
     /* 20 log10(255 / 3) */
@@ -57,12 +52,11 @@ static void known_psnr(void **state)
     assert_int_equal(pixels, 0);
 }
 
-static void masked_rmse(void **state)
+TEST(masked_rmse)
 {
     uint8_t a[3 * W * H], b[3 * W * H], mask[W * H] = {0};
     long pixels;
 
-    (void)state;
     memset(a, 0, sizeof a);
     memset(b, 0, sizeof b);
     b[3 * (4 * W + 7)] = 200;
@@ -74,12 +68,11 @@ static void masked_rmse(void **state)
 
 /* Two flat pictures: variances are 0, so SSIM is its luminance term alone,
  * (2 a b + C1) / (a^2 + b^2 + C1) with a = 100, b = 120, C1 = 6.5025. */
-static void flat_ssim(void **state)
+TEST(flat_ssim)
 {
     uint8_t a[3 * W * H], b[3 * W * H];
     double ssim;
 
-    (void)state;
     memset(a, 100, sizeof a);
     memset(b, 120, sizeof b);
     assert_int_equal(quality_ssim(a, b, W, H, 0, &ssim), 0);
@@ -90,12 +83,11 @@ static void flat_ssim(void **state)
 
 /* A picture against its negative around 127.5: the same variance, covariance minus it.
  * With one window the sums can be written out directly. */
-static void one_window_ssim(void **state)
+TEST(one_window_ssim)
 {
     uint8_t a[3 * 121], b[3 * 121];
     double weight[11], total = 0, mean_a = 0, mean_b = 0, square = 0, ssim;
 
-    (void)state;
     for (int i = 0; i < 11; i++)
         total += weight[i] = exp(-(i - 5) * (i - 5) / 4.5);
     for (int i = 0; i < 121; i++) {
@@ -118,12 +110,11 @@ static void one_window_ssim(void **state)
 
 /* Left half d = 0, right half d = 1/2 (32768), focus at 0, K = 6: the jump is
  * 3 px and so is the larger blur radius, so 3 + 1 columns on either side. */
-static void straight_edge(void **state)
+TEST(straight_edge)
 {
     uint16_t d[W * H];
     uint8_t mask[W * H];
 
-    (void)state;
     for (int i = 0; i < W * H; i++)
         d[i] = i % W < 6 ? 0 : 32768;
     assert_int_equal(quality_edge_mask(d, W, H, 0, 6, mask), 0);
@@ -134,14 +125,4 @@ static void straight_edge(void **state)
     assert_int_equal(quality_edge_mask(d, W, H, 0, 3, mask), 0);
     for (int i = 0; i < W * H; i++)
         assert_int_equal(mask[i], 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(equal_pictures),  cmocka_unit_test(known_psnr),
-        cmocka_unit_test(masked_rmse),     cmocka_unit_test(flat_ssim),
-        cmocka_unit_test(one_window_ssim), cmocka_unit_test(straight_edge),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -153,7 +153,7 @@ static void parse(int argc, char **argv)
     }
 }
 
-static void measure(void **state)
+TEST(measure)
 {
     struct picture p = picture_make(width, height, 77);
     uint8_t *out = malloc(3 * (size_t)width * (size_t)height), small[48];
@@ -166,7 +166,6 @@ static void measure(void **state)
         0,    0};
     struct refocus_renderer_info info = refocus_renderer_info_default();
 
-    (void)state;
     assert_non_null(out);
     for (int i = 0; i < 48; i++)
         small[i] = (uint8_t)(i * 97);
@@ -214,8 +213,6 @@ static void measure(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(measure)};
-
     parse(argc, argv);
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

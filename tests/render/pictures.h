@@ -3,16 +3,13 @@
 #define RENDER_PICTURES_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 
 /* A photo, R G B without padding, and its disparities. */

@@ -44,7 +44,7 @@ static void spoil(void *params, const struct bad *bad)
     memcpy((char *)params + bad->offset, bad->value, bad->size);
 }
 
-static void bad_limits(void **state)
+TEST(bad_limits)
 {
     const struct bad bad[] = {
         BAD(refocus_renderer_params, struct_size, 0),
@@ -71,7 +71,6 @@ static void bad_limits(void **state)
         BAD(refocus_renderer_params, textured, 2),
         BAD(refocus_renderer_params, allocator.release, some_release)};
 
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct refocus_renderer_params params = refocus_renderer_params_default(W, H, 5);
         struct refocus_renderer *renderer = (struct refocus_renderer *)&params;
@@ -275,13 +274,12 @@ static const struct bad out_of_range[] = {
     BAD(refocus_settings, focus.blur_limit, 944.1f),
 };
 
-static void bad_settings(void **state)
+TEST(bad_settings)
 {
     struct picture p = picture_make(W, H, 1);
     struct refocus_renderer *renderer = heard(&p);
     const struct refocus_settings good = refocus_settings_default(0.5f, 5);
 
-    (void)state;
     for (size_t i = 0; i < sizeof out_of_range / sizeof *out_of_range; i++) {
         struct refocus_settings settings = good;
 
@@ -298,7 +296,7 @@ static void bad_settings(void **state)
 }
 
 /* Numbers that are within their ranges, but not together. */
-static void settings_at_odds(void **state)
+TEST(settings_at_odds)
 {
     struct picture p = picture_make(W, H, 1);
     struct refocus_renderer *renderer = heard(&p);
@@ -306,7 +304,6 @@ static void settings_at_odds(void **state)
     struct refocus_settings settings = good;
     struct refocus_aperture *aperture;
 
-    (void)state;
     settings.interpolated.middle_ratio = settings.interpolated.last_ratio = 3;
     refuse(renderer, &settings, "ratios the wrong way round");
     settings = good;
@@ -337,7 +334,7 @@ static void settings_at_odds(void **state)
 }
 
 /* Methods of the papers, which a renderer was not given. */
-static void methods_not_given(void **state)
+TEST(methods_not_given)
 {
     struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 5);
     struct refocus_settings settings = refocus_settings_default(0.5f, 5);
@@ -346,7 +343,6 @@ static void methods_not_given(void **state)
     const struct refocus_disparity disparity = picture_disparity(&p);
     struct refocus_renderer *renderer;
 
-    (void)state;
     limits.threads = 1;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
@@ -364,7 +360,7 @@ static void methods_not_given(void **state)
 }
 
 /* Regions that reach over the side. */
-static void bad_regions(void **state)
+TEST(bad_regions)
 {
     static const int region[][4] = {{1, 0, W, H},     {0, 1, W, H},
                                     {W, 0, 1, 1},     {0, H, 1, 1},
@@ -374,7 +370,6 @@ static void bad_regions(void **state)
     struct picture p = picture_make(W, H, 1);
     struct refocus_renderer *renderer = heard(&p);
 
-    (void)state;
     for (size_t i = 0; i < sizeof region / sizeof region[0]; i++) {
         struct refocus_settings settings = refocus_settings_default(0.5f, 5);
         char what[64];
@@ -390,7 +385,7 @@ static void bad_regions(void **state)
 }
 
 /* Pictures in and out. */
-static void bad_pictures(void **state)
+TEST(bad_pictures)
 {
     const struct bad bad[] = {BAD(refocus_image, format, 0),
                               BAD(refocus_image, format, 99),
@@ -407,7 +402,6 @@ static void bad_pictures(void **state)
     const struct refocus_settings params = refocus_settings_default(0.5f, 5);
     const struct refocus_disparity disparity = picture_disparity(&p);
 
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct refocus_image image = picture_image(&p);
 
@@ -438,7 +432,7 @@ static void bad_pictures(void **state)
     picture_free(&p);
 }
 
-static void bad_disparities(void **state)
+TEST(bad_disparities)
 {
     const struct bad bad[] = {
         BAD(refocus_disparity, bits, 0),           BAD(refocus_disparity, bits, 32),
@@ -450,7 +444,6 @@ static void bad_disparities(void **state)
     const struct refocus_image photo = picture_image(&p);
     struct refocus_renderer *renderer = prepared(&p, 5, 1);
 
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         struct refocus_disparity disparity = picture_disparity(&p);
 
@@ -463,7 +456,7 @@ static void bad_disparities(void **state)
 }
 
 /* Larger than the renderer was made for; nothing prepared yet; views. */
-static void order_and_size(void **state)
+TEST(order_and_size)
 {
     struct picture p = picture_make(W, H, 1);
     const struct refocus_image photo = picture_image(&p);
@@ -473,7 +466,6 @@ static void order_and_size(void **state)
     struct refocus_renderer *renderer;
     uint16_t view[W * H];
 
-    (void)state;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     assert_int_equal(refocus_render_settings(renderer, &params, &photo), REFOCUS_ERR_STATE);
     assert_int_equal(refocus_get_view(renderer, REFOCUS_VIEW_DISPARITY, view, 2 * W),
@@ -495,13 +487,12 @@ static void order_and_size(void **state)
     picture_free(&p);
 }
 
-static void bad_apertures(void **state)
+TEST(bad_apertures)
 {
     static const uint8_t closed[4], open[4] = {255, 255, 255, 255};
     struct refocus_aperture *a = (struct refocus_aperture *)closed;
     struct refocus_ray rays[8];
 
-    (void)state;
 #define REFUSED(call)                                                                              \
     do {                                                                                           \
         assert_int_equal(call, REFOCUS_ERR_ARGUMENT);                                              \
@@ -534,11 +525,10 @@ static void bad_apertures(void **state)
 }
 
 /* The list of kernels ends, and nothing is measured for a processor that is none. */
-static void kernels(void **state)
+TEST(kernels)
 {
     struct refocus_kernel_time time = refocus_kernel_time_default();
 
-    (void)state;
     time.name = "untouched";
     assert_int_equal(refocus_measure_kernel(1000, REFOCUS_CPU_C, &time), REFOCUS_ERR_ARGUMENT);
     assert_int_equal(refocus_measure_kernel(0, REFOCUS_CPU_COUNT, &time), REFOCUS_ERR_ARGUMENT);
@@ -547,15 +537,4 @@ static void kernels(void **state)
     assert_int_equal(refocus_measure_kernel(0, REFOCUS_CPU_C, &time), REFOCUS_OK);
     assert_string_equal(time.name, "sweep");
     assert_true(time.ns > 0 && time.ns_c > 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bad_limits),       cmocka_unit_test(bad_settings),
-        cmocka_unit_test(settings_at_odds), cmocka_unit_test(methods_not_given),
-        cmocka_unit_test(bad_regions),      cmocka_unit_test(bad_pictures),
-        cmocka_unit_test(bad_disparities),  cmocka_unit_test(order_and_size),
-        cmocka_unit_test(bad_apertures),    cmocka_unit_test(kernels)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

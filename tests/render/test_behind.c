@@ -135,7 +135,7 @@ static double difference(const uint8_t *a, const uint8_t *b, int *most)
 }
 
 /* The focus on the wall, between it and the square, and on that. */
-static void truth(void **state)
+TEST(truth)
 {
     static struct scene s;
     static uint8_t out[3 * W * H], should[3 * W * H];
@@ -143,7 +143,6 @@ static void truth(void **state)
     static const int rays[] = {64, REFOCUS_RAYS_FULL};
     struct refocus_renderer *renderer = create(REFOCUS_CPU_AUTO, 2);
 
-    (void)state;
     make(&s);
     for (int i = 0; i < 4; i++) {
         trace(&s, (double)focus[i], should);
@@ -170,7 +169,7 @@ static void truth(void **state)
 
 /* All of it is the same bytes from every instruction set, with one thread and five, and by regions;
  * of a layer without alpha, of 8 bits and bottom up, too. */
-static void same_everywhere(void **state)
+TEST(same_everywhere)
 {
     static struct scene s;
     static uint8_t out[3 * W * H], expected[3 * W * H], rgb[3 * W * H], map[W * H];
@@ -180,7 +179,6 @@ static void same_everywhere(void **state)
     struct refocus_renderer *renderer = create(REFOCUS_CPU_C, 1);
     struct refocus_render_params params = refocus_render_params_default(0.3f, K);
 
-    (void)state;
     make(&s);
     for (int i = 0; i < W * H; i++) {
         const int to = (H - 1 - i / W) * W + i % W;
@@ -221,13 +219,12 @@ static void same_everywhere(void **state)
 }
 
 /* Where nothing is known, or what is said to be behind is before, it is made up as ever. */
-static void unknown(void **state)
+TEST(unknown)
 {
     static struct scene s;
     static uint8_t out[3 * W * H], expected[3 * W * H];
     struct refocus_renderer *renderer = create(REFOCUS_CPU_AUTO, 1);
 
-    (void)state;
     make(&s);
     prepare_wall(renderer, &s, false);
     render(renderer, 0, 64, expected);
@@ -250,7 +247,7 @@ static void unknown(void **state)
 }
 
 /* A layer is refused. */
-static void refused(void **state)
+TEST(refused)
 {
     static struct scene s;
     struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, s.photo, W, H, 3 * W);
@@ -262,7 +259,6 @@ static void refused(void **state)
     struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, K);
     struct refocus_renderer *renderer = create(REFOCUS_CPU_AUTO, 1);
 
-    (void)state;
     scene.behind = &wall;
     assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_ERR_ARGUMENT);
     scene.behind = NULL;
@@ -292,11 +288,10 @@ static void refused(void **state)
 }
 
 /* The text of render.h. */
-static void memory(void **state)
+TEST(memory)
 {
     static const int sides[][2] = {{1, 1}, {65535, 1}, {17, 33}, {720, 540}, {1921, 1087}};
 
-    (void)state;
     for (int i = 0; i < 5; i++) {
         const int w = sides[i][0], h = sides[i][1];
         struct refocus_renderer_params params = refocus_renderer_params_default(w, h, 20);
@@ -307,13 +302,4 @@ static void memory(void **state)
         if (bytes < 6.0 * w * h || bytes > 6.0 * w * h + 256)
             fail_msg("%d x %d: %.0f bytes", w, h, bytes);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(truth), cmocka_unit_test(same_everywhere),
-                                       cmocka_unit_test(unknown), cmocka_unit_test(refused),
-                                       cmocka_unit_test(memory)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

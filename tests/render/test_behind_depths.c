@@ -134,7 +134,7 @@ static double difference(const uint8_t *a, const uint8_t *b)
 }
 
 /* The focus on the wall: nothing that is known of the board shows as sharp as that. */
-static void board_is_blurred(void **state)
+TEST(board_is_blurred)
 {
     static const struct kind kinds[] = {
         {"wire", 2, false}, {"bar", 14, false}, {"rod behind a bar", 14, true}};
@@ -143,7 +143,6 @@ static void board_is_blurred(void **state)
     struct refocus_renderer *renderer = create(K);
     const float focus = WALL / 65535.0f;
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         double made_up, known;
 
@@ -163,7 +162,7 @@ static void board_is_blurred(void **state)
 }
 
 /* A small blur, which needs less around a region than tiles are wide. */
-static void same_by_regions(void **state)
+TEST(same_by_regions)
 {
     enum { SIDE_OF_REGION = 10 };
     static struct scene s;
@@ -172,7 +171,6 @@ static void same_by_regions(void **state)
     struct refocus_render_params params = refocus_render_params_default(WALL / 65535.0f, 5);
     const struct refocus_image all = refocus_image_packed(REFOCUS_FORMAT_RGB8, whole, W, H, 3 * W);
 
-    (void)state;
     make(&s, &(struct kind){"bar", 14, false});
     prepare(renderer, &s, true);
     assert_int_equal(refocus_render(renderer, &params, &all), REFOCUS_OK);
@@ -192,7 +190,7 @@ static void same_by_regions(void **state)
 }
 
 /* A fence in focus, whose edges mix with the wall: what is behind the wall is no part of that. */
-static void mixtures_are_of_what_is_seen(void **state)
+TEST(mixtures_are_of_what_is_seen)
 {
     static uint8_t layer[4 * W * H], out[3 * W * H], expected[3 * W * H];
     static uint16_t layer_map[W * H];
@@ -205,7 +203,6 @@ static void mixtures_are_of_what_is_seen(void **state)
     struct refocus_scene scene = refocus_scene_default(&photo, &map);
     struct refocus_renderer *renderer = create(K);
 
-    (void)state;
     assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_OK);
     render(renderer, FENCE_NEAR / 65535.0f, 20, expected);
     for (int i = 0; i < W * H; i++)
@@ -220,13 +217,4 @@ static void mixtures_are_of_what_is_seen(void **state)
         assert_in_range(abs(out[i] - expected[i]), 0, 4);
     refocus_renderer_destroy(&renderer);
     picture_free(&fence);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(board_is_blurred),
-                                       cmocka_unit_test(same_by_regions),
-                                       cmocka_unit_test(mixtures_are_of_what_is_seen)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

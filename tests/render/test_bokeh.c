@@ -104,12 +104,11 @@ static void about(const char *what, double is, double wanted, double part)
 }
 
 /* A heart is upright behind the focus and upside down before it. */
-static void hearts(void **state)
+TEST(hearts)
 {
     struct refocus_aperture_params p = refocus_aperture_params_default();
     struct disc behind, before;
 
-    (void)state;
     p.figure = REFOCUS_FIGURE_HEART;
     behind = highlight_through(&p, BEHIND);
     before = highlight_through(&p, BEFORE);
@@ -120,12 +119,11 @@ static void hearts(void **state)
 }
 
 /* Discs have bright edges behind the focus, and fade before it. */
-static void sides(void **state)
+TEST(sides)
 {
     struct refocus_aperture_params p = refocus_aperture_params_default();
     const double highlight = 2 * 2.0; /* mean squares of 5 x 5 pixels */
 
-    (void)state;
     p.edge_behind = 0.6;
     p.edge_before = -0.6;
     const struct disc behind = highlight_through(&p, BEHIND),
@@ -135,11 +133,10 @@ static void sides(void **state)
     about("a disc that fades", before.xx + before.yy - highlight, 144 * (0.5 - 0.6 / 6), 0.04);
 }
 
-static void squeezed(void **state)
+TEST(squeezed)
 {
     struct refocus_aperture_params p = refocus_aperture_params_default();
 
-    (void)state;
     p.squeeze = 0.55;
     const struct disc oval = highlight_through(&p, BEHIND);
     about("width / height of an oval", sqrt((oval.xx - 2) / (oval.yy - 2)), 0.55, 0.03);
@@ -148,14 +145,13 @@ static void squeezed(void **state)
 
 /* Discs at the side are narrower across, as the areas common to two circles; whole in the
  * middle, and no light is lost. */
-static void cat_eye(void **state)
+TEST(cat_eye)
 {
     struct refocus_settings params = twelve();
     const int x = W - 18, y = H / 2;
     double sum = 0, xx = 0, yy = 0;
     struct disc disc;
 
-    (void)state;
     params.look.cat_eye = 0.8f;
     disc = render_highlight(W / 2, H / 2, BEHIND, &params, 1);
     about("the middle's disc", sqrt((disc.xx - 2) / (disc.yy - 2)), 1, 0.03);
@@ -177,7 +173,7 @@ static void cat_eye(void **state)
 
 /* An aperture loses no more than its amount where the middle of the last tile lies beyond the
  * corner: of a width of 1 pixel and a height of 4.4 that is left, no pixel keeps a half. */
-static void cat_eye_in_the_corner(void **state)
+TEST(cat_eye_in_the_corner)
 {
     enum { SIDE = 36, AT = SIDE - 3 };
     static const uint8_t black[3];
@@ -187,7 +183,6 @@ static void cat_eye_in_the_corner(void **state)
     const struct refocus_image small =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, codes, SIDE, SIDE, 3 * SIDE);
 
-    (void)state;
     memset(p.rgb + 3 * (AT * SIDE + AT), 255, 3);
     renderer = prepared(&p, 5, 1);
     for (int blades = 0; blades <= 6; blades += 6) {
@@ -210,11 +205,10 @@ static void cat_eye_in_the_corner(void **state)
     picture_free(&p);
 }
 
-static void fringes(void **state)
+TEST(fringes)
 {
     struct refocus_settings params = twelve();
 
-    (void)state;
     for (int sign = -1; sign <= 1; sign += 2) {
         params.look.fringe = 0.25f * (float)sign;
         for (int before = 0; before < 2; before++) {
@@ -232,12 +226,11 @@ static void fringes(void **state)
 }
 
 /* Discs of highlights are as bright as the gain says. */
-static void stops(void **state)
+TEST(stops)
 {
     struct refocus_renderer *renderer = prepare_highlight(W / 2, H / 2, BEHIND, 0.04);
     struct refocus_settings params = twelve();
 
-    (void)state;
     for (int weighted = 0; weighted < 2; weighted++) {
         double plain = 0;
 
@@ -256,7 +249,7 @@ static void stops(void **state)
     refocus_renderer_destroy(&renderer);
 }
 
-static void star(void **state)
+TEST(star)
 {
     struct refocus_settings params = refocus_settings_default(0.1f, 30);
     const int x = W / 2, y = H / 2;
@@ -264,7 +257,6 @@ static void star(void **state)
     struct refocus_renderer *renderer = highlight_at(x, y, BEHIND);
     double added = 0;
 
-    (void)state;
     assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     memcpy(plain, out, sizeof out);
     params.look.star_spikes = 4;
@@ -287,7 +279,7 @@ static void star(void **state)
 }
 
 /* Every effect: a part of the picture is that part of the whole. */
-static void regions(void **state)
+TEST(regions)
 {
     enum { X = 37, Y = 21, PW = 61, PH = 50 };
     static uint8_t part[3 * PW * PH];
@@ -298,7 +290,6 @@ static void regions(void **state)
     struct refocus_settings params;
     const char *name;
 
-    (void)state;
     for (int i = 0; i < 3 * W * H; i++)
         p.rgb[i] = p.rgb[i] < 250 ? p.rgb[i] / 4 : 255;
     renderer = prepared(&p, 10, 3);
@@ -364,7 +355,7 @@ static void render_effect(struct refocus_renderer *renderer, int i, uint8_t *to)
 }
 
 /* Every effect: in strips as of the whole, and whatever was rendered before it. */
-static void strips_and_sequences(void **state)
+TEST(strips_and_sequences)
 {
     static uint8_t is[3 * NIGHT_W * NIGHT_H], wanted[3 * NIGHT_W * NIGHT_H];
     struct picture p = dark_street();
@@ -372,7 +363,6 @@ static void strips_and_sequences(void **state)
     struct refocus_settings params;
     const char *name;
 
-    (void)state;
     for (int i = 0; effect_params(i, 0.5f, 9, &params, &name); i++) {
         struct refocus_renderer *fresh;
 
@@ -399,7 +389,7 @@ static void strips_and_sequences(void **state)
 }
 
 /* A map that is another at the same address. */
-static void changed_map(void **state)
+TEST(changed_map)
 {
     static uint8_t is[3 * NIGHT_W * NIGHT_H], wanted[3 * NIGHT_W * NIGHT_H];
     struct picture p = dark_street();
@@ -410,7 +400,6 @@ static void changed_map(void **state)
     uint8_t level = 200;
     const struct refocus_disparity map = refocus_disparity8(&level, 1, 1, 1);
 
-    (void)state;
     params.focus.map = &map;
     assert_int_equal(refocus_render_settings(used, &params, &whole), REFOCUS_OK);
     level = 20;
@@ -424,13 +413,12 @@ static void changed_map(void **state)
 }
 
 /* Methods and sets of rays that cannot do it say so. */
-static void refused(void **state)
+TEST(refused)
 {
     struct refocus_aperture_params p = refocus_aperture_params_default();
     struct refocus_renderer *renderer = highlight_at(W / 2, H / 2, BEHIND);
     struct refocus_aperture *a;
 
-    (void)state;
     p.edge_behind = 0.5;
     assert_int_equal(refocus_aperture_create(&a, &p), REFOCUS_OK);
     for (uint32_t method = REFOCUS_METHOD_SWEEP; method < REFOCUS_METHOD_COUNT; method++) {
@@ -452,23 +440,4 @@ static void refused(void **state)
     }
     refocus_aperture_destroy(&a);
     refocus_renderer_destroy(&renderer);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(hearts),
-                                       cmocka_unit_test(sides),
-                                       cmocka_unit_test(squeezed),
-                                       cmocka_unit_test(cat_eye),
-                                       cmocka_unit_test(cat_eye_in_the_corner),
-                                       cmocka_unit_test(fringes),
-                                       cmocka_unit_test(stops),
-                                       cmocka_unit_test(star),
-
-                                       cmocka_unit_test(regions),
-                                       cmocka_unit_test(strips_and_sequences),
-                                       cmocka_unit_test(changed_map),
-                                       cmocka_unit_test(refused)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

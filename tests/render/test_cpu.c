@@ -34,14 +34,13 @@ static bool is_slow(const struct style *style, float blur)
            (style->rays == REFOCUS_RAYS_FULL && blur > 20);
 }
 
-static void same_as_c(void **state)
+TEST(same_as_c)
 {
     enum { MOST_SETS = 16 };
     static const int sizes[][2] = {{97, 61}, {16, 16}, {1, 40}, {45, 2}, {150, 90}};
     static const float blurs[] = {8, 20, 1.5f, 40, 127};
     int sets = 0;
 
-    (void)state;
     assert_null(refocus_cpu_name(MOST_SETS));
     for (int s = 0; s < 5; s++) {
         struct picture p = picture_make(sizes[s][0], sizes[s][1], 91u + (uint32_t)s);
@@ -81,14 +80,13 @@ static void same_as_c(void **state)
 }
 
 /* `auto` is the last of the sets in enum refocus_cpu that work here. */
-static void auto_is_the_best(void **state)
+TEST(auto_is_the_best)
 {
     struct picture p = picture_make(20, 20, 7);
     struct refocus_renderer_info info = refocus_renderer_info_default();
     uint32_t best = REFOCUS_CPU_AUTO, cpu = REFOCUS_CPU_AUTO;
     struct refocus_renderer *renderer;
 
-    (void)state;
     for (uint32_t i = REFOCUS_CPU_AUTO + 1; refocus_cpu_name(i); i++) {
         renderer = with_cpu(&p, 8, i);
         best = renderer ? i : best;
@@ -100,11 +98,4 @@ static void auto_is_the_best(void **state)
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
     assert_int_equal(cpu, best);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(auto_is_the_best),
-                                       cmocka_unit_test(same_as_c)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,13 +4,12 @@
 
 /* Any bits but alpha's come back where nothing is blurred, NaN, infinities and all that a format
  * can hold among them, whether all is in focus, or some tiles are mixed. */
-static void in_focus(void **state)
+TEST(in_focus)
 {
     struct picture p = picture_make(97, 61, 3);
     const struct refocus_disparity map = picture_disparity(&p);
     struct refocus_renderer *renderer = deep_renderer(97, 61, 12, 2);
 
-    (void)state;
     for (uint32_t format = REFOCUS_FORMAT_RGB16; format <= REFOCUS_FORMAT_RGBA_FLOAT; format++) {
         struct deep photo = deep_make(format, 97, 61), out = deep_make(format, 97, 61);
         uint32_t seed = format;
@@ -38,14 +37,13 @@ static void in_focus(void **state)
 }
 
 /* 512 steps of a slope of 16 bits are 512, in focus and blurred. */
-static void gradients(void **state)
+TEST(gradients)
 {
     static const uint32_t transfers[] = {REFOCUS_TRANSFER_SRGB,  REFOCUS_TRANSFER_BT709,
                                          REFOCUS_TRANSFER_PQ,    REFOCUS_TRANSFER_HLG,
                                          REFOCUS_TRANSFER_GAMMA, REFOCUS_TRANSFER_LINEAR};
     enum { STEPS = 512, WIDE = 4 };
 
-    (void)state;
     for (int t = 0; t < 6; t++)
         for (int blurred = 0; blurred < 2; blurred++) {
             struct deep photo = deep_make(REFOCUS_FORMAT_RGB16, STEPS * WIDE, 32);
@@ -71,13 +69,12 @@ static void gradients(void **state)
 }
 
 /* The steps of a slope over eleven codes of 8 bits are less than those of means are apart. */
-static void shallow_gradients(void **state)
+TEST(shallow_gradients)
 {
     static const double begins[] = {20000 / 65535.0, 30000 / 65535.0, 50000 / 65535.0};
     static const float blurs[] = {2, 6, 10};
     enum { STEPS = 512, WIDE = 2 };
 
-    (void)state;
     for (int k = 0; k < 9; k++) {
         struct deep photo = deep_make(REFOCUS_FORMAT_RGB16, STEPS * WIDE, 32);
         struct deep out = deep_make(REFOCUS_FORMAT_RGB16, STEPS * WIDE, 32);
@@ -121,7 +118,7 @@ static bool is_of_code(double value, int code, bool made_up)
 
 /* Each method that takes deep photos makes of one of 16 bits what it makes of the same in 8, with
  * finer steps, and writes it in either. What is in focus comes out as it went in. */
-static void methods(void **state)
+TEST(methods)
 {
     enum { WIDE = 97, HIGH = 61 };
     struct picture p = picture_make(WIDE, HIGH, 3);
@@ -133,7 +130,6 @@ static void methods(void **state)
     struct refocus_renderer_params limits = refocus_renderer_params_default(WIDE, HIGH, 12);
     struct refocus_renderer *deep, *shallow;
 
-    (void)state;
     photo.image.transfer = out.image.transfer = REFOCUS_TRANSFER_SRGB;
     for (int i = 0; i < 3 * WIDE * HIGH; i++)
         deep_put(&photo, i / 3 % WIDE, i / 3 / WIDE, i % 3, (float)p.rgb[i] / 255);
@@ -190,14 +186,13 @@ static void methods(void **state)
 
 /* A slope of 8 codes over 512 pixels, in focus and blurred, becomes 8 bits whose mean over 8 x 8
  * pixels has no steps; codes stay codes; without dither there are 9 of them. */
-static void dither(void **state)
+TEST(dither)
 {
     enum { WIDE = 512, HIGH = 32 };
     struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, WIDE, HIGH);
     struct deep out = deep_make(REFOCUS_FORMAT_BGRA8, WIDE, HIGH);
     struct refocus_renderer *renderer;
 
-    (void)state;
     photo.image.transfer = REFOCUS_TRANSFER_SRGB;
     for (int i = 0; i < 3 * WIDE * HIGH; i++)
         deep_put(&photo, i / 3 % WIDE, i / 3 / WIDE, i % 3,
@@ -239,7 +234,7 @@ static void dither(void **state)
 }
 
 /* Every half is the float that IEEE 754 says, and comes back from it. */
-static void halves(void **state)
+TEST(halves)
 {
     enum { SIDE = 148 };
     struct deep half = deep_make(REFOCUS_FORMAT_RGB_HALF, SIDE, SIDE);
@@ -247,7 +242,6 @@ static void halves(void **state)
     struct deep single = deep_make(REFOCUS_FORMAT_RGB_FLOAT, SIDE, SIDE);
     struct refocus_renderer *renderer;
 
-    (void)state;
     for (int i = 0; i < 3 * SIDE * SIDE; i++) {
         const uint16_t bits = (uint16_t)i;
 
@@ -285,7 +279,7 @@ static void halves(void **state)
 
 /* Threads and regions change no byte, nor does what was rendered before; 8-bit pictures of deep
  * photos and deep pictures of 8-bit photos are the same picture. */
-static void same_bytes(void **state)
+TEST(same_bytes)
 {
     struct picture p = picture_make(200, 150, 9);
     const struct refocus_disparity map = picture_disparity(&p);
@@ -297,7 +291,6 @@ static void same_bytes(void **state)
     struct refocus_settings region = refocus_settings_default(0.4f, 20);
     struct deep codes = deep_make(REFOCUS_FORMAT_BGRA8, 200, 150);
 
-    (void)state;
     other = deep_make(REFOCUS_FORMAT_RGB16, 200, 150);
     part = deep_make(REFOCUS_FORMAT_RGB16, 80, 50);
     for (int i = 0; i < 4 * 200 * 150; i++) {
@@ -344,7 +337,7 @@ static void same_bytes(void **state)
 }
 
 /* Maps of another size, and edges that are placed, follow the photo: as they do that of 8 bits. */
-static void maps(void **state)
+TEST(maps)
 {
     struct picture p = picture_make(160, 120, 5);
     const struct refocus_image plain = picture_image(&p);
@@ -352,7 +345,6 @@ static void maps(void **state)
     struct refocus_renderer *renderer = deep_renderer(160, 120, 10, 2);
     static uint16_t small[40 * 30], views[2][160 * 120];
 
-    (void)state;
     for (int i = 0; i < 3 * 160 * 120; i++)
         deep_put(&photo, i / 3 % 160, i / 480, i % 3, p.rgb[i] / 255.0f);
     for (int i = 0; i < 40 * 30; i++)
@@ -378,7 +370,7 @@ static void maps(void **state)
 }
 
 /* A deep photo is refused with what it cannot have. */
-static void refusals(void **state)
+TEST(refusals)
 {
     struct picture p = picture_make(40, 30, 1);
     const struct refocus_disparity map = picture_disparity(&p);
@@ -392,7 +384,6 @@ static void refusals(void **state)
     const float gammas[] = {0.5f, 6, -1, NAN, INFINITY},
                 whites[] = {-1, 1e-6f, 1e6f, NAN, INFINITY};
 
-    (void)state;
 #define REFUSED(status, call) assert_int_equal(call, REFOCUS_ERR_##status)
     for (int i = 0; i < 5; i++) {
         bad = photo.image;
@@ -436,21 +427,4 @@ static void refusals(void **state)
     refocus_renderer_destroy(&renderer);
     free(photo.memory);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(in_focus),
-        cmocka_unit_test(gradients),
-        cmocka_unit_test(shallow_gradients),
-        cmocka_unit_test(halves),
-        cmocka_unit_test(same_bytes),
-        cmocka_unit_test(maps),
-        cmocka_unit_test(dither),
-        cmocka_unit_test(refusals),
-        cmocka_unit_test(methods),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

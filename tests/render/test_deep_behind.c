@@ -86,11 +86,10 @@ static void expect_sky(struct square square, float blur, int blades)
 
 /* Squares that tiles begin with, and others; one at a side of the photo, where light is left to the
  * rays. */
-static void skies(void **state)
+TEST(skies)
 {
     static const struct square squares[] = {{96, 96, 64}, {90, 85, 61}, {96, 0, 64}, {90, 0, 61}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof squares / sizeof *squares; i++) {
         expect_sky(squares[i], 6, 0);
         expect_sky(squares[i], 20, 0);
@@ -124,11 +123,10 @@ static void expect_alike(const struct square *square, float blur, uint32_t inpai
     free(photo.memory);
 }
 
-static void blurred_before_a_sky(void **state)
+TEST(blurred_before_a_sky)
 {
     static const struct square squares[] = {{96, 96, 64}, {90, 85, 61}, {90, 0, 61}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof squares / sizeof *squares; i++)
         for (int blur = 6; blur <= 60; blur *= 3) {
             expect_alike(&squares[i], (float)blur, REFOCUS_INPAINT_SMOOTH);
@@ -137,13 +135,12 @@ static void blurred_before_a_sky(void **state)
 }
 
 /* A lamp that is beside the square, three pixels wide, adds no more than its own light. */
-static void lamps(void **state)
+TEST(lamps)
 {
     const struct square square = {96, 96, 64};
     struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H), out;
     double sum = 0;
 
-    (void)state;
     deep_fill(&photo, dark);
     for (int i = 0; i < 3 * 9; i++)
         deep_put(&photo, 90 + i / 3 % 3, 120 + i / 9, i % 3, 30);
@@ -180,11 +177,10 @@ static void light_at_edge(float before, float near, float far, float light[2])
 /* A lamp behind the square is a disc, also what the photo has of it on the square, as it is
  * brighter beyond. What is brightest on the square is the square's, and so is what is hardly
  * brighter than the rest of it. */
-static void lamps_at_edges(void **state)
+TEST(lamps_at_edges)
 {
     float light[2];
 
-    (void)state;
     light_at_edge(dark, 6, 8, light);
     assert_true(light[0] < 1 && light[1] < 1);
     light_at_edge(dark, 8, 6, light);
@@ -194,7 +190,7 @@ static void lamps_at_edges(void **state)
 }
 
 /* One thread and four, the whole and a part, after another focus and at once: the same. */
-static void same_bytes(void **state)
+TEST(same_bytes)
 {
     enum { WIDE = 600, HIGH = 400, X = 230, Y = 150, PART = 70 };
     struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, WIDE, HIGH);
@@ -209,7 +205,6 @@ static void same_bytes(void **state)
     struct refocus_settings region = refocus_settings_default(1, 8);
     uint32_t seed = 3;
 
-    (void)state;
     assert_non_null(map);
     for (int i = 0; i < WIDE * HIGH; i++) {
         map[i] = is_before(&square, i % WIDE, i / WIDE) ? 65535 : (uint16_t)(i / WIDE * 20);
@@ -243,13 +238,4 @@ static void same_bytes(void **state)
     free(other.memory);
     free(part.memory);
     free(map);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(skies), cmocka_unit_test(blurred_before_a_sky), cmocka_unit_test(lamps),
-        cmocka_unit_test(lamps_at_edges), cmocka_unit_test(same_bytes)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -72,7 +72,7 @@ static double flux(int side, float times, float blur, enum way way)
 }
 
 /* Lamps have all of their light, drawn or met by rays, up to means of 4 times white. */
-static void lamps(void **state)
+TEST(lamps)
 {
     static const struct {
         int side;
@@ -83,7 +83,6 @@ static void lamps(void **state)
                  {9, 8, 127, 0.02},   {9, 16, 127, 0.01},  {40, 3, 10, 0.005},  {40, 8, 60, 0.005},
                  {40, 16, 60, 0.005}, {40, 8, 127, 0.005}, {40, 16, 127, 0.005}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof lamps / sizeof *lamps; i++)
         for (enum way way = DISC; way < (i < 7 ? WAYS : RAYS + 1); way++) {
             const double got = flux(lamps[i].side, lamps[i].times, lamps[i].blur, way);
@@ -117,11 +116,10 @@ static void expect_even(int side, float times, enum way way)
 }
 
 /* Small ones, and ones that few rays would hit. */
-static void even_lamps(void **state)
+TEST(even_lamps)
 {
     static const enum way ways[] = {DISC, CAT_EYE, FRINGE};
 
-    (void)state;
     expect_even(9, 16, MASK);
     for (int i = 0; i < 3; i++) {
         expect_even(9, 16, ways[i]);
@@ -161,9 +159,8 @@ static void expect_area(int step)
     free(out.memory);
 }
 
-static void large_areas(void **state)
+TEST(large_areas)
 {
-    (void)state;
     expect_area(1);
     expect_area(2);
 }
@@ -193,11 +190,10 @@ static double mean_of_stripes(float most, uint32_t method)
     return sum;
 }
 
-static void stripes(void **state)
+TEST(stripes)
 {
     static const float most[] = {12, 127, 128, 300, 500};
 
-    (void)state;
     for (size_t i = 0; i < sizeof most / sizeof *most; i++)
         for (uint32_t method = REFOCUS_METHOD_SWEEP; method <= REFOCUS_METHOD_SEARCH; method++) {
             double mean;
@@ -220,9 +216,8 @@ static float sky(int x, int y)
 }
 
 /* Hardly out of focus, a sky has the light that it has in focus, to its sides, and its texture. */
-static void hardly_blurred(void **state)
+TEST(hardly_blurred)
 {
-    (void)state;
     for (float blur = 0.4f; blur < 3; blur += 0.2f)
         for (enum way way = DISC; way <= SEARCHED; way++) {
             struct deep photo = deep_make(REFOCUS_FORMAT_RGB_FLOAT, W, H), out;
@@ -292,21 +287,11 @@ static void expect_core(float times, float blur)
     free(out.memory);
 }
 
-static void flames(void **state)
+TEST(flames)
 {
-    (void)state;
     expect_core(16, 8);
     expect_core(16, 20);
     expect_core(100, 40);
     expect_core(100, 60);
     expect_core(100, 100);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lamps),   cmocka_unit_test(even_lamps),     cmocka_unit_test(large_areas),
-        cmocka_unit_test(stripes), cmocka_unit_test(hardly_blurred), cmocka_unit_test(flames)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

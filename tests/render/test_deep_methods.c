@@ -27,7 +27,7 @@ static void render(struct refocus_renderer *renderer, uint32_t method, float foc
 
 /* A sample of chroma is that of the mean of its pixels, whatever method and threads: rows are red
  * and blue by turns, and nothing is blurred. */
-static void chroma(void **state)
+TEST(chroma)
 {
     static uint16_t disparity[SIDE * SIDE];
     static uint8_t expected[3 * SIDE * SIDE], memory[3 * SIDE * SIDE];
@@ -37,7 +37,6 @@ static void chroma(void **state)
     const struct refocus_image out = refocus_image_planar(REFOCUS_FORMAT_P016, memory, SIDE, SIDE);
     struct deep photo = deep_make(REFOCUS_FORMAT_RGB16, SIDE, SIDE);
 
-    (void)state;
     for (int i = 0; i < SIDE * SIDE; i++)
         deep_put(&photo, i % SIDE, i / SIDE, i / SIDE % 2 ? 2 : 0, 0.6f);
     for (int threads = 1; threads <= 4; threads += 3) {
@@ -58,7 +57,7 @@ static void chroma(void **state)
 
 /* The search makes the same of a photo whatever the renderer showed before, also where that was
  * just what the search makes of it. */
-static void search_again(void **state)
+TEST(search_again)
 {
     static uint16_t disparity[SIDE * SIDE];
     const struct refocus_disparity map = refocus_disparity16(disparity, SIDE, SIDE, 2 * SIDE);
@@ -68,7 +67,6 @@ static void search_again(void **state)
     struct refocus_renderer *renderer = renderer_of_all(1);
     uint32_t seed = 5;
 
-    (void)state;
     for (int i = 0; i < SIDE * SIDE; i++) {
         const float grey = (float)((seed = seed * 1664525 + 1013904223) >> 16) / 65535;
 
@@ -87,10 +85,4 @@ static void search_again(void **state)
     free(photo.memory);
     free(first.memory);
     free(again.memory);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(chroma), cmocka_unit_test(search_again)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -77,13 +77,12 @@ static void randomise(const struct p016 *p, uint32_t seed)
 
 /* Any bits come back where nothing is blurred, and most of them where little is; of odd sizes, too.
  */
-static void in_focus(void **state)
+TEST(in_focus)
 {
     struct picture p = picture_make(97, 61, 3);
     const struct refocus_disparity map = picture_disparity(&p);
     struct refocus_renderer *renderer = deep_renderer(97, 61, 12, 2);
 
-    (void)state;
     for (uint32_t format = REFOCUS_FORMAT_P010; format <= REFOCUS_FORMAT_P016; format++)
         for (uint32_t kind = 0; kind < 6; kind++) {
             struct p016 photo = p016_make(format, 97, 61), out = p016_make(format, 97, 61);
@@ -111,13 +110,12 @@ static void in_focus(void **state)
 
 /* Colours become R, G and B of the standards, and come from them; also in the corner of an odd
  * picture, where a sample of chroma has one pixel. */
-static void colours(void **state)
+TEST(colours)
 {
     enum { SIDE = 15 };
     static const double rgb[][3] = {{0, 0, 0}, {1, 1, 1},       {1, 0, 0},      {0, 1, 0},
                                     {0, 0, 1}, {0.2, 0.6, 0.4}, {0.9, 0.5, 0.1}};
 
-    (void)state;
     for (int kind = 0; kind < 12; kind++)
         for (size_t i = 0; i < sizeof rgb / sizeof *rgb; i++) {
             const uint32_t format = kind % 2 ? REFOCUS_FORMAT_P010 : REFOCUS_FORMAT_P016;
@@ -157,11 +155,10 @@ static void colours(void **state)
 
 /* A lamp in PQ, some 16 times white, has all its light out of focus, and none is lost on the way
  * back into codes. */
-static void lamp(void **state)
+TEST(lamp)
 {
     enum { W = 160, H = 160, SIDE = 8 };
 
-    (void)state;
     for (uint32_t format = REFOCUS_FORMAT_P010; format <= REFOCUS_FORMAT_P016; format++) {
         const double dim[3] = {0.3, 0.3, 0.3}, bright[3] = {0.86, 0.86, 0.86};
         struct p016 photo = p016_make(format, W, H), out = p016_make(format, W, H);
@@ -204,7 +201,7 @@ static void lamp(void **state)
 }
 
 /* Threads and regions change no byte. */
-static void same_bytes(void **state)
+TEST(same_bytes)
 {
     struct picture p = picture_make(120, 90, 9);
     const struct refocus_disparity map = picture_disparity(&p);
@@ -216,7 +213,6 @@ static void same_bytes(void **state)
     struct refocus_renderer *many = deep_renderer(120, 90, 20, 4);
     struct refocus_settings region = refocus_settings_default(0.4f, 20);
 
-    (void)state;
     randomise(&photo, 4);
     assert_int_equal(refocus_prepare(single, &photo.image, &map), REFOCUS_OK);
     assert_int_equal(refocus_prepare(many, &photo.image, &map), REFOCUS_OK);
@@ -249,7 +245,7 @@ static void same_bytes(void **state)
 }
 
 /* Sizes, and what is refused. */
-static void refusals(void **state)
+TEST(refusals)
 {
     struct picture p = picture_make(40, 30, 1);
     const struct refocus_disparity map = picture_disparity(&p);
@@ -259,7 +255,6 @@ static void refusals(void **state)
     struct refocus_renderer *renderer = deep_renderer(40, 30, 5, 1);
     struct refocus_image bad;
 
-    (void)state;
     assert_int_equal(refocus_image_bytes(REFOCUS_FORMAT_P010, 5, 3), 2 * 5 * 3 + 4 * 3 * 2);
     assert_int_equal(refocus_format_is_yuv(REFOCUS_FORMAT_P016), 1);
     for (int i = 0; i < 6; i++) {
@@ -291,14 +286,4 @@ static void refusals(void **state)
     free(photo.memory);
     free(nv12.memory);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(in_focus),   cmocka_unit_test(colours),  cmocka_unit_test(lamp),
-        cmocka_unit_test(same_bytes), cmocka_unit_test(refusals),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -67,11 +67,10 @@ static void reduce(int side, bool mean)
 
 /* A small difference is followed by a quarter a frame; but at once near what moves in the photo, in
  * a frame of another height, and after a map of samples at points, which is not placed. */
-static void follows_slowly(void **state)
+TEST(follows_slowly)
 {
     enum { FAR = 13107, BY = 400 }; /* 0.2 is the background of the disc. */
 
-    (void)state;
     for (int other = 0; other < 4; other++) {
         draw_soft(3);
         frame(REFOCUS_DEPTH_EDGES_AUTO, 1);
@@ -105,9 +104,8 @@ static float softness_of(uint32_t how, int side, double sigma)
 
 /* Softness is told in pixels of the photo, and follows by a quarter: also where the photo is
  * reduced to half its size, as the map has a sixth of it. */
-static void softness(void **state)
+TEST(softness)
 {
-    (void)state;
     for (int side = 3; side <= 6; side += 3) {
         const double first = softness_of(REFOCUS_DEPTH_EDGES_AUTO, side, 6);
         const double second = softness_of(REFOCUS_DEPTH_EDGES_AUTO, side, 7);
@@ -121,9 +119,8 @@ static void softness(void **state)
 }
 
 /* A map that is hardly sharp counts as soft after one that was. */
-static void parted_stays(void **state)
+TEST(parted_stays)
 {
-    (void)state;
     for (int after = 0; after < 2; after++) {
         draw_soft(after ? 2 : 0.3);
         frame(REFOCUS_DEPTH_EDGES_AUTO, 1);
@@ -135,11 +132,5 @@ static void parted_stays(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(follows_slowly),
-        cmocka_unit_test(softness),
-        cmocka_unit_test(parted_stays),
-    };
-
-    return cmocka_run_group_tests_name("edges-video", tests, set_up, tear_down);
+    return unit_test_run(set_up, tear_down);
 }

@@ -82,9 +82,8 @@ static void added(const double surround[3], const struct thing *t, double dx, do
 static const double black[3] = {0.004, 0.004, 0.005}, dull[3] = {0.35, 0.35, 0.35};
 
 /* A lamp of eight times white has lost seven times what is left of it. */
-static void lamps(void **state)
+TEST(lamps)
 {
-    (void)state;
     for (int wide = 4; wide <= 12; wide += 4) {
         const struct thing lamp = {ELLIPSE, wide, wide, {8, 8, 8}};
         double part[3];
@@ -96,13 +95,12 @@ static void lamps(void **state)
 }
 
 /* A lamp by night gets more the more glare it has; on a lit wall that counts for little. */
-static void glare(void **state)
+TEST(glare)
 {
     static const double wall[3] = {0.3, 0.3, 0.3};
     const struct thing lamp = {ELLIPSE, 8, 8, {24, 24, 24}};
     double faint[3], strong[3], by_day[3];
 
-    (void)state;
     added(black, &lamp, 0, 0.002, 1, faint);
     added(black, &lamp, 0, 0.05, 1, strong);
     added(wall, &lamp, 0, 0.05, 1, by_day);
@@ -112,7 +110,7 @@ static void glare(void **state)
                  faint[1], strong[1], by_day[1]);
 }
 
-static void day(void **state)
+TEST(day)
 {
     static const struct thing thing[] = {
         {BOX, 60, 40, {1.02, 1.02, 1.02}},
@@ -121,7 +119,6 @@ static void day(void **state)
         {ELLIPSE, 5, 5, {1.1, 0.3, 0.3}},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof thing / sizeof *thing; i++) {
         double part[3];
 
@@ -133,12 +130,11 @@ static void day(void **state)
 }
 
 /* Where one channel alone is clipped, hardly anything is lost, as far as is known. */
-static void petals(void **state)
+TEST(petals)
 {
     const struct thing petal = {ELLIPSE, 9, 9, {3, 0.1, 0.3}};
     double part[3];
 
-    (void)state;
     added(black, &petal, 0, 0.05, 1, part);
     for (int c = 0; c < 3; c++)
         if (fabs(part[c]) > 0.01)
@@ -146,12 +142,11 @@ static void petals(void **state)
 }
 
 /* An orange lamp stays orange. */
-static void colours(void **state)
+TEST(colours)
 {
     const struct thing lamp = {ELLIPSE, 8, 8, {8, 3, 0.4}};
     double part[3];
 
-    (void)state;
     added(black, &lamp, 0, 0.05, 1, part);
     assert_true(part[0] > 0.3);
     assert_true(part[0] > 0.9 * part[1]);
@@ -160,12 +155,11 @@ static void colours(void **state)
 
 /* A warm lamp that is clipped to white has lost half a white of blue and seven of red: its disc
  * does not become as white as what is left of it. */
-static void colours_of_white(void **state)
+TEST(colours_of_white)
 {
     const struct thing lamp = {ELLIPSE, 8, 8, {8, 4, 1.5}};
     double part[3];
 
-    (void)state;
     added(black, &lamp, 0, 0.05, 1, part);
     assert_true(part[0] > 3);
     if (part[2] > 0.5 * part[0])
@@ -190,12 +184,11 @@ static void get_on_board(const double wall[3], const double board[3], double lig
 
 /* Paint near something white and clipped is brighter than what is farther off, but in blue alone,
  * or not in red: the white does not become blue, or cyan. */
-static void painted(void **state)
+TEST(painted)
 {
     static const double wall[2][3] = {{0.137, 0.145, 0.191}, {0.385, 0.168, 0.058}};
     static const double board[2][3] = {{0.128, 0.153, 0.297}, {0.365, 0.253, 0.153}};
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         double more[3];
 
@@ -205,12 +198,11 @@ static void painted(void **state)
     }
 }
 
-static void scales(void **state)
+TEST(scales)
 {
     const struct thing lamp = {ELLIPSE, 8, 8, {6, 6, 6}};
     double half[3], one[3];
 
-    (void)state;
     added(black, &lamp, 0, 0.05, 0.25f, half);
     added(black, &lamp, 0, 0.05, 0.5f, one);
     if (half[1] < 0.4 * one[1] || half[1] > 0.6 * one[1])
@@ -218,12 +210,11 @@ static void scales(void **state)
 }
 
 /* The hue changes little where little light is lost: each channel has lost little. */
-static void little(void **state)
+TEST(little)
 {
     const struct thing lamp = {ELLIPSE, 8, 8, {4, 4.5, 9}};
     double some[3], more[3];
 
-    (void)state;
     added(black, &lamp, 0, 0.05, 0.02f, some);
     added(black, &lamp, 0, 0.05, 0.2f, more);
     assert_true(some[1] > 0.01);
@@ -233,12 +224,11 @@ static void little(void **state)
 }
 
 /* A lamp that moves by parts of a pixel is not another lamp. */
-static void steady(void **state)
+TEST(steady)
 {
     const struct thing lamp = {ELLIPSE, 7, 7, {6, 6, 6}};
     double least = 1e9, most = 0;
 
-    (void)state;
     for (int i = 0; i < 8; i++) {
         double part[3];
 
@@ -268,13 +258,12 @@ static double light_of_disc(const struct picture *p)
 
 /* A lamp below a crowd of small ones keeps its light, though all of them are in one part of the
  * lists, and are more than its share. */
-static void crowded(void **state)
+TEST(crowded)
 {
     const struct thing lamp = {ELLIPSE, 7, 7, {6, 6, 6}};
     struct picture p = with_skirt(black, &lamp, 0, 0.05);
     double alone, among;
 
-    (void)state;
     alone = light_of_disc(&p);
     for (int y = 64; y < 108; y++)
         for (int x = 0; x < W; x++) {
@@ -341,12 +330,11 @@ static double flicker(float keep, bool in_place, double last[2], uint8_t *out)
 
 /* Light that flickers is held; a lamp that goes out or on is followed at once. Strips do as well.
  */
-static void video(void **state)
+TEST(video)
 {
     uint8_t *held = malloc(3 * W * H), *other = malloc(3 * W * H);
     double plain_last[2], held_last[2], strip_last[2], plain, steady_now;
 
-    (void)state;
     assert_non_null(held);
     assert_non_null(other);
     plain = flicker(0, false, plain_last, other);
@@ -363,14 +351,13 @@ static void video(void **state)
 }
 
 /* A photo that was held is rendered as by a new renderer once nothing is to be held. */
-static void held_no_more(void **state)
+TEST(held_no_more)
 {
     struct refocus_settings params = refocus_settings_default(0.5f, K);
     struct refocus_renderer *renderer = NULL;
     uint8_t *wanted = malloc(3 * W * H), *is = malloc(3 * W * H);
     struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, wanted, W, H, 3 * W);
 
-    (void)state;
     assert_non_null(wanted);
     assert_non_null(is);
     params.highlights = estimated(1);
@@ -399,14 +386,13 @@ static void held_no_more(void **state)
 }
 
 /* Where nothing is clipped, every byte stays. */
-static void unclipped(void **state)
+TEST(unclipped)
 {
     const struct refocus_highlight_params off = refocus_highlight_params_default();
     const struct refocus_highlight_params on = estimated(1);
     struct picture p = picture_make(W, H, 5);
     uint8_t *a = malloc(3 * W * H), *b = malloc(3 * W * H);
 
-    (void)state;
     assert_non_null(a);
     assert_non_null(b);
     for (int i = 0; i < 3 * W * H; i++)
@@ -420,13 +406,12 @@ static void unclipped(void **state)
 }
 
 /* Threads, blocks, larger renderers and earlier renders change nothing. */
-static void same_bytes(void **state)
+TEST(same_bytes)
 {
     const struct refocus_highlight_params on = estimated(1);
     const struct refocus_highlight_params off = refocus_highlight_params_default();
     struct refocus_settings params = refocus_settings_default(0.5f, K);
 
-    (void)state;
     for (uint32_t seed = 1; seed <= 4; seed++) {
         const int w = seed == 4 ? 1441 : 331, h = seed == 4 ? 391 : 289;
         struct picture p = night(seed, w, h);
@@ -460,20 +445,4 @@ static void same_bytes(void **state)
         free(is);
         picture_free(&p);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lamps),     cmocka_unit_test(glare),
-        cmocka_unit_test(day),       cmocka_unit_test(petals),
-        cmocka_unit_test(colours),   cmocka_unit_test(colours_of_white),
-        cmocka_unit_test(painted),   cmocka_unit_test(scales),
-        cmocka_unit_test(little),    cmocka_unit_test(steady),
-        cmocka_unit_test(crowded),   cmocka_unit_test(held_no_more),
-        cmocka_unit_test(unclipped), cmocka_unit_test(same_bytes),
-        cmocka_unit_test(video),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

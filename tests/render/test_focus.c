@@ -112,7 +112,7 @@ static bool make_way(int i, struct refocus_settings *p, const struct refocus_dis
     return i <= 13 + REFOCUS_FIELD_PICTURE;
 }
 
-static void formulas(void **state)
+TEST(formulas)
 {
     struct picture p = picture_make(W, H, 5);
     struct refocus_renderer *renderer = prepared(&p, 18.5f, 2);
@@ -123,7 +123,6 @@ static void formulas(void **state)
     static uint16_t blur[W * H];
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
-    (void)state;
     params.render.method = REFOCUS_METHOD_SEARCH; /* sweep moves single edges */
     params.render.rays = 1;
     for (int i = 0; make_way(i, &params, &small, &full); i++) {
@@ -163,7 +162,7 @@ static void check_same(struct refocus_renderer *renderer, const struct refocus_s
     assert_same_pixels(is, wanted, W, H, what);
 }
 
-static void plain_lens(void **state)
+TEST(plain_lens)
 {
     enum { BLUR = 30 }; /* Lens and field have bins of a quarter pixel with it. */
     static uint16_t map[W * H];
@@ -171,7 +170,6 @@ static void plain_lens(void **state)
     struct picture p = picture_make(W, H, 6);
     struct refocus_renderer *renderer = prepared(&p, BLUR, 2);
 
-    (void)state;
     for (uint32_t method = 0; method < REFOCUS_METHOD_COUNT; method++) {
         const struct refocus_settings plain = refocus_settings_default(0.45f, BLUR);
         const int df = (int)floor((double)plain.render.focus_disparity * 65535 + 0.5);
@@ -234,7 +232,7 @@ static void plain_lens(void **state)
 }
 
 /* Everything sharp by a mask: nothing is changed. */
-static void masked(void **state)
+TEST(masked)
 {
     static const uint8_t white = 255;
     static uint8_t out[3 * W * H];
@@ -244,7 +242,6 @@ static void masked(void **state)
     struct refocus_renderer *renderer = prepared(&p, 20, 1);
     struct refocus_settings params = refocus_settings_default(0, 20);
 
-    (void)state;
     params.focus.sharp_map = &all;
     assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_OK);
     assert_same_pixels(out, p.rgb, W, H, "under a mask");
@@ -253,7 +250,7 @@ static void masked(void **state)
 }
 
 /* Between two bands nothing spreads over the nearer one. */
-static void near_band_is_clean(void **state)
+TEST(near_band_is_clean)
 {
     enum { SIDE = 96 };
     struct picture p = picture_flat(SIDE, SIDE, (uint8_t[3]){200, 30, 30}, 0);
@@ -263,7 +260,6 @@ static void near_band_is_clean(void **state)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, SIDE, SIDE, 3 * SIDE);
     struct refocus_renderer *renderer;
 
-    (void)state;
     for (int i = 0; i < SIDE * SIDE; i++) { /* far, in between, near */
         const int x = i % SIDE;
 
@@ -283,7 +279,7 @@ static void near_band_is_clean(void **state)
 }
 
 /* A field in the highest photo there can be: the lengths are not beyond what fixed point holds. */
-static void highest_photo(void **state)
+TEST(highest_photo)
 {
     enum { TALL = 65535 };
     struct rf_settings settings = {.field = REFOCUS_FIELD_SPHERE,
@@ -296,7 +292,6 @@ static void highest_photo(void **state)
     struct rf_focus_plan plan;
     int16_t last, before, first;
 
-    (void)state;
     rf_focus_plan_make(&plan, &settings, rf_focus_of(0, 100), 1, TALL);
     rf_focus_row(&plan, &last, &disparity, 0, TALL - 1, 1);
     rf_focus_row(&plan, &before, &disparity, 0, TALL - 3, 1);
@@ -309,7 +304,7 @@ static void highest_photo(void **state)
 }
 
 /* Methods that know plain lenses only say so. */
-static void refused(void **state)
+TEST(refused)
 {
     struct picture p = picture_make(W, H, 8);
     struct refocus_renderer *renderer = prepared(&p, 6, 1);
@@ -318,7 +313,6 @@ static void refused(void **state)
     static uint8_t out[3 * W * H];
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
-    (void)state;
     for (uint32_t method = 0; method < REFOCUS_METHOD_COUNT; method++) {
         const bool takes = refocus_method_traits(method) & REFOCUS_METHOD_ANY_FOCUS;
         struct refocus_settings params = refocus_settings_default(0.5f, 6);
@@ -334,14 +328,13 @@ static void refused(void **state)
 }
 
 /* Blurs beyond 127 pixels are told in pixels, too, up to what 16 bits hold. */
-static void large_blurs_in_a_view(void **state)
+TEST(large_blurs_in_a_view)
 {
     struct picture p = picture_make(W, H, 7);
     static uint8_t out[3 * W * H];
     static uint16_t blur[W * H];
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, W, H, 3 * W);
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         const float most = i ? 600 : 250, apart = most / 65535;
         struct refocus_renderer *renderer = prepared(&p, most, 1);
@@ -364,18 +357,11 @@ static void large_blurs_in_a_view(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(formulas),
-                                       cmocka_unit_test(plain_lens),
-                                       cmocka_unit_test(masked),
-                                       cmocka_unit_test(near_band_is_clean),
-                                       cmocka_unit_test(highest_photo),
-                                       cmocka_unit_test(refused),
-                                       cmocka_unit_test(large_blurs_in_a_view)};
     uint32_t state = 3;
 
     for (size_t i = 0; i < sizeof grey; i++)
         grey[i] = (uint8_t)noise(&state);
     for (size_t i = 0; i < W * H; i++)
         deep[i] = (uint16_t)noise(&state);
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

@@ -85,12 +85,11 @@ static double correlation(void)
 }
 
 /* Grain is of the strength and the size of the photo's, and there is none where no noise is. */
-static void grain_size(void **state)
+TEST(grain_size)
 {
     static const double sigmas[] = {2.5, 6, 0.6, 10, 20}, sides[] = {0, 0.2, 0.4};
     struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 20);
 
-    (void)state;
     params.render.prefilter = 0;
     for (int i = 0; i < 5; i++) {
         for (int k = 0; k < 3; k++) {
@@ -142,11 +141,10 @@ static void bands(int code, double dark, double bright, double noises[2])
 }
 
 /* Noise may rise towards the dark as a sensor's does, and little towards what is bright. */
-static void noise_follows_brightness(void **state)
+TEST(noise_follows_brightness)
 {
     double noises[2];
 
-    (void)state;
     bands(48, 5, 2, noises);
     about("dark", noises[0], 5, 0.12);
     about("bright", noises[1], 2, 0.12);
@@ -160,14 +158,13 @@ static void noise_follows_brightness(void **state)
 }
 
 /* Texture of one brightness is no noise where others are smooth. */
-static void texture_is_no_grain(void **state)
+TEST(texture_is_no_grain)
 {
     static uint8_t without[3 * W * H];
     struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
     struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 20);
     struct refocus_renderer *renderer;
 
-    (void)state;
     draw_noise(&p, 6, 0.2);
     for (int y = 0; y < H / 2; y++)
         memset(p.rgb + 3 * y * W, 60 + 20 * (y / (H / 8)), 3 * W);
@@ -183,13 +180,12 @@ static void texture_is_no_grain(void **state)
 
 /* Texture is no noise where it fills all brightnesses either, as leaves do: it is finer here and
  * coarser there. The same photo with the noise of its smoothest blocks everywhere has grain. */
-static void uneven_texture_is_no_grain(void **state)
+TEST(uneven_texture_is_no_grain)
 {
     static const double strengths[] = {2.5, 7, 10, 12, 12, 10, 9, 11};
     static uint8_t without[3 * W * H], drawn[3 * W * H];
     struct refocus_settings params = refocus_settings_default(60000 / 65535.0f, 20);
 
-    (void)state;
     for (int kind = 0; kind < 4; kind++) {
         const bool even = kind % 2;
         struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
@@ -267,11 +263,10 @@ static double grain_of(const struct picture *p)
 
 /* Texture that is alike in all places of all brightnesses is told by its size, and a pattern by
  * being too much alike. */
-static void even_texture_is_no_grain(void **state)
+TEST(even_texture_is_no_grain)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
 
-    (void)state;
     draw_clouds(&p, 0);
     assert_true(grain_of(&p) == 0);
     for (int i = 0; i < W * H; i++) /* stripes, six pixels wide */
@@ -281,12 +276,11 @@ static void even_texture_is_no_grain(void **state)
 }
 
 /* A sky without noise does not make noise of the texture beside it. */
-static void smooth_parts_tell_nothing(void **state)
+TEST(smooth_parts_tell_nothing)
 {
     struct picture p = picture_flat(W, TALL, (uint8_t[3]){120, 120, 120}, 60000);
     struct picture sky = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
 
-    (void)state;
     draw_clouds(&p, 28);
     draw_noise(&sky, 0.5, 0);
     for (int i = 0; i < 3 * W * H; i++)
@@ -297,11 +291,10 @@ static void smooth_parts_tell_nothing(void **state)
 }
 
 /* From texture to noise grain grows by steps smaller than it is, 5 codes where noise is half. */
-static void grain_grows_with_noise(void **state)
+TEST(grain_grows_with_noise)
 {
     double is = 0;
 
-    (void)state;
     for (int part = 0; part <= 128; part += part < 64 ? 1 : 8) {
         struct picture p = picture_flat(W, TALL, (uint8_t[3]){120, 120, 120}, 60000);
         const double last = is;
@@ -324,7 +317,7 @@ static uint64_t weigh_codes(void)
     return sum;
 }
 
-static void grain(void **state)
+TEST(grain)
 {
     static uint8_t first[3 * W * H];
     struct picture p = picture_flat(W, H, (uint8_t[3]){120, 120, 120}, 60000);
@@ -332,7 +325,6 @@ static void grain(void **state)
     struct refocus_renderer *renderer;
     uint32_t seed = 5;
 
-    (void)state;
     for (int i = 0; i < W * H; i++) {
         int v = 120;
 
@@ -379,18 +371,4 @@ static void grain(void **state)
         }
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(grain),
-                                       cmocka_unit_test(grain_size),
-                                       cmocka_unit_test(noise_follows_brightness),
-                                       cmocka_unit_test(texture_is_no_grain),
-                                       cmocka_unit_test(uneven_texture_is_no_grain),
-                                       cmocka_unit_test(even_texture_is_no_grain),
-                                       cmocka_unit_test(smooth_parts_tell_nothing),
-                                       cmocka_unit_test(grain_grows_with_noise)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -102,11 +102,10 @@ static void expect(const char *what, double size, double times, double least, do
 }
 
 /* Small lights get theirs back. Discs above white are cut, so small blurs are not looked at. */
-static void highlights(void **state)
+TEST(highlights)
 {
     static const double size[] = {2, 3, 5, 8, 12, 14};
 
-    (void)state;
     for (size_t i = 0; i < sizeof size / sizeof size[0]; i++) {
         expect("a round highlight", size[i], times_of(ELLIPSE, size[i], size[i], 12), 2.2, 4.05);
         expect("a flame", size[i], times_of(ELLIPSE, size[i] / 2 + 1, 1.5 * size[i], 12), 2.2,
@@ -115,11 +114,10 @@ static void highlights(void **state)
 }
 
 /* The larger something white is, the less likely it has lost much. */
-static void large(void **state)
+TEST(large)
 {
     static const int kind[] = {ELLIPSE, BOX, DIAMOND};
 
-    (void)state;
     for (size_t i = 0; i < sizeof kind / sizeof kind[0]; i++) {
         double before = 4.05;
 
@@ -148,9 +146,8 @@ static double large_times(int cell, double size, double light, int soft)
     return times[1];
 }
 
-static void large_photos(void **state)
+TEST(large_photos)
 {
-    (void)state;
     for (int cell = 2; cell <= 4; cell *= 2)
         for (int soft = 0; soft <= 2 * cell; soft += cell) {
             expect("a small highlight of a large photo", 2 * cell,
@@ -163,13 +160,12 @@ static void large_photos(void **state)
 }
 
 /* A wall that a highlight lights around it is not its edge. */
-static void lit_walls(void **state)
+TEST(lit_walls)
 {
     struct picture p = picture_flat(W, H, (uint8_t[3]){60, 60, 60}, BEHIND);
     const struct thing highlight = {ELLIPSE, 7, 7, {12, 12, 12}};
     double times[3];
 
-    (void)state;
     for (int i = 0; i < W * H; i++) {
         const double away = hypot(i % W - CX, (double)(i / W) - CY);
 
@@ -198,9 +194,8 @@ static double candle_times(double light)
     return times[1];
 }
 
-static void candles(void **state)
+TEST(candles)
 {
-    (void)state;
     expect("a candle", 9, candle_times(3), 1.3, 2.5);
     expect("a candle", 9, candle_times(5), 1.3, 2.5);
 }
@@ -242,9 +237,8 @@ static void expect_wire_blur(uint16_t disparity, int least, int most)
         assert_in_range(blur[(CY - 1) * W + x], least, most);
 }
 
-static void wires(void **state)
+TEST(wires)
 {
-    (void)state;
     /* a highlight behind the wire is blurred as far as it is seen, one that hangs on it is sharp */
     expect_wire_blur(BEHIND, 11 * 256, 13 * 256);
     expect_wire_blur(32768, 0, 16);
@@ -285,9 +279,8 @@ static int brightest_dot(double light)
     return most;
 }
 
-static void silhouettes(void **state)
+TEST(silhouettes)
 {
-    (void)state;
     for (double light = 1; light < 40; light *= 2) {
         const int dot = brightest_dot(light);
 
@@ -298,22 +291,20 @@ static void silhouettes(void **state)
 }
 
 /* Longer than a highlight, but no wider. */
-static void tubes(void **state)
+TEST(tubes)
 {
-    (void)state;
     expect("a tube", 100, times_of(BOX, 100, 2.7, 12), 2, 4.05);
     expect("an upright tube", 100, times_of(BOX, 2.7, 100, 12), 2, 4.05);
 }
 
 /* A channel that is not clipped has lost nothing, and where one alone is clipped it has lost
  * nothing either; the rest is of the colour of the edge. */
-static void colours(void **state)
+TEST(colours)
 {
     const struct thing green = {ELLIPSE, 7, 7, {0.3, 12, 0.5}};
     const struct thing amber = {ELLIPSE, 7, 7, {12, 6, 2.4}};
     double times[3];
 
-    (void)state;
     gained(&green, times);
     expect("red of a green highlight", 7, times[0], 0.99, 1.01);
     expect("green of a green highlight", 7, times[1], 0.99, 1.01);
@@ -327,13 +318,12 @@ static void colours(void **state)
 }
 
 /* A tail light: red alone is clipped in what glows around it, and gets nothing there. */
-static void glows(void **state)
+TEST(glows)
 {
     const struct thing red = {ELLIPSE, 6, 6, {40, 6, 5}};
     struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, BEHIND);
     double times[3];
 
-    (void)state;
     for (int k = 0; k < W * H; k++) {
         const double away = hypot(k % W - CX, (double)(k / W) - CY), glow = exp(-away / 3.5);
 
@@ -347,12 +337,11 @@ static void glows(void **state)
 }
 
 /* Cyan among cyan is no highlight, however bright beside it; on something dark it may be one. */
-static void petals(void **state)
+TEST(petals)
 {
     static const uint8_t among[][3] = {{60, 190, 200}, {20, 65, 70}};
     const struct thing petal = {ELLIPSE, 6, 6, {0.3, 3, 3}};
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct picture p = picture_flat(W, H, among[i], BEHIND);
         double times[3];
@@ -401,9 +390,8 @@ static void expect_same_night(uint32_t seed, int w, int h, float blur)
     picture_free(&p);
 }
 
-static void nights(void **state)
+TEST(nights)
 {
-    (void)state;
     for (uint32_t seed = 1; seed <= 6; seed++)
         expect_same_night(seed, NIGHT_W, NIGHT_H, 9);
     expect_same_night(7, 1441, 391, 9);
@@ -414,16 +402,4 @@ static void nights(void **state)
     expect_same_night(12, NIGHT_W, NIGHT_H, 4);
     expect_same_night(109, 333, 619,
                       120); /* windows from side to side, with all of their margins */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(highlights), cmocka_unit_test(large),   cmocka_unit_test(silhouettes),
-        cmocka_unit_test(tubes),      cmocka_unit_test(colours), cmocka_unit_test(large_photos),
-        cmocka_unit_test(lit_walls),  cmocka_unit_test(wires),   cmocka_unit_test(candles),
-        cmocka_unit_test(glows),      cmocka_unit_test(petals),  cmocka_unit_test(nights),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,7 +2,7 @@
 #include "pictures.h"
 
 /* Any colour, depth, aperture, number of rays and blending: the colour comes back. */
-static void one_colour(void **state)
+TEST(one_colour)
 {
     static const int grey[] = {0, 1, 2, 3, 10, 11, 12, 100, 127, 128, 200, 253, 254, 255};
     static const uint8_t colours[][3] = {{255, 0, 0}, {0, 1, 255}, {13, 200, 77}, {254, 255, 1}};
@@ -10,7 +10,6 @@ static void one_colour(void **state)
     uint8_t out[3 * W * H];
     struct picture deep = picture_make(W, H, 31);
 
-    (void)state;
     for (int i = 0; i < 14 + 4; i++) {
         const uint8_t rgb[3] = {(uint8_t)grey[i % 14], (uint8_t)grey[i % 14],
                                 (uint8_t)grey[i % 14]};
@@ -32,14 +31,13 @@ static void one_colour(void **state)
 }
 
 /* Every grey and every σ of a blend, on a small picture. */
-static void every_grey(void **state)
+TEST(every_grey)
 {
     static const float sigmas[] = {0, 1, 3, 10, 30, 64, 128, 400, 1000};
     enum { W = 18, H = 5 };
     uint8_t out[3 * W * H];
     struct picture deep = picture_make(W, H, 33);
 
-    (void)state;
     for (int grey = 0; grey < 256; grey++) {
         struct picture flat = picture_flat(
             W, H, (uint8_t[3]){(uint8_t)grey, (uint8_t)(255 - grey), (uint8_t)grey}, 0);
@@ -64,14 +62,13 @@ static void every_grey(void **state)
 }
 
 /* K = 0, and a K of less than half a pixel of blur anywhere: the photo. */
-static void no_blur(void **state)
+TEST(no_blur)
 {
     enum { W = 61, H = 34 };
     struct picture p = picture_make(W, H, 21);
     struct refocus_renderer *renderer = prepared(&p, 3, 2), *sharp = prepared(&p, 0, 1);
     uint8_t out[3 * W * H];
 
-    (void)state;
     for (int s = 0; s < style_count; s++) {
         render_style(sharp, &p, &styles[s], 0.5f, 0, out);
         assert_same_pixels(out, p.rgb, W, H, styles[s].name);
@@ -120,23 +117,13 @@ static void columns_stay(float focus, int from, int to, int allowed)
 }
 
 /* The near half in focus has nothing blurred over it, so all of it stays. */
-static void sharp_before_blurred(void **state)
+TEST(sharp_before_blurred)
 {
-    (void)state;
     columns_stay(1, 0, 48, 0);
 }
 
 /* A blurred half before a sharp one: pixels well farther than K from the edge stay. */
-static void blurred_before_sharp(void **state)
+TEST(blurred_before_sharp)
 {
-    (void)state;
     columns_stay(0, 48 + 3 * 9 / 2 + 5, 96, 1); /* heat goes as far as a Gaussian */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_colour), cmocka_unit_test(every_grey), cmocka_unit_test(no_blur),
-        cmocka_unit_test(sharp_before_blurred), cmocka_unit_test(blurred_before_sharp)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,7 +40,7 @@ static void draw_bars(struct picture *p, int bars)
 
 /* Pictures of one and of several blocks come out the same, at whose sides the photo ends in all
  * ways. */
-static void same_bytes(void **state)
+TEST(same_bytes)
 {
     static const struct {
         int width, height;
@@ -51,7 +51,6 @@ static void same_bytes(void **state)
                  {640, 480, 20, 0}, {650, 301, 40, 71}, {322, 481, 0.5f, 0}, {560, 290, 20, 39},
                  {70, 50, 127, 0},  {700, 90, 127, 99}, {403, 299, 6, 0},    {601, 290, 33, 61}};
 
-    (void)state;
     for (size_t v = 0; v < sizeof views / sizeof views[0]; v++) {
         const size_t size = 3 * (size_t)views[v].width * (size_t)views[v].height;
         struct refocus_renderer *whole, *strips;
@@ -94,14 +93,13 @@ static void same_bytes(void **state)
 
 /* Lamps that few rays would hit, cut off by margins of blocks: how wide they are, and what lies
  * beside them, is known in all blocks. */
-static void wide_lamps(void **state)
+TEST(wide_lamps)
 {
     enum { W = 700, H = 170, BLUR = 40 };
     struct picture p = picture_flat(W, H, (uint8_t[3]){20, 25, 30}, 3000);
     struct refocus_settings params = refocus_settings_default(1, BLUR);
     static uint8_t out[3][3 * W * H];
 
-    (void)state;
     for (int y = 70; y < 90; y++)
         for (int i = 0; i < 3 * W; i++)
             if (i / 3 % 100 > 25)
@@ -122,14 +120,13 @@ static void wide_lamps(void **state)
 }
 
 /* A map of few codes: slopes are made of its steps, whose neighbours may lie in other blocks. */
-static void few_codes(void **state)
+TEST(few_codes)
 {
     static const struct {
         int width, height;
         float blur;
     } views[] = {{330, 290, 9}, {403, 170, 40}, {161, 350, 1}};
 
-    (void)state;
     for (size_t v = 0; v < sizeof views / sizeof views[0]; v++) {
         struct picture p = picture_make(views[v].width, views[v].height, 5);
         const size_t size = 3 * (size_t)p.width * (size_t)p.height;
@@ -168,7 +165,7 @@ static void few_codes(void **state)
 }
 
 /* Formats, strides, 8-bit disparities, alpha, the views. */
-static void formats(void **state)
+TEST(formats)
 {
     enum { W = 330, H = 240 };
     struct picture p = picture_make(W, H, 8);
@@ -182,7 +179,6 @@ static void formats(void **state)
         refocus_image_packed(REFOCUS_FORMAT_BGRA8, photo + 5 * W * (H - 1), W, H, -5 * W);
     const struct refocus_disparity disparity = refocus_disparity8(map, W, H, W);
 
-    (void)state;
     assert_true(photo && map && out[0] && out[1] && view[0] && view[1]);
     for (int i = 0; i < W * H; i++) {
         map[i] = (uint8_t)(p.disparity[i] >> 8);
@@ -215,7 +211,7 @@ static void formats(void **state)
     picture_free(&p);
 }
 
-static void refused(void **state)
+TEST(refused)
 {
     struct picture p = picture_make(40, 30, 8);
     const struct refocus_image photo = picture_image(&p);
@@ -228,7 +224,6 @@ static void refused(void **state)
     uint8_t out[3 * 40 * 30];
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 40, 30, 120);
 
-    (void)state;
     limits.in_place = 2;
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_ERR_ARGUMENT);
     limits.in_place = 1;
@@ -244,12 +239,4 @@ static void refused(void **state)
     assert_int_equal(refocus_render_settings(renderer, &params, &image), REFOCUS_ERR_ARGUMENT);
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes), cmocka_unit_test(wide_lamps),
-                                       cmocka_unit_test(few_codes), cmocka_unit_test(formats),
-                                       cmocka_unit_test(refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -90,22 +90,20 @@ static void expect_none(const struct picture *p, const struct refocus_disparity 
     free(rgb);
 }
 
-static void of_16_bits(void **state)
+TEST(of_16_bits)
 {
     struct picture p = wavy();
     const struct refocus_disparity map = picture_disparity(&p);
 
-    (void)state;
     expect_none(&p, &map, 0, "16 bits");
     picture_free(&p);
 }
 
-static void of_8_bits(void **state)
+TEST(of_8_bits)
 {
     struct picture p = wavy();
     const struct refocus_disparity map = picture_disparity(&p);
 
-    (void)state;
     to_8_bits(&p);
     expect_none(&p, &map, 0, "8 bits");
     expect_none(&p, &map, 1, "8 bits in strips");
@@ -113,14 +111,13 @@ static void of_8_bits(void **state)
 }
 
 /* Every third sample of each third row. */
-static void of_8_bits_and_small(void **state)
+TEST(of_8_bits_and_small)
 {
     enum { COLUMNS = WIDTH / 3, ROWS = HEIGHT / 3 };
     struct picture p = wavy();
     uint8_t *small = malloc(COLUMNS * ROWS);
     struct refocus_disparity map = refocus_disparity16(NULL, COLUMNS, ROWS, COLUMNS);
 
-    (void)state;
     assert_non_null(small);
     for (int i = 0; i < COLUMNS * ROWS; i++)
         small[i] =
@@ -151,14 +148,13 @@ static struct picture turned(double slope)
 }
 
 /* The slabs of a steep surface overlap enough; only where it begins to turn, a few rays pass. */
-static void of_steep_surfaces(void **state)
+TEST(of_steep_surfaces)
 {
     static const double slopes[] = {0.55, 0.65, 0.75};
     uint8_t *rgb = malloc(3 * WIDTH * HEIGHT);
     const struct refocus_image out =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, WIDTH, HEIGHT, 3 * WIDTH);
 
-    (void)state;
     assert_non_null(rgb);
     for (int i = 0; i < 3; i++) {
         struct picture p = turned(slopes[i]);
@@ -181,7 +177,7 @@ static void of_steep_surfaces(void **state)
 }
 
 /* Nothing shows through in the luma of a photo of Y, U and V either. */
-static void of_luma(void **state)
+TEST(of_luma)
 {
     struct picture p = wavy();
     struct refocus_disparity map;
@@ -191,7 +187,6 @@ static void of_luma(void **state)
     struct refocus_renderer *renderer;
     uint8_t *rgb = malloc(3 * WIDTH * HEIGHT);
 
-    (void)state;
     assert_non_null(rgb);
     to_8_bits(&p);
     map = picture_disparity(&p);
@@ -216,14 +211,4 @@ static void of_luma(void **state)
     yuv_free(&in);
     yuv_free(&out);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(of_16_bits), cmocka_unit_test(of_8_bits),
-                                       cmocka_unit_test(of_8_bits_and_small),
-                                       cmocka_unit_test(of_steep_surfaces),
-                                       cmocka_unit_test(of_luma)};
-
-    return cmocka_run_group_tests_name("leaks", tests, NULL, NULL);
 }

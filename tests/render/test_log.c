@@ -69,9 +69,8 @@ static void release_nothing(void *user, void *memory)
         assert_null(renderer);                                                                     \
     } while (0)
 
-static void ranges_of_limits(void **state)
+TEST(ranges_of_limits)
 {
-    (void)state;
     CREATE(max_width, 0, "max_width is 0, may be 1 to 65535");
     CREATE(max_width, 65536, "max_width is 65536, may be 1 to 65535");
     CREATE(max_height, -3, "max_height is -3, may be 1 to 65535");
@@ -86,11 +85,10 @@ static void ranges_of_limits(void **state)
     CREATE(thin, 9, "thin is 9, may be 0 to 1");
 }
 
-static void limits_that_do_not_go_together(void **state)
+TEST(limits_that_do_not_go_together)
 {
     const struct refocus_papers other = {.version = "0.0.1", .frame_size = 1};
 
-    (void)state;
     CREATE(papers, &other, "papers is of another build than librefocus " REFOCUS_VERSION_STRING);
     CREATE(methods, REFOCUS_METHOD_BIT(REFOCUS_METHOD_LIGHTFIELD),
            "methods has lightfield, which needs papers");
@@ -105,14 +103,13 @@ static void limits_that_do_not_go_together(void **state)
 }
 
 /* Creation that is refused for what the machine has, not for its arguments. */
-static void limits_of_the_machine(void **state)
+TEST(limits_of_the_machine)
 {
     struct refocus_renderer_params limits = limits_of(W, H);
     const unsigned long long size = refocus_renderer_memory(&limits);
     struct refocus_renderer *renderer;
     char line[128];
 
-    (void)state;
     limits.max_memory = 1000;
     snprintf(line, sizeof line, "refocus_renderer_create: %llu bytes are needed, may be up to 1000",
              size);
@@ -136,13 +133,12 @@ static void limits_of_the_machine(void **state)
 }
 
 /* A struct that ends after its log, but before the end of the first layout there was. */
-static void size_of_limits(void **state)
+TEST(size_of_limits)
 {
     struct refocus_renderer_params limits = limits_of(W, H);
     struct refocus_renderer *renderer;
     char line[128];
 
-    (void)state;
     limits.struct_size = REFOCUS_SIZE_TO(struct refocus_renderer_params, log);
     snprintf(line, sizeof line,
              "refocus_renderer_create: the struct_size of params is %u, may be %zu to %d",
@@ -152,12 +148,11 @@ static void size_of_limits(void **state)
 }
 
 /* A struct that ends before its log has none, and a log without a function says nothing. */
-static void silence(void **state)
+TEST(silence)
 {
     struct refocus_renderer_params limits = limits_of(0, H);
     struct refocus_renderer *renderer;
 
-    (void)state;
     lines = 0;
     limits.struct_size = offsetof(struct refocus_renderer_params, log);
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_ERR_ARGUMENT);
@@ -169,7 +164,7 @@ static void silence(void **state)
     assert_int_equal(lines, 0);
 }
 
-static void views(void **state)
+TEST(views)
 {
     struct picture p = picture_make(W, H, 1);
     const struct refocus_image photo = picture_image(&p);
@@ -178,7 +173,6 @@ static void views(void **state)
     struct refocus_renderer *renderer = renderer_of(&limits);
     uint16_t out[W * H + 1], *const odd = (uint16_t *)(void *)((uint8_t *)out + 1);
 
-    (void)state;
 #define VIEW(view, to, stride, status, line)                                                       \
     SAYS(refocus_get_view(renderer, view, to, stride), status, "refocus_get_view: " line)
     VIEW(REFOCUS_VIEW_DISPARITY, out, 2 * W, REFOCUS_ERR_STATE, "nothing is prepared yet");
@@ -211,7 +205,7 @@ static void views(void **state)
         SAYS(refocus_prepare(renderer, &photo, &map), status, "refocus_prepare: " line);           \
     } while (0)
 
-static void pictures_in(void **state)
+TEST(pictures_in)
 {
     struct picture p = picture_make(W, H, 1);
     const struct refocus_image good = picture_image(&p);
@@ -219,7 +213,6 @@ static void pictures_in(void **state)
     struct refocus_renderer_params limits = limits_of(W, H);
     struct refocus_renderer *renderer = renderer_of(&limits);
 
-    (void)state;
     SAYS(refocus_prepare(renderer, NULL, &good_map), REFOCUS_ERR_ARGUMENT,
          "refocus_prepare: photo is NULL");
     SAYS(refocus_prepare(renderer, &good, NULL), REFOCUS_ERR_ARGUMENT,
@@ -268,7 +261,7 @@ static void pictures_in(void **state)
              "refocus_render: " line);                                                             \
     } while (0)
 
-static void settings(void **state)
+TEST(settings)
 {
     struct picture p = picture_make(W, H, 1);
     const struct refocus_image photo = picture_image(&p);
@@ -279,7 +272,6 @@ static void settings(void **state)
     static uint8_t pixels[3 * W * H];
     struct refocus_image out = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, W, H, 3 * W);
 
-    (void)state;
     SAYS(refocus_render_settings(renderer, &good, &out), REFOCUS_ERR_STATE,
          "refocus_render: nothing is prepared yet");
     assert_int_equal(refocus_prepare(renderer, &photo, &disparity), REFOCUS_OK);
@@ -314,17 +306,4 @@ static void settings(void **state)
          "refocus_render: out->format is 8, may be one of R, G and B");
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(ranges_of_limits),
-                                       cmocka_unit_test(size_of_limits),
-                                       cmocka_unit_test(limits_that_do_not_go_together),
-                                       cmocka_unit_test(limits_of_the_machine),
-                                       cmocka_unit_test(silence),
-                                       cmocka_unit_test(views),
-                                       cmocka_unit_test(pictures_in),
-                                       cmocka_unit_test(settings)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -204,7 +204,7 @@ static uint8_t out[3 * PIXELS], expected[3 * PIXELS];
 
 /* Figures of one focus: what the matte gains of PSNR in the band, and what it reaches, by its
  * photo's map and by a soft one. */
-static void true_layers(void **state)
+TEST(true_layers)
 {
     static const struct {
         float focus;
@@ -219,7 +219,6 @@ static void true_layers(void **state)
     static uint16_t soft[PIXELS];
     const struct refocus_disparity matte = refocus_disparity8(layers.matte, WIDTH, HEIGHT, WIDTH);
 
-    (void)state;
     soften(&layers, soft);
     for (int i = 0; i < 6; i++)
         for (int pass = 0; pass < 2; pass++) {
@@ -255,14 +254,13 @@ static void draw_dark(uint16_t *disparity, uint8_t *matte)
 }
 
 /* A subject that the matte takes for half of the wall stays dark, in focus and out of it. */
-static void dark_subject(void **state)
+TEST(dark_subject)
 {
     static uint16_t disparity[PIXELS];
     static uint8_t matte[PIXELS];
     const struct refocus_disparity of_matte = refocus_disparity8(matte, WIDTH, HEIGHT, WIDTH);
     struct job job = job_of(&layers, &of_matte);
 
-    (void)state;
     draw_dark(disparity, matte);
     job.disparity = disparity;
     job.thin = 1;
@@ -278,7 +276,7 @@ static void dark_subject(void **state)
 
 /* Disparities of mixtures go over between those that are sure, from the nearest of which none
  * spreads: steps would show as lines. */
-static void no_steps(void **state)
+TEST(no_steps)
 {
     enum { NEARER = NEAR + 4000, MOST = 300 };
     static uint16_t disparity[PIXELS];
@@ -287,7 +285,6 @@ static void no_steps(void **state)
     struct job job = job_of(&layers, &of_matte);
     struct refocus_renderer *renderer = create(&job);
 
-    (void)state;
     draw_dark(disparity, matte);
     for (int y = 40; y < 45; y++)
         for (int x = 40; x < 45; x++)
@@ -307,13 +304,12 @@ static void no_steps(void **state)
 
 /* A matte without a silhouette, or one with nothing between 0 and 1 where the map has it, changes
  * nothing. */
-static void no_change(void **state)
+TEST(no_change)
 {
     static uint8_t plain[PIXELS], sharp[PIXELS];
     struct job job = job_of(&layers, NULL);
     struct refocus_disparity matte = refocus_disparity8(plain, WIDTH, HEIGHT, WIDTH);
 
-    (void)state;
     for (int thin = 0; thin < 2; thin++) {
         job.thin = thin;
         job.matte = NULL;
@@ -335,13 +331,12 @@ static void no_change(void **state)
 
 /* Neither the threads nor the instruction set, the depth of its samples nor their order in memory
  * make a difference. */
-static void same_everywhere(void **state)
+TEST(same_everywhere)
 {
     static uint16_t deep[HEIGHT][WIDTH + 3];
     struct refocus_disparity matte = refocus_disparity8(layers.matte, WIDTH, HEIGHT, WIDTH);
     struct job job = job_of(&layers, &matte);
 
-    (void)state;
     for (int i = 0; i < PIXELS; i++) /* bottom-up */
         deep[HEIGHT - 1 - i / WIDTH][i % WIDTH] = (uint16_t)(257 * layers.matte[i]);
     for (int focus = 0; focus < 2; focus++) {
@@ -360,14 +355,13 @@ static void same_everywhere(void **state)
 }
 
 /* Whatever was rendered before, with or without the matte, cancelled or not. */
-static void sequence(void **state)
+TEST(sequence)
 {
     struct refocus_disparity matte = refocus_disparity8(layers.matte, WIDTH, HEIGHT, WIDTH);
     struct job job = job_of(&layers, &matte);
     struct refocus_renderer *renderer = create(&job);
     uint32_t seed = 5;
 
-    (void)state;
     for (int i = 0; i < (left_out(1, 2) ? 10 : 40); i++) {
         const uint32_t what = noise(&seed) >> 8;
 
@@ -386,7 +380,7 @@ static void sequence(void **state)
 }
 
 /* A region is that part of the whole. */
-static void region(void **state)
+TEST(region)
 {
     const struct refocus_disparity matte = refocus_disparity8(layers.matte, WIDTH, HEIGHT, WIDTH);
     const struct job job = job_of(&layers, &matte);
@@ -395,7 +389,6 @@ static void region(void **state)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, expected, WIDTH, HEIGHT, 3 * WIDTH);
     struct refocus_renderer *renderer;
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         renderer = create(&job);
         assert_int_equal(prepare(renderer, &job), REFOCUS_OK);
@@ -416,13 +409,12 @@ static void region(void **state)
 }
 
 /* Photos and mattes of any size; more mixtures than there is room for. */
-static void sizes(void **state)
+TEST(sizes)
 {
     static const int side[][2] = {{1, 1}, {1, 70}, {70, 1}, {17, 33}, {WIDTH, HEIGHT}};
     static uint8_t random[PIXELS];
     uint32_t seed = 9;
 
-    (void)state;
     for (int i = 0; i < PIXELS; i++)
         random[i] = (uint8_t)(i % 16 ? noise(&seed) >> 24 : 255u * (i / 16 % 2));
     for (int i = 0; i < 25; i++) {
@@ -440,7 +432,7 @@ static void sizes(void **state)
     }
 }
 
-static void refused(void **state)
+TEST(refused)
 {
     struct refocus_disparity matte = refocus_disparity8(layers.matte, WIDTH, HEIGHT, WIDTH);
     const struct job job = job_of(&layers, &matte);
@@ -451,7 +443,6 @@ static void refused(void **state)
         refocus_disparity16(layers.disparity, WIDTH, HEIGHT, 2 * WIDTH);
     struct refocus_scene scene = refocus_scene_default(&photo, &map);
 
-    (void)state;
     scene.matte = &matte;
     assert_int_equal(prepare(renderer, &job), REFOCUS_OK);
     assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_ERR_UNSUPPORTED);
@@ -471,7 +462,7 @@ static void refused(void **state)
 }
 
 /* After a cancelled prepare nothing is prepared, and the next one is as good as the first. */
-static void cancelled(void **state)
+TEST(cancelled)
 {
     const struct refocus_disparity matte = refocus_disparity8(layers.matte, WIDTH, HEIGHT, WIDTH);
     const struct job job = job_of(&layers, &matte);
@@ -479,7 +470,6 @@ static void cancelled(void **state)
     struct canceller canceller = {renderer, 0, 0};
     int status = REFOCUS_ERR_CANCELLED, count = 0;
 
-    (void)state;
     assert_true(render_fresh(&job, expected));
     renderer->run.user = &canceller;
     while (status != REFOCUS_OK) {
@@ -503,14 +493,6 @@ static void cancelled(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(true_layers),     cmocka_unit_test(dark_subject),
-        cmocka_unit_test(no_steps),        cmocka_unit_test(no_change),
-        cmocka_unit_test(same_everywhere), cmocka_unit_test(sequence),
-        cmocka_unit_test(region),          cmocka_unit_test(sizes),
-        cmocka_unit_test(refused),         cmocka_unit_test(cancelled),
-    };
-
     draw(&layers);
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

@@ -73,11 +73,10 @@ static struct scene s;
 static uint8_t out[3 * PIXELS], expected[3 * PIXELS];
 
 /* Print behind the subject is blurred where the matte has a little of the subject, too. */
-static void print(void **state)
+TEST(print)
 {
     double sharp, blurred;
 
-    (void)state;
     draw(&s, is_print);
     render(&s, true, out);
     sharp = variation(s.rgb);
@@ -88,11 +87,10 @@ static void print(void **state)
 
 /* Strands of hair before a plain wall stay: the pattern is the subject's there. Little alpha cannot
  * hold all of them. */
-static void strands(void **state)
+TEST(strands)
 {
     double sharp, kept;
 
-    (void)state;
     draw(&s, is_strand);
     render(&s, true, out);
     sharp = variation(s.rgb);
@@ -102,11 +100,10 @@ static void strands(void **state)
 }
 
 /* A matte that has a little of a thing before the subject, as noise does, leaves it as it is. */
-static void in_front(void **state)
+TEST(in_front)
 {
     enum { LEFT = 95, RIGHT = 150, TOP = 30, BOTTOM = 70, INSIDE = 16 };
 
-    (void)state;
     draw(&s, is_print);
     for (int y = TOP; y < BOTTOM; y++)
         for (int x = LEFT; x < RIGHT; x++) {
@@ -122,15 +119,4 @@ static void in_front(void **state)
         assert_memory_equal(out + (ptrdiff_t)3 * (y * WIDTH + LEFT + INSIDE),
                             expected + (ptrdiff_t)3 * (y * WIDTH + LEFT + INSIDE),
                             3 * (RIGHT - LEFT - 2 * INSIDE));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(print),
-        cmocka_unit_test(strands),
-        cmocka_unit_test(in_front),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -88,14 +88,13 @@ static struct refocus_renderer_params counted(struct counter *counter, int width
     return params;
 }
 
-static void every_failure(void **state)
+TEST(every_failure)
 {
     struct counter counter;
     struct refocus_renderer_params params = counted(&counter, 100, 70, 12, 2);
     struct refocus_renderer *renderer;
     int calls;
 
-    (void)state;
     assert_int_equal(refocus_renderer_create(&renderer, &params), REFOCUS_OK);
     calls = counter.calls;
     assert_true(calls > 0);
@@ -129,14 +128,13 @@ static double stated(int width, int height, float blur, int threads)
            1048576.0;
 }
 
-static void formula(void **state)
+TEST(formula)
 {
     static const int sides[][2] = {{1, 1},     {1, 65535},   {65535, 1}, {16, 16},  {17, 33},
                                    {720, 540}, {1920, 1080}, {2, 40000}, {31, 5000}};
     static const float blurs[] = {0, 0.5f, 1, 20, 40.25f, 127, 128, 300, 944};
     static const int threads[] = {1, 2, 8, 64};
 
-    (void)state;
     for (int s = 0; s < 9; s++) {
         for (int k = 0; k < 9; k++) {
             for (int t = 0; t < 4; t++) {
@@ -174,7 +172,7 @@ static double stated_in_place(int width, int height, float blur, int threads)
 
 /* The figures that strip mode is for: of every blur, and of pictures smaller and larger than the
  * window of a block. */
-static void formula_of_modes(void **state)
+TEST(formula_of_modes)
 {
     static const int sides[][2] = {{1, 1},     {1, 65535},   {65535, 1},  {16, 16},   {17, 33},
                                    {720, 540}, {1920, 1080}, {2, 40000},  {31, 5000}, {263, 270},
@@ -182,7 +180,6 @@ static void formula_of_modes(void **state)
     enum { SIDES = sizeof sides / sizeof *sides };
     struct refocus_renderer_params params = refocus_renderer_params_default(1920, 1080, 40);
 
-    (void)state;
     params.threads = 1;
     params.in_place = 1;
     assert_true(refocus_renderer_memory(&params) < 6000000);
@@ -229,12 +226,11 @@ static double extra(uint32_t method, int width, int height, float blur, int thre
     }
 }
 
-static void formula_of_methods(void **state)
+TEST(formula_of_methods)
 {
     static const int sides[][2] = {{1, 1}, {1, 65535}, {65535, 1}, {17, 33}, {720, 540}};
     static const float blurs[] = {0, 1, 20, 127};
 
-    (void)state;
     for (uint32_t m = 0; m < REFOCUS_METHOD_COUNT; m++) {
         for (int i = 0; i < 5 * 4 * 2; i++) {
             const int w = sides[i % 5][0], h = sides[i % 5][1], threads = i < 20 ? 1 : 64;
@@ -255,12 +251,11 @@ static void formula_of_methods(void **state)
     }
 }
 
-static void says_what_it_takes(void **state)
+TEST(says_what_it_takes)
 {
     static const int sides[][2] = {{1, 1}, {1, 65535}, {65535, 1}, {17, 33}, {720, 540}};
     static const float blurs[] = {0, 7.5f, 127};
 
-    (void)state;
     for (int s = 0; s < 5; s++) {
         for (int k = 0; k < 3; k++) {
             struct counter counter;
@@ -291,14 +286,13 @@ static void says_what_it_takes(void **state)
 }
 
 /* The largest picture of all is refused or made, but its size does not overflow. */
-static void largest(void **state)
+TEST(largest)
 {
     struct counter counter;
     struct refocus_renderer_params params = counted(&counter, 65535, 65535, 127, 1);
     struct refocus_renderer *renderer;
     const uint64_t bytes = refocus_renderer_memory(&params);
 
-    (void)state;
     assert_true((double)bytes <= stated(65535, 65535, 127, 1));
     assert_true((double)bytes > 10.0 * 65535 * 65535);
     counter.fail_at = 0;
@@ -307,7 +301,7 @@ static void largest(void **state)
     assert_null(renderer);
 }
 
-static void nothing_while_rendering(void **state)
+TEST(nothing_while_rendering)
 {
     struct picture p = picture_make(120, 90, 9);
     const struct refocus_image photo = picture_image(&p);
@@ -320,7 +314,6 @@ static void nothing_while_rendering(void **state)
     uint8_t *out = malloc(3 * 120 * 90);
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 120, 90, 360);
 
-    (void)state;
     assert_non_null(out);
     limits.papers = refocus_papers();
     limits.methods = REFOCUS_METHODS_ALL;
@@ -355,14 +348,4 @@ static void nothing_while_rendering(void **state)
     assert_int_equal(counter.held, 0);
     free(out);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_failure),          cmocka_unit_test(formula),
-        cmocka_unit_test(formula_of_methods),     cmocka_unit_test(formula_of_modes),
-        cmocka_unit_test(says_what_it_takes),     cmocka_unit_test(largest),
-        cmocka_unit_test(nothing_while_rendering)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

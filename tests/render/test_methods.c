@@ -3,9 +3,8 @@
 
 enum { W = 20, H = 12 };
 
-static void names(void **state)
+TEST(names)
 {
-    (void)state;
     for (uint32_t i = 0; i < REFOCUS_METHOD_COUNT; i++) {
         assert_non_null(refocus_method_name(i));
         assert_non_null(refocus_method_summary(i));
@@ -39,7 +38,7 @@ static void render_rays(struct refocus_renderer *renderer, uint32_t method, int 
 }
 
 /* A method does what its traits say; test_focus.c looks at those of focus. */
-static void traits(void **state)
+TEST(traits)
 {
     struct picture p = picture_make(W, H, 3);
     const struct refocus_image photo = picture_image(&p);
@@ -52,7 +51,6 @@ static void traits(void **state)
     struct refocus_aperture *polygon;
     uint64_t least;
 
-    (void)state;
     limits.papers = refocus_papers();
     limits.threads = 1;
     least = refocus_renderer_memory(&limits);
@@ -82,10 +80,4 @@ static void traits(void **state)
     refocus_aperture_destroy(&polygon);
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(names), cmocka_unit_test(traits)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -113,9 +113,8 @@ static void check_disc(uint32_t method, float disparity, float focus, float blur
     check_area(&view, share, 3.14159265358979 * radius * radius, 2 * 3.14159265358979);
 }
 
-static void disc(void **state)
+TEST(disc)
 {
-    (void)state;
     for (uint32_t method = 0; method < REFOCUS_METHOD_RAYTRACE; method++) {
         check_disc(method, 0, 1, 20);          /* behind the plane in focus */
         check_disc(method, 1, 0, 20);          /* before it */
@@ -129,11 +128,10 @@ static void disc(void **state)
 }
 
 /* All the light of the point is there: shares add up to the whole aperture. */
-static void energy(void **state)
+TEST(energy)
 {
     static double share[SIDE][SIDE];
 
-    (void)state;
     for (uint32_t method = 0; method < REFOCUS_METHOD_RAYTRACE; method++) {
         double sum = 0;
 
@@ -151,13 +149,12 @@ static int lit_at(double share[SIDE][SIDE], double x, double y)
 }
 
 /* A triangle, one corner up: drawn so behind the plane in focus, turned before it. */
-static void polygon(void **state)
+TEST(polygon)
 {
     static double share[SIDE][SIDE];
     const double r = 20, area = 3 * sqrt(3) / 4 * r * r;
     struct refocus_aperture *aperture;
 
-    (void)state;
     assert_int_equal(refocus_aperture_create_polygon(&aperture, 3, 90), 0);
     for (uint32_t method = 0; method <= REFOCUS_METHOD_BLUR; method++) {
         if (method == REFOCUS_METHOD_JITTERED)
@@ -180,7 +177,7 @@ static void polygon(void **state)
 }
 
 /* A mask with nothing symmetric about it. */
-static void mask(void **state)
+TEST(mask)
 {
     static const uint8_t letter[5][5] = {{255, 0, 0, 0, 0},
                                          {255, 0, 0, 0, 0},
@@ -191,7 +188,6 @@ static void mask(void **state)
     const double cell = 2 * 25.0 / 5;
     struct refocus_aperture *aperture;
 
-    (void)state;
     assert_int_equal(refocus_aperture_create_mask(&aperture, letter[4], 5, 5, -5), 0);
     refocus_aperture_destroy(&aperture);
     assert_int_equal(refocus_aperture_create_mask(&aperture, letter[0], 5, 5, 5), 0);
@@ -216,13 +212,12 @@ static void mask(void **state)
 }
 
 /* The rays of a set lie as the shape does: centre of gravity, second moments, coverage. */
-static void ray_sets(void **state)
+TEST(ray_sets)
 {
     static struct refocus_ray rays[REFOCUS_MAX_RAYS];
     static const int counts[] = {24, 32, 48, 64, 96, 128, 1024};
     struct refocus_aperture *aperture;
 
-    (void)state;
     assert_int_equal(refocus_aperture_create_disc(&aperture), 0);
     for (int i = 0; i < 7; i++) {
         const int n = counts[i];
@@ -249,11 +244,10 @@ static void ray_sets(void **state)
 
 /* Every number of rays: the same each time, inside the unit circle, no two alike, and in each
  * of eight wedges and of eight rings of equal area as many as its share, give or take a few. */
-static void every_ray_set(void **state)
+TEST(every_ray_set)
 {
     static struct refocus_ray rays[REFOCUS_MAX_RAYS], again[REFOCUS_MAX_RAYS];
 
-    (void)state;
     for (int n = 1; n <= REFOCUS_MAX_RAYS; n++) {
         const double share = n / 8.0, most = 3;
         int wedge[8] = {0}, ring[8] = {0};
@@ -282,12 +276,11 @@ static void every_ray_set(void **state)
 }
 
 /* Sum of the weights of the full set: the area of the shape, antialiased. */
-static void full_ray_area(void **state)
+TEST(full_ray_area)
 {
     static struct refocus_ray rays[REFOCUS_MAX_APERTURE_SIDE * REFOCUS_MAX_APERTURE_SIDE];
     const int room = sizeof rays / sizeof rays[0];
 
-    (void)state;
     for (int blades = 0; blades < 9; blades += blades ? 2 : 3) {
         const double pi = 3.14159265358979;
         const double unit = blades ? blades * sin(2 * pi / blades) / 2 : pi;
@@ -316,13 +309,4 @@ static void full_ray_area(void **state)
         }
         refocus_aperture_destroy(&aperture);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(disc),         cmocka_unit_test(energy),   cmocka_unit_test(polygon),
-        cmocka_unit_test(mask),         cmocka_unit_test(ray_sets), cmocka_unit_test(every_ray_set),
-        cmocka_unit_test(full_ray_area)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

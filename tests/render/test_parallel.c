@@ -69,7 +69,7 @@ static void threaded(void *user, void (*work)(void *context, int32_t item), void
     ((struct caller *)user)->inside--;
 }
 
-static void same_bytes(void **state)
+TEST(same_bytes)
 {
     static const struct {
         const char *name;
@@ -89,7 +89,6 @@ static void same_bytes(void **state)
     uint8_t *expected = malloc(size * (size_t)style_count), *out = malloc(size);
     struct refocus_renderer *renderer = prepared(&p, 8, 1);
 
-    (void)state;
     assert_true(expected && out);
     assert_int_equal(refocus_prepare(renderer, &photo, &coarse), REFOCUS_OK);
     for (int i = 0; i < style_count; i++)
@@ -146,7 +145,7 @@ static void cancelling(void *user, void (*work)(void *context, int32_t item), vo
         work(context, i);
 }
 
-static void cancel_within(void **state)
+TEST(cancel_within)
 {
     struct picture p = picture_make(WIDTH, HEIGHT, 12);
     const struct refocus_image photo = picture_image(&p);
@@ -159,7 +158,6 @@ static void cancel_within(void **state)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, WIDTH, HEIGHT, 3 * WIDTH);
     int cancelled = 0, status = REFOCUS_ERR_CANCELLED;
 
-    (void)state;
     assert_true(expected && out);
     limits.threads = 2;
     limits.parallel.parallel_for = cancelling;
@@ -229,7 +227,7 @@ static void intruding(void *user, void (*work)(void *context, int32_t item), voi
     in->refused++;
 }
 
-static void second_call(void **state)
+TEST(second_call)
 {
     struct picture p = picture_make(WIDTH, HEIGHT, 13);
     struct intruder in = {NULL, picture_image(&p), picture_disparity(&p), 0};
@@ -238,7 +236,6 @@ static void second_call(void **state)
     static uint8_t expected[3 * WIDTH * HEIGHT], out[3 * WIDTH * HEIGHT];
     static uint16_t view[WIDTH * HEIGHT];
 
-    (void)state;
     render_style(alone, &p, &styles[0], 0.4f, 8, expected);
     limits.threads = 2;
     limits.parallel.parallel_for = intruding;
@@ -253,12 +250,4 @@ static void second_call(void **state)
     refocus_renderer_destroy(&in.renderer);
     refocus_renderer_destroy(&alone);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes),
-                                       cmocka_unit_test(cancel_within),
-                                       cmocka_unit_test(second_call)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

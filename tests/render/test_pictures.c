@@ -83,14 +83,13 @@ static void check_copy(const struct copy *copy, int format, int slack, const uin
     assert_int_equal(copy->memory[0], 0xee);
 }
 
-static void every_format(void **state)
+TEST(every_format)
 {
     struct picture p = picture_make(53, 37, 12);
     const struct refocus_disparity disparity = picture_disparity(&p);
     struct refocus_renderer *renderer = prepared(&p, 7, 2);
     uint8_t *expected = malloc(3 * 53 * 37);
 
-    (void)state;
     assert_non_null(expected);
     for (int s = 0; s < style_count; s += 5) {
         struct refocus_settings params = style_params(&styles[s], 0.2f, 7);
@@ -122,7 +121,7 @@ static void every_format(void **state)
 }
 
 /* Depth upside down in memory, with slack, and as 8 bits. */
-static void disparity_layouts(void **state)
+TEST(disparity_layouts)
 {
     enum { W = 45, H = 29, STRIDE = W + 3 };
     struct picture p = picture_make(W, H, 4);
@@ -132,7 +131,6 @@ static void disparity_layouts(void **state)
     struct refocus_renderer *renderer;
     struct refocus_disparity map;
 
-    (void)state;
     for (int y = 0; y < H; y++) {
         for (int x = 0; x < W; x++) {
             const int v = p.disparity[y * W + x] / 257;
@@ -157,7 +155,7 @@ static void disparity_layouts(void **state)
 }
 
 /* A region is that part of the whole, to the bit. */
-static void regions(void **state)
+TEST(regions)
 {
     static const int region[][4] = {{0, 0, 1, 1},   {76, 49, 1, 1}, {16, 16, 16, 16},
                                     {5, 9, 40, 17}, {0, 0, 77, 50}, {30, 0, 47, 50},
@@ -167,7 +165,6 @@ static void regions(void **state)
     struct refocus_renderer *renderer = prepared(&p, 8, 2), *fresh = prepared(&p, 8, 2);
     static uint8_t whole[3 * W * H], part[3 * W * H], crop[3 * W * H];
 
-    (void)state;
     for (int s = 0; s < style_count; s++) {
         struct refocus_settings params = style_params(&styles[s], 0.6f, 8);
         struct refocus_aperture *aperture = style_aperture(&styles[s]);
@@ -196,14 +193,13 @@ static void regions(void **state)
 }
 
 /* Odd sizes render, and a larger renderer gives the same bytes as one of that size. */
-static void sizes(void **state)
+TEST(sizes)
 {
     static const int size[][2] = {{1, 1},   {1, 2},   {2, 1},   {1, 100}, {100, 1}, {15, 15},
                                   {16, 16}, {17, 17}, {31, 16}, {16, 33}, {48, 7}};
     struct refocus_renderer_params limits = refocus_renderer_params_default(130, 110, 20);
     struct refocus_renderer *large;
 
-    (void)state;
     limits.threads = 2;
     limits.papers = refocus_papers();
     limits.methods = REFOCUS_METHODS_ALL;
@@ -230,9 +226,8 @@ static void sizes(void **state)
 }
 
 /* The longest rows and columns, with the largest blur. */
-static void longest(void **state)
+TEST(longest)
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct picture p = picture_make(i ? 1 : 65535, i ? 65535 : 1, 6);
         struct refocus_renderer *renderer = prepared(&p, 127, 2);
@@ -250,7 +245,7 @@ static void longest(void **state)
 }
 
 /* Depth of other sizes than the photo: one sample, coarser, finer. */
-static void other_depth_sizes(void **state)
+TEST(other_depth_sizes)
 {
     static const int size[][2] = {{1, 1}, {1, 9}, {12, 9}, {24, 18}, {97, 150}, {333, 1}};
     struct picture p = picture_make(48, 36, 2);
@@ -259,7 +254,6 @@ static void other_depth_sizes(void **state)
     uint8_t out[3 * 48 * 36];
     uint16_t view[48 * 36];
 
-    (void)state;
     for (int i = 0; i < 6; i++) {
         struct picture depth = picture_flat(size[i][0], size[i][1], (uint8_t[3]){0}, 30000);
         struct refocus_disparity map = picture_disparity(&depth);
@@ -289,13 +283,4 @@ static void other_depth_sizes(void **state)
     }
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_format), cmocka_unit_test(disparity_layouts),
-        cmocka_unit_test(regions),      cmocka_unit_test(sizes),
-        cmocka_unit_test(longest),      cmocka_unit_test(other_depth_sizes)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

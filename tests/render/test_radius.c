@@ -31,13 +31,12 @@ static struct refocus_renderer_params limits_of(const struct picture *p, float b
 }
 
 /* Strips, another number of threads, and other instruction sets change nothing. */
-static void same_bytes(void **state)
+TEST(same_bytes)
 {
     const size_t size = 3 * WIDTH * HEIGHT;
     struct picture p = picture_make(WIDTH, HEIGHT, 7);
     uint8_t *expected = malloc(size), *out = malloc(size);
 
-    (void)state;
     assert_true(expected && out);
     for (int i = 0; i < 2 * LENSES; i++) {
         const struct refocus_settings s = settings_of(i / 2, i % 2);
@@ -61,7 +60,7 @@ static void same_bytes(void **state)
     picture_free(&p);
 }
 
-static void regions(void **state)
+TEST(regions)
 {
     static const int part[][4] = {{0, 0, 40, 30}, {301, 77, 90, 50}, {560, 300, 60, 30}};
     struct picture p = picture_make(1300, 1100, 9);
@@ -69,7 +68,6 @@ static void regions(void **state)
     const struct refocus_disparity map = picture_disparity(&p);
     uint8_t *whole = malloc(3 * (size_t)p.width * (size_t)p.height), out[3 * 90 * 50];
 
-    (void)state;
     assert_non_null(whole);
     for (int lens = 0; lens < (left_out(1, 2) ? 1 : 2); lens++) {
         struct refocus_settings s = settings_of(lens, false);
@@ -100,12 +98,11 @@ static void regions(void **state)
 }
 
 /* Photos of Y, U and V, by vectors and by plain C. */
-static void yuv(void **state)
+TEST(yuv)
 {
     struct picture p = picture_make(402, 250, 11);
     const struct refocus_disparity map = picture_disparity(&p);
 
-    (void)state;
     for (int i = 0; i < 4; i++) {
         struct yuv_picture photo = yuv_make(yuv_formats[i], p.width, p.height, 3);
         struct yuv_picture out[2];
@@ -165,11 +162,10 @@ static void disc_of(float K, int wide, int *least, int *most)
 }
 
 /* A disc has no ripple of more than 2 codes, and the light of the lamp over its area. */
-static void discs(void **state)
+TEST(discs)
 {
     static const float blurs[] = {127, 200, 300, 470};
 
-    (void)state;
     for (int i = 0; i < 4; i++)
         for (int wide = 4; wide <= 12 && !left_out(i, 3); wide += 4) {
             const double lamp = 16 * wide * wide;
@@ -238,12 +234,11 @@ static double soft_disc_of(float K, const struct lamp *lamp, int *least, int *mo
 }
 
 /* Nor has that of a round lamp with a rim, anywhere in it. */
-static void soft_discs(void **state)
+TEST(soft_discs)
 {
     static const float blurs[] = {60, 100, 127, 200, 300, 470};
     static const struct lamp lamps[] = {{4, 1}, {9, 1}, {9, 4}, {40, 1}, {40, 4}};
 
-    (void)state;
     for (int i = 0; i < 6; i++)
         for (int j = 0; j < 5 && !left_out(5 * i + j, 4); j++) {
             const double area = 3.14159265358979 * (double)blurs[i] * (double)blurs[i];
@@ -261,7 +256,7 @@ static void soft_discs(void **state)
 
 /* Other methods than the sweep go up to 127 pixels, also in a renderer for more; a full mask of the
  * sweep has no more rays for more. */
-static void methods(void **state)
+TEST(methods)
 {
     struct picture p = picture_make(90, 70, 3);
     const struct refocus_image photo = picture_image(&p);
@@ -271,7 +266,6 @@ static void methods(void **state)
     const struct refocus_image to = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 90, 70, 270);
     struct refocus_renderer *r;
 
-    (void)state;
     limits.papers = refocus_papers();
     limits.methods = REFOCUS_METHODS_ALL;
     assert_int_equal(refocus_renderer_create(&r, &limits), REFOCUS_OK);
@@ -299,12 +293,4 @@ static void methods(void **state)
     limits.max_blur_radius = REFOCUS_MAX_BLUR_RADIUS + 1;
     assert_int_equal(refocus_renderer_create(&r, &limits), REFOCUS_ERR_ARGUMENT);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes), cmocka_unit_test(regions),
-                                       cmocka_unit_test(yuv),        cmocka_unit_test(discs),
-                                       cmocka_unit_test(soft_discs), cmocka_unit_test(methods)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,14 +55,13 @@ static void render_by(const struct refocus_renderer_params *limits,
 }
 
 /* Renderers for larger photos, for larger blurs, and for photos with light above white. */
-static void larger_ones(void **state)
+TEST(larger_ones)
 {
     static uint8_t rgb[3 * W * H];
     static uint16_t disparity[W * H];
     static const float blurs[] = {9, 127};
     const struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, W, H, 3 * W);
 
-    (void)state;
     draw(rgb, disparity);
     for (int i = 0; i < 8; i++) {
         const float blur = blurs[i & 1];
@@ -106,7 +105,7 @@ static struct refocus_image bright_photo(float most, uint16_t *disparity)
 }
 
 /* Photos of 16 bits, one after the other, whose edges of depth are placed. */
-static void one_after_the_other(void **state)
+TEST(one_after_the_other)
 {
     enum { WIDTH = 480, HEIGHT = 360 };
     static uint16_t code[3 * WIDTH * HEIGHT], disparity[WIDTH * HEIGHT];
@@ -121,7 +120,6 @@ static void one_after_the_other(void **state)
     const struct refocus_settings settings = refocus_settings_default(0.9f, 4);
     struct refocus_renderer *renderer;
 
-    (void)state;
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
         const int x = i % WIDTH, y = i / WIDTH;
 
@@ -144,7 +142,7 @@ static void one_after_the_other(void **state)
 }
 
 /* Background that is continued as texture, of a photo with much light above white. */
-static void whatever_memory_held(void **state)
+TEST(whatever_memory_held)
 {
     static const int held[] = {0, 0x55, 0xff};
     static uint16_t disparity[W * H];
@@ -152,7 +150,6 @@ static void whatever_memory_held(void **state)
     struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, K);
     struct refocus_settings settings = refocus_settings_default(0.2f, K);
 
-    (void)state;
     for (int i = 0; i < W * H; i++)
         disparity[i] = (uint16_t)((i % W / 6 + i / W / 4) % 3 * 21000);
     limits.deep = limits.textured = 1;
@@ -183,7 +180,7 @@ static void loop(void *user, void (*work)(void *context, int32_t item), void *co
 }
 
 /* A render that was cancelled leaves nothing behind that the next one takes for its own. */
-static void after_a_cancelled_one(void **state)
+TEST(after_a_cancelled_one)
 {
     static uint16_t disparity[W * H];
     const struct refocus_image photo = bright_photo(6, disparity);
@@ -194,7 +191,6 @@ static void after_a_cancelled_one(void **state)
     struct refocus_settings settings = refocus_settings_default(0.8f, K);
     int status = REFOCUS_ERR_CANCELLED, count = 0;
 
-    (void)state;
     limits.deep = 1;
     limits.threads = 2;
     limits.parallel = (struct refocus_parallel){loop, &canceller};
@@ -220,16 +216,4 @@ static void after_a_cancelled_one(void **state)
     }
     assert_true(count > 10);
     refocus_renderer_destroy(&canceller.renderer);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(larger_ones),
-        cmocka_unit_test(one_after_the_other),
-        cmocka_unit_test(whatever_memory_held),
-        cmocka_unit_test(after_a_cancelled_one),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,11 +1,8 @@
 /* test_scene.c: what refocus_prepare_scene() makes of a scene beyond a photo and its map. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/refocus.h>
 
 enum { WIDTH = 150, HEIGHT = 110, BLUR = 9 };
@@ -72,7 +69,7 @@ static void take_view(struct refocus_renderer *renderer, uint16_t *view)
 }
 
 /* The disparities of refocus_depth_edges(), by any renderer, and its report. */
-static void same_as_alone(void **state)
+TEST(same_as_alone)
 {
     static const uint32_t formats[] = {REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_BGRA8,
                                        REFOCUS_FORMAT_NV12, REFOCUS_FORMAT_I420,
@@ -81,7 +78,6 @@ static void same_as_alone(void **state)
     static uint16_t alone[WIDTH * HEIGHT], view[WIDTH * HEIGHT], plain[WIDTH * HEIGHT];
     const struct refocus_depth_edges_params params = refocus_depth_edges_params_default();
 
-    (void)state;
     for (size_t f = 0; f < sizeof formats / sizeof *formats; f++)
         for (size_t s = 0; s < 3; s++)
             for (int soft = 1; soft <= 5; soft += 4) {
@@ -116,7 +112,7 @@ static void same_as_alone(void **state)
 }
 
 /* A renderer is made for it. */
-static void memory_for_edges(void **state)
+TEST(memory_for_edges)
 {
     static const int sides[][2] = {{1, 1},   {1, 65535}, {65535, 1},
                                    {17, 33}, {720, 540}, {4000, 3000}};
@@ -124,7 +120,6 @@ static void memory_for_edges(void **state)
     struct refocus_renderer *renderer = make(0, 1);
     struct refocus_scene scene = refocus_scene_default(&drawing.photo, &drawing.disparity);
 
-    (void)state;
     draw(REFOCUS_FORMAT_RGB8, WIDTH, HEIGHT, 0, 1);
     scene.depth_edges = REFOCUS_DEPTH_EDGES_AUTO;
     assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_ERR_ARGUMENT);
@@ -176,14 +171,13 @@ static void prepare_and_render(struct refocus_renderer *renderer, uint32_t edges
 }
 
 /* Strip mode, here of several blocks, has the same bytes, frame after frame. */
-static void same_in_strips(void **state)
+TEST(same_in_strips)
 {
     static const uint32_t formats[] = {REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_BGRA8};
     static uint16_t view[2][WIDTH * HEIGHT];
     static uint8_t picture[2][3 * WIDTH * HEIGHT];
     int placed = 0;
 
-    (void)state;
     for (uint32_t edges = REFOCUS_DEPTH_EDGES_AUTO; edges <= REFOCUS_DEPTH_EDGES_STEADY; edges++) {
         struct refocus_renderer *whole = make_mode(edges, 1, 0), *strips = make_mode(edges, 3, 1);
 
@@ -232,7 +226,7 @@ static void spoil(uint8_t *confidence, int columns, int rows)
         }
 }
 
-static void guesses_count_least(void **state)
+TEST(guesses_count_least)
 {
     static uint8_t confidence[WIDTH * HEIGHT];
     static uint16_t alone[WIDTH * HEIGHT], placed[WIDTH * HEIGHT], without[WIDTH * HEIGHT];
@@ -242,7 +236,6 @@ static void guesses_count_least(void **state)
     const int middle = HEIGHT / 2 * WIDTH + WIDTH / 2;
     const uint16_t *view;
 
-    (void)state;
     for (int columns = 50; columns <= WIDTH; columns += 25) {
         const int rows = columns * HEIGHT / WIDTH;
 
@@ -327,12 +320,11 @@ static int count_other(const uint16_t *a, const uint16_t *b)
 
 /* Noise of the photo turns no decision while the map stays, and what moves is as if it were alone.
  */
-static void video_is_steady(void **state)
+TEST(video_is_steady)
 {
     static const uint32_t formats[] = {REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_NV12};
     static uint16_t first[WIDTH * HEIGHT], steady[WIDTH * HEIGHT], alone[WIDTH * HEIGHT];
 
-    (void)state;
     for (int run = 0; run < 4; run++) {
         const uint32_t format = formats[run % 2];
         const int columns = run < 2 ? WIDTH : WIDTH / 2;
@@ -370,12 +362,11 @@ static void video_is_steady(void **state)
 /* The edge of a sharp map that lies 4 pixels beside the photo leaves nothing behind where it moves,
  * although the map itself stays there, be it that every other frame has the map of the one before.
  * Where the edge moves along itself up to 21 pixels stay; 1904 did when all were kept. */
-static void video_moves(void **state)
+TEST(video_moves)
 {
     static uint16_t steady[WIDTH * HEIGHT], alone[WIDTH * HEIGHT];
     struct refocus_renderer *renderer = make(2, 2), *other = make(1, 1);
 
-    (void)state;
     for (int at = 0; at <= 12; at++) {
         draw(REFOCUS_FORMAT_RGB8, WIDTH, HEIGHT, at >= 6 && at % 2 ? 3 : 4, 1);
         move_on(REFOCUS_FORMAT_RGB8, at, 3);
@@ -389,7 +380,7 @@ static void video_moves(void **state)
 }
 
 /* Pictures of all sizes through one renderer: nothing stays of the one before. */
-static void one_after_the_other(void **state)
+TEST(one_after_the_other)
 {
     static uint8_t first[3 * WIDTH * HEIGHT], again[3 * WIDTH * HEIGHT];
     const struct refocus_image out =
@@ -398,7 +389,6 @@ static void one_after_the_other(void **state)
     struct refocus_renderer *renderer = make(1, 2);
     struct refocus_scene scene = refocus_scene_default(&drawing.photo, &drawing.disparity);
 
-    (void)state;
     for (int turn = 0; turn < 2; turn++) {
         draw(REFOCUS_FORMAT_RGB8, 60, 44, 2, 4);
         scene.depth_edges = REFOCUS_DEPTH_EDGES_AUTO;
@@ -413,15 +403,4 @@ static void one_after_the_other(void **state)
         assert_int_equal(refocus_render(renderer, &lens, &out), REFOCUS_OK);
     }
     refocus_renderer_destroy(&renderer);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_as_alone),      cmocka_unit_test(memory_for_edges),
-        cmocka_unit_test(same_in_strips),     cmocka_unit_test(guesses_count_least),
-        cmocka_unit_test(video_is_steady),    cmocka_unit_test(video_moves),
-        cmocka_unit_test(one_after_the_other)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -165,9 +165,8 @@ static void sequence(uint32_t seed, int steps, enum mode mode)
         picture_free(&p[i]);
 }
 
-static void sequences(void **state)
+TEST(sequences)
 {
-    (void)state;
     for (uint32_t seed = 1; seed <= (left_out(1, 2) ? 3 : 6); seed++)
         sequence(seed, left_out(1, 2) ? 14 : 40, seed % 3);
 }
@@ -256,9 +255,8 @@ static void regions_of(struct picture p)
     picture_free(&p);
 }
 
-static void regions(void **state)
+TEST(regions)
 {
-    (void)state;
     regions_of(picture_make(WIDTH, HEIGHT, 9));
     regions_of(wide_bars());
 }
@@ -341,11 +339,10 @@ static void cancel_at_every_moment(struct refocus_settings params)
 }
 
 /* Highlights splatted; highlights gathered, grain and stars. */
-static void every_moment(void **state)
+TEST(every_moment)
 {
     struct refocus_settings params = refocus_settings_default(0.3f, 12);
 
-    (void)state;
     params.render.rays = 16;
     params.highlights.gain = 3;
     cancel_at_every_moment(params);
@@ -357,11 +354,4 @@ static void every_moment(void **state)
     params.look.star_length = 20;
     params.look.star_strength = 0.5f;
     cancel_at_every_moment(params);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(sequences), cmocka_unit_test(regions),
-                                       cmocka_unit_test(every_moment)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -109,11 +109,10 @@ static void expect_disc(const int green[W * H], double x, double y, int half, do
 
 /* A small highlight before or behind the focus is one even disc with a crisp edge, of few
  * rays and of many. */
-static void discs(void **state)
+TEST(discs)
 {
     static const uint16_t depths[] = {6554, 24000, 59000, 42000};
 
-    (void)state;
     for (int k = 0; k < 4; k++) {
         struct picture p = picture_flat(W, H, (uint8_t[3]){AROUND, AROUND, AROUND}, depths[k]);
         const double radius = fabs(30 * (0.5 - depths[k] / 65535.0));
@@ -141,12 +140,11 @@ static void discs(void **state)
 
 /* A highlight on a slanted wall is, too: a tile's slabs are wide where the wall is that much
  * out of focus, and what is about as near as the highlight does not hide it. */
-static void slanted(void **state)
+TEST(slanted)
 {
     struct refocus_renderer *renderer;
     static int green[W * H];
 
-    (void)state;
     for (int k = -3; k <= 3; k++) {
         struct picture p = picture_flat(W, H, (uint8_t[3]){AROUND, AROUND, AROUND}, BEHIND);
         const int x = CX + 9 * k, y = CY + 4 * k;
@@ -212,14 +210,13 @@ static void expect_hidden(uint16_t post, const struct lens *lens)
     picture_free(&p);
 }
 
-static void hidden(void **state)
+TEST(hidden)
 {
     static const uint16_t posts[] = {32768, 20000, 60000};
     static const struct lens lenses[] = {{0, 0, 0, 0},    {5, 0, 0, 0},    {HEART, 0, 0, 0},
                                          {STAR, 0, 0, 0}, {MASK, 0, 0, 0}, {BUBBLE, 0, 0.15f, 0},
                                          {0, 0.5f, 0, 0}, {5, 0.5f, 0, 0}, {0, 0, -0.3f, 0}};
 
-    (void)state;
     for (int k = 0; k < 3; k++)
         for (size_t i = 0; i < sizeof lenses / sizeof lenses[0]; i++)
             if (i < 4 || i % 3 == (size_t)k)
@@ -227,11 +224,10 @@ static void hidden(void **state)
 }
 
 /* A highlight that is out of focus by 100 pixels is cut off by what is most of the way to it. */
-static void hidden_from_afar(void **state)
+TEST(hidden_from_afar)
 {
     static const uint16_t edges[] = {19661, 6554, 45875}; /* out of focus by 70, 90, 30 pixels */
 
-    (void)state;
     for (int k = 0; k < 3; k++) {
         struct picture p = picture_flat(W, H, (uint8_t[3]){10, 10, 10}, 0);
         struct refocus_aperture *gathered = make_aperture(0, true);
@@ -293,13 +289,12 @@ static void gained(struct refocus_renderer *renderer, int shape, bool gathered, 
 }
 
 /* About as much whichever way highlights go. */
-static void ways(void **state)
+TEST(ways)
 {
     const struct thing highlight = {ELLIPSE, 6, 5, {12, 6, 1.5}};
     struct picture p = picture_flat(W, H, (uint8_t[3]){0, 0, 0}, BEHIND);
     struct refocus_renderer *renderer;
 
-    (void)state;
     draw_thing(&p, &highlight, CX + 0.3, CY - 0.2);
     renderer = prepared(&p, 30, 2);
     for (int k = 0; k < 6; k++) {
@@ -316,15 +311,4 @@ static void ways(void **state)
     }
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(discs),  cmocka_unit_test(slanted),
-        cmocka_unit_test(hidden), cmocka_unit_test(hidden_from_afar),
-        cmocka_unit_test(ways),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

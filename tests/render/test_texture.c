@@ -80,13 +80,12 @@ static double off(const struct picture *bars, const struct picture *wall, const 
     return sum / count;
 }
 
-static void continued(void **state)
+TEST(continued)
 {
     static uint8_t out[MOST];
     struct picture bars = make(false), wall = make(true);
     struct refocus_renderer *renderer = create(&bars, REFOCUS_CPU_AUTO, 2, true);
 
-    (void)state;
     for (int thin = 0; thin < 2; thin++) {
         double smooth, textured;
 
@@ -103,13 +102,12 @@ static void continued(void **state)
 }
 
 /* All of it is the same bytes from every instruction set, by one thread and five. */
-static void same_everywhere(void **state)
+TEST(same_everywhere)
 {
     static uint8_t out[MOST], expected[MOST];
     struct picture p = make(false);
     bool first = true;
 
-    (void)state;
     for (uint32_t cpu = REFOCUS_CPU_COUNT; cpu-- > 0;) {
         struct refocus_renderer *renderer = create(&p, cpu, cpu == REFOCUS_CPU_AUTO ? 5 : 1, true);
 
@@ -126,7 +124,7 @@ static void same_everywhere(void **state)
 }
 
 /* Nothing is left of what was rendered before, cancelled or not; a region is that part. */
-static void sequence(void **state)
+TEST(sequence)
 {
     static uint8_t out[MOST], expected[MOST];
     static const float focus[] = {FAR / 65535.0f, 0.12f, 0.6f, 0.92f};
@@ -136,7 +134,6 @@ static void sequence(void **state)
     struct refocus_render_params params = refocus_render_params_default(focus[0], K);
     uint32_t seed = 4;
 
-    (void)state;
     for (int i = 0; i < (left_out(1, 2) ? 6 : 16); i++) {
         const float df = focus[noise(&seed) >> 8 & 3];
         const bool thin = noise(&seed) >> 8 & 1, textured = noise(&seed) >> 8 & 1;
@@ -163,13 +160,12 @@ static void sequence(void **state)
 }
 
 /* Other renderers, and pictures too small for any texture, take it as smooth. */
-static void as_smooth(void **state)
+TEST(as_smooth)
 {
     static uint8_t out[MOST], expected[MOST];
     struct picture p = make(false), flat = picture_flat(W, H, (uint8_t[3]){90, 80, 70}, FAR);
     struct refocus_renderer *renderer = create(&p, REFOCUS_CPU_AUTO, 1, false);
 
-    (void)state;
     assert_int_equal(render(renderer, 0.1f, true, true, out), REFOCUS_OK);
     assert_int_equal(render(renderer, 0.1f, true, false, expected), REFOCUS_OK);
     assert_same_pixels(out, expected, W, H, "no memory");
@@ -185,7 +181,7 @@ static void as_smooth(void **state)
 }
 
 /* A run that is cancelled anywhere leaves nothing behind. */
-static void cancelled(void **state)
+TEST(cancelled)
 {
     static uint8_t out[MOST], expected[MOST];
     struct picture p = make(false);
@@ -193,7 +189,6 @@ static void cancelled(void **state)
     struct canceller canceller = {renderer, 0, 0};
     int count = 0, status = REFOCUS_ERR_CANCELLED;
 
-    (void)state;
     assert_int_equal(render(renderer, 0.08f, true, true, expected), REFOCUS_OK);
     for (int after = 1; status == REFOCUS_ERR_CANCELLED; after += after / 4 + 1) {
         renderer->run.user = &canceller;
@@ -211,9 +206,8 @@ static void cancelled(void **state)
 }
 
 /* The text of render.h. */
-static void memory(void **state)
+TEST(memory)
 {
-    (void)state;
     for (int threads = 1; threads <= 64; threads *= 4) {
         struct refocus_renderer_params params = refocus_renderer_params_default(W, H, K);
         double bytes;
@@ -225,14 +219,4 @@ static void memory(void **state)
         if (bytes < 1 || bytes > 80000.0 * threads)
             fail_msg("%d threads: %.0f bytes", threads, bytes);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(continued), cmocka_unit_test(same_everywhere), cmocka_unit_test(sequence),
-        cmocka_unit_test(as_smooth), cmocka_unit_test(cancelled),       cmocka_unit_test(memory),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -76,7 +76,7 @@ static void render_fresh(const struct picture *p, bool memory, const struct sett
 
 /* A wire of width w before black is the chord of a disc: L w 2 sqrt(s^2 - t^2) / pi s^2
  * at t from its middle, from end to end. */
-static void wire(void **state)
+TEST(wire)
 {
     static uint8_t out[MOST];
     const double s = (double)K * (NEAR - FAR) / 65535, wide = 1, pi = 3.14159265358979;
@@ -84,7 +84,6 @@ static void wire(void **state)
     double sum = 0, moment = 0, worst = 0, worst_rays = 0;
     struct setting rays = plain;
 
-    (void)state;
     for (int y = 0; y < HEIGHT; y++) {
         for (int x = 169; x <= 169; x++) {
             memset(p.rgb + 3 * (y * WIDTH + x), 220, 3);
@@ -120,7 +119,7 @@ static void wire(void **state)
 }
 
 /* A hair in focus, a fifth of a pixel wide, before stripes. */
-static void strands(void **state)
+TEST(strands)
 {
     static uint8_t out[MOST], background[MOST];
     struct picture p = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){60, 70, 50}, FAR), far;
@@ -128,7 +127,6 @@ static void strands(void **state)
     double off[2] = {0, 0};
     int pixels = 0;
 
-    (void)state;
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         if (i % WIDTH % 7 < 3)
             memset(p.rgb + 3 * i, 230, 3);
@@ -210,20 +208,18 @@ static void check_matted(const char *what, double times)
     picture_free(&share);
 }
 
-static void matted(void **state)
+TEST(matted)
 {
-    (void)state;
     check_matted("wires", 1);
     check_matted("beams", 12);
 }
 
 /* A bright beam a pixel out of focus, either way, has no halo on the wall behind it: what is
  * farther from it than that blur stays as dark. */
-static void halo(void **state)
+TEST(halo)
 {
     static uint8_t out[MOST], wall[3] = {30, 60, 50};
 
-    (void)state;
     for (int side = -1; side <= 1; side += 2) {
         struct picture p = picture_flat(WIDTH, HEIGHT, wall, FAR), share;
         struct setting s = plain;
@@ -248,7 +244,7 @@ static void halo(void **state)
 /* A beam that is blurred before a wall in focus, or in focus before a blurred wall, looks nearly as
  * with the right map if the map is a pixel too small on both sides: what is left of it is no
  * outline. A blur of 6 pixels is too little for thin beams to be splatted. */
-static void outline(void **state)
+TEST(outline)
 {
     static const struct {
         int width;
@@ -257,7 +253,6 @@ static void outline(void **state)
     } beams[] = {{5, FAR, 6}, {12, FAR, 15}, {40, FAR, 15}, {40, NEAR, 15}};
     static uint8_t right[MOST], out[MOST], wall[3] = {170, 190, 210};
 
-    (void)state;
     for (size_t b = 0; b < sizeof beams / sizeof *beams; b++) {
         struct picture p = picture_flat(WIDTH, HEIGHT, wall, FAR), small;
         struct setting s = plain;
@@ -284,14 +279,13 @@ static void outline(void **state)
 
 /* A stem a little out of focus is as dense with its rims matted as without: rays of what is inside
  * do not pass through the matted pixels beside it. */
-static void dense(void **state)
+TEST(dense)
 {
     static uint8_t matted[MOST], rays[MOST];
     struct picture p = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){235, 235, 235}, FAR), share;
     struct setting s = plain;
     int worst = 0;
 
-    (void)state;
     share = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){0, 0, 0}, FAR);
     picture_line(&p, 60, 0, 0.7, 1, 7, 70);
     picture_line(&share, 60, 0, 0.7, 1, 7, 255);
@@ -320,7 +314,7 @@ static void dense(void **state)
 }
 
 /* Where it has nothing to do, or may not, nothing changes. */
-static void elsewhere(void **state)
+TEST(elsewhere)
 {
     static uint8_t out[MOST], expected[MOST];
     struct picture p = picture_fence(WIDTH, HEIGHT, 1),
@@ -328,7 +322,6 @@ static void elsewhere(void **state)
                    thick = picture_flat(WIDTH, HEIGHT, (uint8_t[3]){9, 80, 7}, FAR);
     struct setting on = plain, off = plain;
 
-    (void)state;
     off.thin = 0;
     render_fresh(&p, false, &on, out); /* no memory for it */
     render_fresh(&p, true, &off, expected);
@@ -355,14 +348,13 @@ static void elsewhere(void **state)
     picture_free(&thick);
 }
 
-static void same_everywhere(void **state)
+TEST(same_everywhere)
 {
     static uint8_t out[MOST], expected[MOST];
     static const int threads[] = {2, 3, 8};
     struct picture p = picture_fence(WIDTH, HEIGHT, 2);
     struct setting s = plain;
 
-    (void)state;
     for (int pass = 0; pass < 2; pass++) {
         struct refocus_renderer *renderer = create(&p, REFOCUS_CPU_C, 1, true);
 
@@ -386,13 +378,12 @@ static void same_everywhere(void **state)
 }
 
 /* A part of the picture is that of the whole. */
-static void regions(void **state)
+TEST(regions)
 {
     static uint8_t whole[MOST], out[MOST];
     struct picture p = picture_fence(WIDTH, HEIGHT, 3);
     uint32_t seed = 5;
 
-    (void)state;
     for (int blur = 9; blur <= 15; blur += 3) {
         struct setting s = plain;
 
@@ -446,7 +437,7 @@ static void change(struct setting *s, uint32_t *seed)
 }
 
 /* Whatever was rendered or cancelled before, a picture is that of a new renderer. */
-static void sequence(void **state)
+TEST(sequence)
 {
     static uint8_t out[MOST], expected[MOST];
     struct picture p = picture_fence(WIDTH, HEIGHT, 4);
@@ -456,7 +447,6 @@ static void sequence(void **state)
     uint32_t seed = 6;
     int cancelled = 0;
 
-    (void)state;
     renderer->run.user = &canceller;
     for (int i = 0; i < (left_out(1, 2) ? 20 : 80); i++) {
         change(&s, &seed);
@@ -482,12 +472,11 @@ static void sequence(void **state)
 }
 
 /* The text of render.h. */
-static void memory(void **state)
+TEST(memory)
 {
     static const int sides[][2] = {{1, 1},     {65535, 1}, {17, 33},
                                    {720, 540}, {2, 40000}, {1921, 1087}};
 
-    (void)state;
     for (int i = 0; i < 6; i++) {
         const int w = sides[i][0], h = sides[i][1];
         struct refocus_renderer_params params = refocus_renderer_params_default(w, h, 20);
@@ -499,16 +488,4 @@ static void memory(void **state)
         if (bytes < 0 || bytes > (8.0 * (w + 16) * (h + 16) + 4096))
             fail_msg("%d x %d: %.0f bytes", w, h, bytes);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wire),      cmocka_unit_test(matted),          cmocka_unit_test(halo),
-        cmocka_unit_test(outline),   cmocka_unit_test(strands),         cmocka_unit_test(dense),
-        cmocka_unit_test(elsewhere), cmocka_unit_test(same_everywhere), cmocka_unit_test(regions),
-        cmocka_unit_test(sequence),  cmocka_unit_test(memory),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

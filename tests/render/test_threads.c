@@ -5,12 +5,11 @@
 #include "pictures.h"
 #include "../clock.h"
 
-static void same_bytes(void **state)
+TEST(same_bytes)
 {
     static const int sizes[][2] = {{97, 61}, {16, 16}, {33, 130}, {1, 40}, {200, 3}};
     static const int threads[] = {2, 3, 8};
 
-    (void)state;
     for (int s = 0; s < 5; s++) {
         struct picture p = picture_make(sizes[s][0], sizes[s][1], 5u + (uint32_t)s);
         const size_t size = 3 * (size_t)p.width * (size_t)p.height;
@@ -60,7 +59,7 @@ static void *cancel_all(void *user)
 }
 
 /* Full ray tracing of this picture takes many seconds; cancelled, almost none. */
-static void cancel_render(void **state)
+TEST(cancel_render)
 {
     struct picture p = picture_make(900, 700, 3);
     const struct style slow = {"slow",
@@ -82,7 +81,6 @@ static void cancel_render(void **state)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 900, 700, 3 * 900);
     pthread_t thread;
 
-    (void)state;
     assert_true(out && before);
     render_style(canceller.renderer, &p, &styles[0], 0.5f, 4, before);
 
@@ -107,7 +105,7 @@ static void cancel_render(void **state)
 }
 
 /* A cancelled prepare leaves nothing prepared; one that is not succeeds. */
-static void cancel_prepare(void **state)
+TEST(cancel_prepare)
 {
     struct picture p = picture_make(700, 500, 3);
     const struct refocus_image photo = picture_image(&p);
@@ -118,7 +116,6 @@ static void cancel_prepare(void **state)
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 700, 500, 3 * 700);
     pthread_t thread;
 
-    (void)state;
     assert_true(out && before);
     render_style(canceller.renderer, &p, &styles[0], 0.5f, 2, before);
     assert_int_equal(pthread_create(&thread, NULL, cancel_all, &canceller), 0);
@@ -161,13 +158,12 @@ static void *render_many(void *user)
     return NULL;
 }
 
-static void two_renderers(void **state)
+TEST(two_renderers)
 {
     struct pair pair[2];
     pthread_t thread;
     uint8_t expected[3 * 80 * 60];
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         pair[i].picture = picture_make(80, 60, 40u + (uint32_t)i);
         pair[i].out = malloc(3 * 80 * 60);
@@ -220,7 +216,7 @@ static void *render_rivalling(void *user)
     return NULL;
 }
 
-static void one_renderer(void **state)
+TEST(one_renderer)
 {
     struct picture p = picture_make(80, 60, 44);
     struct refocus_renderer *renderer = prepared(&p, 6, 2);
@@ -231,7 +227,6 @@ static void one_renderer(void **state)
     struct rival rival[2] = {{renderer, expected, 0, 0}, {renderer, expected, 0, 0}};
     pthread_t thread;
 
-    (void)state;
     assert_int_equal(refocus_render(renderer, &params, &image), REFOCUS_OK);
     assert_int_equal(pthread_create(&thread, NULL, render_rivalling, &rival[1]), 0);
     render_rivalling(&rival[0]);
@@ -239,13 +234,4 @@ static void one_renderer(void **state)
     print_message("%d calls were refused\n", rival[0].refused + rival[1].refused);
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_bytes), cmocka_unit_test(cancel_render),
-        cmocka_unit_test(cancel_prepare), cmocka_unit_test(two_renderers),
-        cmocka_unit_test(one_renderer)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -165,11 +165,10 @@ static void check(const struct picture *p, const char *name, float focus, float 
         fail_msg("%d below %g dB", failed, bound_db);
 }
 
-static void drawn(void **state)
+TEST(drawn)
 {
     struct picture p = picture_make(113, 82, 5);
 
-    (void)state;
     check(&p, "drawn", 0.6f, 9);
     check(&p, "drawn", 0, 20);
     check(&p, "drawn", 1, 33);
@@ -183,11 +182,10 @@ static const double noisy_db = 48;
 
 /* A soft map, whose surfaces are as steep as they may be without gaps between slabs. Its pixels
  * have blurs of their own, too. */
-static void steep(void **state)
+TEST(steep)
 {
     struct picture p = picture_make(113, 82, 5);
 
-    (void)state;
     for (int y = 0; y < p.height; y++)
         for (int x = 0; x < p.width; x++) {
             const int d = 65535 * abs(x + y / 3 - 60) / 50; /* 0.7 pixels of 35 a pixel */
@@ -201,12 +199,11 @@ static void steep(void **state)
 }
 
 /* Blurs in units of two and of four pixels. */
-static void far_out(void **state)
+TEST(far_out)
 {
     struct picture p = picture_make(420, 310, 6);
     static const float blurs[] = {200, 300};
 
-    (void)state;
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < 4; k += 2) /* 64 rays, and 128 of an iris */
             if (compare(&p, "drawn, large", &ways[k], i ? 0.4f : 0.9f, blurs[i]) < bound_db)
@@ -214,12 +211,11 @@ static void far_out(void **state)
     picture_free(&p);
 }
 
-static void noisy(void **state)
+TEST(noisy)
 {
     static const int spread[] = {6000, 131072};
     uint32_t seed = 7;
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct picture p = picture_make(113, 82, 5);
 
@@ -241,7 +237,7 @@ static void noisy(void **state)
 }
 
 /* A part of the shipped scene with an edge of the subject in it. */
-static void shipped(void **state)
+TEST(shipped)
 {
 #ifdef WITH_PNG
     enum { WIDTH = 176, HEIGHT = 144 };
@@ -251,7 +247,6 @@ static void shipped(void **state)
     uint16_t *disparity;
     int w, h, x0, y0;
 
-    (void)state;
     snprintf(path, sizeof path, "%s/allfocus.png", scene);
     photo = png_io_read(path, 3, &w, &h);
     snprintf(path, sizeof path, "%s/disparity.png", scene);
@@ -272,7 +267,6 @@ static void shipped(void **state)
     free(photo);
     free(disparity);
 #else
-    (void)state;
     (void)scene;
     printf("SKIP: built without PNG, the shipped scene is not compared\n");
 #endif
@@ -280,10 +274,6 @@ static void shipped(void **state)
 
 int main(int argc, char **argv)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(drawn), cmocka_unit_test(steep),
-                                       cmocka_unit_test(far_out), cmocka_unit_test(noisy),
-                                       cmocka_unit_test(shipped)};
-
     scene = argc > 1 ? argv[1] : ".";
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

@@ -49,7 +49,7 @@ static void render_style_yuv(struct refocus_renderer *renderer, const struct sty
 }
 
 /* Any code of Y, U and V, be it a colour or not, comes back from a picture of nothing else. */
-static void one_colour(void **state)
+TEST(one_colour)
 {
     static const uint8_t codes[][3] = {
         {0, 0, 0},       {255, 255, 255}, {16, 128, 128}, {17, 128, 128}, {15, 127, 129},
@@ -59,7 +59,6 @@ static void one_colour(void **state)
     struct picture deep = picture_make(W, H, 31);
     struct refocus_renderer *renderer = renderer_for(W, H, 11, 2);
 
-    (void)state;
     for (int i = 0; i < 15 * 4; i++) {
         const uint8_t *code = codes[i / 4];
         struct yuv_picture photo = yuv_make(yuv_formats[i % 4], W, H, 3);
@@ -87,11 +86,10 @@ static void one_colour(void **state)
 }
 
 /* Without blur any bytes come back, whatever the size, and no others are written. */
-static void no_blur(void **state)
+TEST(no_blur)
 {
     static const int sizes[][2] = {{61, 34}, {1, 1}, {2, 1}, {1, 2}, {17, 33}, {16, 16}, {3, 50}};
 
-    (void)state;
     for (int i = 0; i < 7 * 4; i++) {
         const int w = sizes[i / 4][0], h = sizes[i / 4][1];
         struct picture deep = picture_make(w, h, 21);
@@ -160,9 +158,8 @@ static void columns_stay(float focus, int edge, int from, int to)
     picture_free(&deep);
 }
 
-static void in_focus(void **state)
+TEST(in_focus)
 {
-    (void)state;
     columns_stay(1, 48, 0, 48);
     columns_stay(1, 47, 0, 47);
     columns_stay(0, 48, 48 + 9 + 3, 96);
@@ -171,7 +168,7 @@ static void in_focus(void **state)
 
 /* NV12, NV21 and I420, rows upside down and gaps between them give one result, into whichever of
  * them. */
-static void layouts(void **state)
+TEST(layouts)
 {
     enum { W = 75, H = 53 };
     struct picture deep = picture_make(W, H, 5);
@@ -179,7 +176,6 @@ static void layouts(void **state)
     struct yuv_picture first = yuv_make(REFOCUS_FORMAT_NV12, W, H, 0);
     const struct style *style;
 
-    (void)state;
     for (int s = 0; (style = yuv_style(&s));) {
         for (int i = 0; i < 9; i++) {
             struct yuv_picture photo = yuv_make(yuv_formats[i / 3], W, H, i);
@@ -254,15 +250,14 @@ static void grey_by(uint32_t method)
     picture_free(&p);
 }
 
-static void grey(void **state)
+TEST(grey)
 {
-    (void)state;
     grey_by(REFOCUS_METHOD_SWEEP);
     grey_by(REFOCUS_METHOD_SEARCH);
 }
 
 /* A region is that part of the whole; one that splits samples is refused. */
-static void regions(void **state)
+TEST(regions)
 {
     enum { W = 83, H = 61 };
     static const int good[][4] = {
@@ -271,7 +266,6 @@ static void regions(void **state)
     struct picture deep = picture_make(W, H, 6);
     struct refocus_renderer *renderer = renderer_for(W, H, 9, 2);
 
-    (void)state;
     for (int j = 0; j < 8; j++) {
         const int i = j / 2;
         struct refocus_settings params = refocus_settings_default(0.3f, 9);
@@ -316,7 +310,7 @@ static void regions(void **state)
 }
 
 /* R, G, B and Y, U, V by turns, and blends: nothing is left over from before. */
-static void by_turns(void **state)
+TEST(by_turns)
 {
     enum { W = 66, H = 47 };
     struct picture p = picture_make(W, H, 12);
@@ -327,7 +321,6 @@ static void by_turns(void **state)
     const struct refocus_image to_rgb =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, out_rgb, W, H, 3 * W);
 
-    (void)state;
     for (int i = 0; i < 24; i++) {
         struct refocus_settings params = refocus_settings_default(0.6f, 9);
         struct yuv_picture photo = yuv_make(yuv_formats[i % 4], W, H, 0);
@@ -369,7 +362,7 @@ static void by_turns(void **state)
     picture_free(&p);
 }
 
-static void refused(void **state)
+TEST(refused)
 {
     enum { W = 20, H = 20 };
     struct picture p = picture_make(W, H, 3);
@@ -382,7 +375,6 @@ static void refused(void **state)
     struct yuv_picture i420 = yuv_make(REFOCUS_FORMAT_I420, W, H, 0);
     struct refocus_image wrong;
 
-    (void)state;
     assert_int_equal(refocus_prepare(renderer, &nv12.image, &map), REFOCUS_OK);
     assert_int_equal(refocus_render_settings(renderer, &params, &rgb), REFOCUS_ERR_UNSUPPORTED);
     assert_int_equal(refocus_render_settings(renderer, &params, &yuyv.image),
@@ -466,9 +458,8 @@ static void like_rgb_by(uint32_t method)
     picture_free(&p);
 }
 
-static void like_rgb(void **state)
+TEST(like_rgb)
 {
-    (void)state;
     like_rgb_by(REFOCUS_METHOD_SWEEP);
     like_rgb_by(REFOCUS_METHOD_SEARCH);
 }
@@ -476,13 +467,12 @@ static void like_rgb(void **state)
 /* The disparities of a photo with a map of any size do not depend on the largest blur, by which
  * planes lie closer together or farther apart: no picture of colours is written over while it is
  * looked at. */
-static void same_depth_at_any_reach(void **state)
+TEST(same_depth_at_any_reach)
 {
     enum { W = 61, H = 46 };
     static const int maps[][2] = {{30, 22}, {64, 48}, {W, H}};
     static uint16_t view[2][W * H];
 
-    (void)state;
     for (uint32_t edges = 0; edges <= REFOCUS_DEPTH_EDGES_STEADY; edges++) {
         for (int m = 0; m < 3; m++) {
             struct picture colours = picture_make(W, H, 5);
@@ -512,15 +502,4 @@ static void same_depth_at_any_reach(void **state)
             picture_free(&colours);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_colour), cmocka_unit_test(no_blur),
-        cmocka_unit_test(in_focus),   cmocka_unit_test(layouts),
-        cmocka_unit_test(grey),       cmocka_unit_test(regions),
-        cmocka_unit_test(by_turns),   cmocka_unit_test(refused),
-        cmocka_unit_test(like_rgb),   cmocka_unit_test(same_depth_at_any_reach)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

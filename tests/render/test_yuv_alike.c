@@ -51,7 +51,7 @@ static void render_yuv(const struct pair *pair, const struct refocus_settings *s
 
 /* A plane of grey noise, far out of focus: where chroma is neutral a mean may equal what the
  * pre-filter made of the pixel's own luma, and the pixel's code is no mean then. */
-static void grey_texture(void **state)
+TEST(grey_texture)
 {
     enum { W = 192, H = 144, K = 16, WITHIN = 4 };
     uint32_t seed = 9;
@@ -59,7 +59,6 @@ static void grey_texture(void **state)
     struct pair pair;
     struct refocus_settings settings = refocus_settings_default(1, K);
 
-    (void)state;
     for (int i = 0; i < W * H; i++)
         memset(texture.rgb + 3 * i, (int)(noise(&seed) % 256), 3);
     pair = pair_of(&texture, K);
@@ -172,9 +171,8 @@ static void lamps_by(uint32_t method, float sigma, const double within[3])
  * and 1.1 by the search, and 0.80, 1.9 and 1.4 where eq. 5 weighs: it
  * weighs Y, U and V otherwise than R, G and B, so that there chroma is as far off as it has light.
  */
-static void coloured_lamps(void **state)
+TEST(coloured_lamps)
 {
-    (void)state;
     lamps_by(REFOCUS_METHOD_SWEEP, 1e30f, (const double[3]){0.1, 0.5, 0.4});
     lamps_by(REFOCUS_METHOD_SEARCH, 1e30f, (const double[3]){0.1, 0.2, 0.25});
     lamps_by(REFOCUS_METHOD_SWEEP, 200, (const double[3]){0.73, 1.2, 1.1});
@@ -182,14 +180,13 @@ static void coloured_lamps(void **state)
 
 /* A red figure in focus before a grey wall ends between the pixels that share samples of chroma:
  * the wall that it hides, and the rays beside it see, is grey. */
-static void no_tint(void **state)
+TEST(no_tint)
 {
     enum { W = 160, H = 128, K = 14, LEFT = 41, TOP = 33, RIGHT = 101, BOTTOM = 91, WITHIN = 3 };
     struct picture p = picture_flat(W, H, (const uint8_t[3]){60, 60, 60}, 9000);
     struct refocus_settings settings = refocus_settings_default(1, K);
     struct pair pair;
 
-    (void)state;
     for (int y = TOP; y < BOTTOM; y++)
         for (int x = LEFT; x < RIGHT; x++) {
             memcpy(p.rgb + 3 * (y * W + x), (const uint8_t[3]){250, 90, 40}, 3);
@@ -220,12 +217,11 @@ static void no_tint(void **state)
 
 /* The red of half-covered pixels of the wall beside a figure counts the same, whether the
  * lowest bit of the wall's blur, which the inpainted background has, is set or not. */
-static void lowest_bit(void **state)
+TEST(lowest_bit)
 {
     enum { W = 96, H = 64, K = 14, WALL = 9000, LEFT = 31, RIGHT = 64, WITHIN = 1 };
     struct refocus_settings settings = refocus_settings_default(0.2f, K);
 
-    (void)state;
     for (int i = 0; i < 4; i++) {
         struct yuv_picture out[2];
 
@@ -267,7 +263,7 @@ static void lowest_bit(void **state)
 
 /* Half-covered pixels of an antialiased red beam in focus are told by their luminance: the grey
  * wall beside them has no halo, nor is it tinted; and a region is that part of the whole. */
-static void no_halo(void **state)
+TEST(no_halo)
 {
     enum { W = 160, H = 128, K = 14, LEFT = 64, TOP = 32, WIDE = 64, HIGH = 48 };
     const uint8_t wall[3] = {40, 40, 40};
@@ -275,7 +271,6 @@ static void no_halo(void **state)
     struct picture p = picture_flat(W, H, wall, 9000), share = picture_flat(W, H, wall, 9000);
     struct refocus_renderer *renderer;
 
-    (void)state;
     picture_line(&p, 60, 0, 0.4, 1, 40, 220);
     picture_line(&share, 60, 0, 0.4, 1, 46, 220);
     for (int at = 0; at < W * H; at++) {
@@ -329,13 +324,4 @@ static void no_halo(void **state)
     refocus_renderer_destroy(&renderer);
     picture_free(&p);
     picture_free(&share);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(grey_texture),
-                                       cmocka_unit_test(coloured_lamps), cmocka_unit_test(no_tint),
-                                       cmocka_unit_test(lowest_bit), cmocka_unit_test(no_halo)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

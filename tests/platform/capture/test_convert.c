@@ -165,11 +165,10 @@ static void check_copy(struct refocus_converter *converter, uint32_t format, int
     assert_status(refocus_convert_copy(converter, &frame, &image, NULL), REFOCUS_ERR_UNSUPPORTED);
 }
 
-static void copies_are_exact(void **state)
+TEST(copies_are_exact)
 {
     struct refocus_converter *converter = NULL;
 
-    (void)state;
     assert_status(refocus_converter_create(&converter), REFOCUS_OK);
     for (uint32_t format = REFOCUS_FRAME_YUYV; format <= REFOCUS_FRAME_YUV420; format++)
         for (int size = 1; size < MOST; size += 6)
@@ -178,11 +177,10 @@ static void copies_are_exact(void **state)
     refocus_converter_destroy(&converter);
 }
 
-static void yuv_is_the_formula(void **state)
+TEST(yuv_is_the_formula)
 {
     struct refocus_converter *converter = NULL;
 
-    (void)state;
     assert_status(refocus_converter_create(&converter), REFOCUS_OK);
     for (uint32_t format = REFOCUS_FRAME_YUYV; format <= REFOCUS_FRAME_YUV420; format++)
         for (int size = 1; size < MOST; size += 9)
@@ -192,14 +190,13 @@ static void yuv_is_the_formula(void **state)
     assert_null(converter);
 }
 
-static void rgb_is_exact(void **state)
+TEST(rgb_is_exact)
 {
     static const int order[][4] = {{0, 1, 2, 3}, {2, 1, 0, 3}, {0, 1, 2, 4}, {2, 1, 0, 4}};
     struct refocus_converter *converter = NULL;
     struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 31, 17, 31 * 3);
     struct refocus_frame frame;
 
-    (void)state;
     assert_status(refocus_converter_create(&converter), REFOCUS_OK);
     for (uint32_t format = REFOCUS_FRAME_RGB24; format <= REFOCUS_FRAME_BGRX; format++) {
         const int *o = order[format - REFOCUS_FRAME_RGB24];
@@ -215,13 +212,12 @@ static void rgb_is_exact(void **state)
     refocus_converter_destroy(&converter);
 }
 
-static void samples_are_exact(void **state)
+TEST(samples_are_exact)
 {
     struct refocus_converter *converter = NULL;
     struct refocus_frame frame;
     uint16_t samples[23 * 11];
 
-    (void)state;
     assert_status(refocus_converter_create(&converter), REFOCUS_OK);
     for (uint32_t format = REFOCUS_FRAME_GREY; format <= REFOCUS_FRAME_Z16; format++) {
         make_frame(&frame, format, 23, 11, memory);
@@ -241,14 +237,13 @@ static void samples_are_exact(void **state)
     refocus_converter_destroy(&converter);
 }
 
-static void bad_frames_are_refused(void **state)
+TEST(bad_frames_are_refused)
 {
     struct refocus_converter *converter = NULL;
     struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, out, 32, 16, 32 * 3);
     struct refocus_reason reason;
     struct refocus_frame frame;
 
-    (void)state;
     assert_status(refocus_converter_create(&converter), REFOCUS_OK);
     make_frame(&frame, REFOCUS_FRAME_NV12, 32, 16, memory);
     frame.stride[1] = 31;
@@ -267,7 +262,7 @@ static void bad_frames_are_refused(void **state)
 
 /* Pictures that sinks write come back: each pixel within the loss of chroma at half the size, which
  * is none for a picture of one colour in each 2x2 block. */
-static void encoding_comes_back(void **state)
+TEST(encoding_comes_back)
 {
     struct refocus_converter *converter = NULL;
     uint8_t rgb[16 * 16 * 3], back[16 * 16 * 3];
@@ -275,7 +270,6 @@ static void encoding_comes_back(void **state)
     struct refocus_image image2 = refocus_image_packed(REFOCUS_FORMAT_RGB8, back, 16, 16, 48);
     struct refocus_frame frame;
 
-    (void)state;
     assert_status(refocus_converter_create(&converter), REFOCUS_OK);
     for (uint32_t i = 0; i < 2 * (uint32_t)REFOCUS_FRAME_BGRX; i++) {
         const uint32_t format = REFOCUS_FRAME_YUYV + i / 2;
@@ -299,7 +293,7 @@ static void encoding_comes_back(void **state)
 }
 
 #ifdef RF_HAVE_JPEG
-static void jpegs_are_decoded_or_refused(void **state)
+TEST(jpegs_are_decoded_or_refused)
 {
     static uint8_t rgb[32 * 16 * 3], back[32 * 16 * 3], bytes[8192];
     struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, 32, 16, 96);
@@ -308,7 +302,6 @@ static void jpegs_are_decoded_or_refused(void **state)
     struct refocus_frame frame = refocus_frame_default();
     FILE *file;
 
-    (void)state;
     for (int i = 0; i < 32 * 16 * 3; i++)
         rgb[i] = (uint8_t)(60 + i / 3 % 32 * 3 + i % 3);
     assert_status(refocus_image_write("frame.jpg", &image, NULL, NULL), REFOCUS_OK);
@@ -403,7 +396,7 @@ static void check_jpeg_yuv(struct refocus_converter *converter, int subsampling,
     assert_status(refocus_convert_copy(converter, &frame, &image, NULL), REFOCUS_ERR_FORMAT);
 }
 
-static void jpegs_keep_their_samples(void **state)
+TEST(jpegs_keep_their_samples)
 {
     static const int none[][3] = {{TJSAMP_444, 32, 16}, {TJSAMP_GRAY, 32, 16},
                                   {TJSAMP_420, 31, 16}, {TJSAMP_420, 32, 15},
@@ -411,7 +404,6 @@ static void jpegs_keep_their_samples(void **state)
     struct refocus_converter *converter = NULL;
     struct refocus_frame frame;
 
-    (void)state;
     assert_status(refocus_converter_create(&converter), REFOCUS_OK);
     /* Sides that are no whole number of blocks, and planes that get larger. */
     check_jpeg_yuv(converter, TJSAMP_420, 32, 16, REFOCUS_FORMAT_I420);
@@ -444,24 +436,22 @@ static struct refocus_calibration same_cameras(void)
     return c;
 }
 
-static void registering_onto_itself_is_nothing(void **state)
+TEST(registering_onto_itself_is_nothing)
 {
     const struct refocus_calibration c = same_cameras();
     uint16_t from[32 * 24], to[32 * 24];
 
-    (void)state;
     for (int i = 0; i < 32 * 24; i++)
         from[i] = (uint16_t)(i % 7 == 0 ? 0 : 500 + i * 3);
     assert_status(refocus_register_depth(&c, from, 0.001, to), REFOCUS_OK);
     assert_memory_equal(from, to, sizeof from);
 }
 
-static void registering_shifts_near_things_more(void **state)
+TEST(registering_shifts_near_things_more)
 {
     struct refocus_calibration c = same_cameras();
     uint16_t from[32 * 24], to[32 * 24];
 
-    (void)state;
     /* 2 m away everywhere but for a square at 1 m; the baseline of 0.1 m shifts them by
      * 40 * 0.1 / z = 2 and 4 pixels. */
     c.translation_m[0] = 0.1;
@@ -484,12 +474,11 @@ static void registering_shifts_near_things_more(void **state)
     assert_status(refocus_register_depth(&c, from, 0.001, to), REFOCUS_ERR_ARGUMENT);
 }
 
-static void registering_onto_more_pixels_leaves_no_gaps(void **state)
+TEST(registering_onto_more_pixels_leaves_no_gaps)
 {
     struct refocus_calibration c = same_cameras();
     static uint16_t from[32 * 24], to[96 * 72];
 
-    (void)state;
     c.colour = (struct refocus_pinhole){96, 72, 120, 120, 47.5, 35.5};
     for (int i = 0; i < 32 * 24; i++)
         from[i] = 1500;
@@ -501,11 +490,10 @@ static void registering_onto_more_pixels_leaves_no_gaps(void **state)
 
 /* The made-up scene of replay: at any size the first of five discs that has a pixel, before a wall
  * and a floor that comes nearer; the sensor misses the left edges of discs. */
-static void made_up_depth(void **state)
+TEST(made_up_depth)
 {
     static uint16_t mm[960 * 720];
 
-    (void)state;
     rf_scene_draw((uint8_t *)mm, REFOCUS_FRAME_Z16, 2 * 960, 960, 720);
     for (int y = 0; y < 720; y++)
         for (int x = 0; x < 960; x++) {
@@ -525,26 +513,4 @@ static void made_up_depth(void **state)
     assert_int_equal(mm[96 * 20 + 10], 700);
     assert_int_equal(mm[96 * 1 + 1], 4000);
     assert_int_equal(mm[96 * 71 + 1], 4000 - (710 - 440) * 9);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(yuv_is_the_formula),
-        cmocka_unit_test(copies_are_exact),
-        cmocka_unit_test(rgb_is_exact),
-        cmocka_unit_test(samples_are_exact),
-        cmocka_unit_test(bad_frames_are_refused),
-        cmocka_unit_test(encoding_comes_back),
-#ifdef RF_HAVE_JPEG
-        cmocka_unit_test(jpegs_are_decoded_or_refused),
-        cmocka_unit_test(jpegs_keep_their_samples),
-#endif
-        cmocka_unit_test(registering_onto_itself_is_nothing),
-        cmocka_unit_test(registering_shifts_near_things_more),
-        cmocka_unit_test(made_up_depth),
-        cmocka_unit_test(registering_onto_more_pixels_leaves_no_gaps),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

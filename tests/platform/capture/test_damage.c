@@ -22,7 +22,7 @@ static int open_and_start(const char *name, struct refocus_reason *reason)
     return status;
 }
 
-static void scripts(void **state)
+TEST(scripts)
 {
     static const char *const wrong[] = {"at",
                                         "at 1",
@@ -98,7 +98,6 @@ static void scripts(void **state)
     char name[200];
     struct refocus_reason reason;
 
-    (void)state;
     for (size_t i = 0; i < COUNT(wrong); i++) {
         snprintf(name, sizeof name, "replay::%s", wrong[i]);
         if (open_and_start(name, &reason) != REFOCUS_ERR_FORMAT)
@@ -121,9 +120,8 @@ static void scripts(void **state)
 }
 
 /* Every format of the made-up scene, whose frames end as they begin. */
-static void scenes(void **state)
+TEST(scenes)
 {
-    (void)state;
     for (uint32_t format = 1; format < REFOCUS_FRAME_FORMAT_COUNT; format++) {
         const struct refocus_frame *frame = NULL;
         struct refocus_source *source;
@@ -159,7 +157,7 @@ static void write_file(const char *bytes, size_t size)
     assert_int_equal(fclose(file), 0);
 }
 
-static void headers(void **state)
+TEST(headers)
 {
     static const char *const wrong[] = {"",
                                         "YUV4MPEG",
@@ -195,7 +193,6 @@ static void headers(void **state)
     char name[80], bytes[256];
     struct refocus_reason reason;
 
-    (void)state;
     snprintf(name, sizeof name, "y4m:%s", file_name);
     for (size_t i = 0; i < COUNT(wrong); i++) {
         const int length = snprintf(bytes, sizeof bytes, "%sFRAME\n", wrong[i]);
@@ -224,7 +221,7 @@ static void headers(void **state)
     unlink(file_name);
 }
 
-static void names(void **state)
+TEST(names)
 {
     static const char *const sources[] = {"raw:",
                                           "raw:x",
@@ -269,7 +266,6 @@ static void names(void **state)
                                         "none-%s.png", "nothing:x",  ""};
     struct refocus_reason reason;
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         static const char *const right[] = {"raw:damage-raw.tmp,NV12,8x8",
                                             "raw:damage-raw.tmp,NV12,000008x8,29.97",
@@ -300,7 +296,7 @@ static void names(void **state)
 }
 
 /* Sizes that the sink `null` takes, and sizes that none takes. */
-static void sinks_of_any_size(void **state)
+TEST(sinks_of_any_size)
 {
     static const int sizes[][2] = {
         {0, 8}, {8, 0}, {-1, 8}, {REFOCUS_MAX_SIDE + 1, 8}, {8, -1}, {8, REFOCUS_MAX_SIDE + 1}};
@@ -309,7 +305,6 @@ static void sinks_of_any_size(void **state)
     struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, 8, 8, 24);
     struct refocus_sink *sink = NULL;
 
-    (void)state;
     assert_status(refocus_sink_open(&sink, "null", NULL), REFOCUS_OK);
     assert_status(refocus_sink_write(sink, &image, NULL), REFOCUS_ERR_STATE);
     for (size_t i = 0; i < COUNT(sizes); i++)
@@ -329,7 +324,7 @@ static void sinks_of_any_size(void **state)
     assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
 }
 
-static void calibrations(void **state)
+TEST(calibrations)
 {
     const struct refocus_calibration good = {.depth = {8, 6, 10, 10, 3.5, 2.5},
                                              .colour = {8, 6, 10, 10, 3.5, 2.5},
@@ -338,7 +333,6 @@ static void calibrations(void **state)
     static uint16_t samples[8 * 6], out[8 * 6];
     struct refocus_calibration c = good;
 
-    (void)state;
     for (int i = 0; i < 8 * 6; i++)
         samples[i] = (uint16_t)(1000 + i);
     assert_status(refocus_register_depth(&good, samples, 0.001, out), REFOCUS_OK);
@@ -386,14 +380,4 @@ static void calibrations(void **state)
     c.colour = (struct refocus_pinhole){2, 2, 2.5, 2.5, 0.5, 0.5};
     assert_status(refocus_register_depth(&c, samples, 0.001, out), REFOCUS_OK);
     assert_int_equal(out[0], 1000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scripts),           cmocka_unit_test(scenes),
-        cmocka_unit_test(headers),           cmocka_unit_test(names),
-        cmocka_unit_test(sinks_of_any_size), cmocka_unit_test(calibrations)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

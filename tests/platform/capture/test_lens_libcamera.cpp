@@ -6,9 +6,7 @@
 #include <cstdarg>
 
 #include <libcamera/control_ids.h>
-extern "C" {
-#include <cmocka.h>
-}
+#include "unit_test.h"
 
 using namespace libcamera;
 using namespace refocus_libcamera;

@@ -81,11 +81,10 @@ enum {
     OFF = 1 << REFOCUS_SOURCE_FOCUS_OFF,
 };
 
-static void modes_are_those_of_the_controls(void **state)
+TEST(modes_are_those_of_the_controls)
 {
     struct refocus_source_lens lens;
 
-    (void)state;
     value[PLACE] = 42;
     assert_int_equal(lens_of(false, false, false).modes, 0);
     assert_int_equal(lens_of(true, false, false).modes, CONTINUOUS | OFF);
@@ -98,9 +97,8 @@ static void modes_are_those_of_the_controls(void **state)
     assert_int_equal(lens_of(true, true, true).modes, CONTINUOUS | ONCE | FIXED | OFF);
 }
 
-static void continuous_autofocus_ends_before_the_rest(void **state)
+TEST(continuous_autofocus_ends_before_the_rest)
 {
-    (void)state;
     lens_of(true, true, true);
     value[PLACE] = 42;
     starts = 0;
@@ -122,14 +120,4 @@ static void continuous_autofocus_ends_before_the_rest(void **state)
     broken = ENODEV;
     assert_status(focus(REFOCUS_SOURCE_FOCUS_FIXED, 20), REFOCUS_ERR_GONE);
     broken = 0;
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(modes_are_those_of_the_controls),
-        cmocka_unit_test(continuous_autofocus_ends_before_the_rest),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

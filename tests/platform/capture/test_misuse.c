@@ -19,7 +19,7 @@ static bool is_half(ptrdiff_t stride)
     return stride == W - 1 || stride == 1 - W;
 }
 
-static void sources_of_nothing(void **state)
+TEST(sources_of_nothing)
 {
     const struct refocus_source_counters zeros = refocus_source_counters_default();
     struct refocus_source_lens lens = refocus_source_lens_default();
@@ -30,7 +30,6 @@ static void sources_of_nothing(void **state)
 
     const struct refocus_source_config config = refocus_source_config_default();
 
-    (void)state;
     assert_string_not_equal(refocus_source_backends(), "");
     assert_int_equal(config.struct_size, sizeof config);
     memset(&counters, 7, sizeof counters);
@@ -81,13 +80,12 @@ static void sources_of_nothing(void **state)
 }
 
 /* Each number of what is wanted by itself out of its range. */
-static void wishes_out_of_range(void **state)
+TEST(wishes_out_of_range)
 {
     struct refocus_source *source = NULL;
     const struct refocus_source_config good = refocus_source_config_default();
     struct refocus_source_config bad[12];
 
-    (void)state;
     for (int i = 0; i < 12; i++)
         bad[i] = good;
     bad[0].format = REFOCUS_FRAME_FORMAT_COUNT;
@@ -109,7 +107,7 @@ static void wishes_out_of_range(void **state)
     refocus_source_close(&source);
 }
 
-static void sinks_of_nothing(void **state)
+TEST(sinks_of_nothing)
 {
     static const uint32_t formats[] = {REFOCUS_FORMAT_RGB8, REFOCUS_FORMAT_NV12,
                                        REFOCUS_FORMAT_NV21, REFOCUS_FORMAT_I420,
@@ -119,7 +117,6 @@ static void sinks_of_nothing(void **state)
     struct refocus_source_mode mode = refocus_source_mode_default();
     struct refocus_reason reason;
 
-    (void)state;
     assert_status(refocus_sink_open(NULL, "null", NULL), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_sink_open(&sink, NULL, NULL), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_sink_start(NULL, W, H, 30, NULL), REFOCUS_ERR_ARGUMENT);
@@ -221,7 +218,7 @@ static void convert(struct refocus_converter *converter, const struct refocus_fr
                       good ? REFOCUS_OK : REFOCUS_ERR_ARGUMENT);
 }
 
-static void converters_of_nothing(void **state)
+TEST(converters_of_nothing)
 {
     static uint8_t to[W * H * 4];
     static uint16_t samples[W * H];
@@ -229,7 +226,6 @@ static void converters_of_nothing(void **state)
     struct refocus_converter *converter = NULL;
     struct refocus_frame frame = frame_of(REFOCUS_FRAME_NV12);
 
-    (void)state;
     assert_status(refocus_converter_create(NULL), REFOCUS_ERR_ARGUMENT);
     refocus_converter_destroy(NULL);
     refocus_converter_destroy(&converter);
@@ -291,7 +287,7 @@ static void converters_of_nothing(void **state)
 static const uint32_t no_sizes[] = {0, 4, REFOCUS_MAX_STRUCT_SIZE + 1, UINT32_MAX};
 enum { NO_SIZES = sizeof no_sizes / sizeof *no_sizes };
 
-static void modes_of_any_size(void **state)
+TEST(modes_of_any_size)
 {
     struct newer {
         struct refocus_source_mode known;
@@ -299,7 +295,6 @@ static void modes_of_any_size(void **state)
     } older, newer, untouched;
     struct refocus_source *source = NULL;
 
-    (void)state;
     memset(&older, 0xa5, sizeof older);
     newer = older;
     older.known.struct_size = REFOCUS_SIZE_TO(struct refocus_source_mode, fps);
@@ -333,7 +328,7 @@ static void modes_of_any_size(void **state)
     refocus_source_close(&source);
 }
 
-static void counters_of_any_size(void **state)
+TEST(counters_of_any_size)
 {
     struct newer {
         struct refocus_source_counters known;
@@ -342,7 +337,6 @@ static void counters_of_any_size(void **state)
     struct refocus_source *source = started("replay::size 16x12;frames 2", REFOCUS_SOURCE_FAST);
     const struct refocus_frame *frame;
 
-    (void)state;
     memset(&older, 0xa5, sizeof older);
     newer = older;
     older.known.struct_size = REFOCUS_SIZE_TO(struct refocus_source_counters, restarts);
@@ -379,7 +373,7 @@ static void convert_grey(struct refocus_converter *converter, const struct refoc
     assert_status(refocus_convert_copy(converter, yuv, &copy, NULL), expected);
 }
 
-static void frames_of_any_size(void **state)
+TEST(frames_of_any_size)
 {
     enum { FIRST = REFOCUS_SIZE_TO(struct refocus_frame, dmabuf) };
     struct newer {
@@ -391,7 +385,6 @@ static void frames_of_any_size(void **state)
     struct refocus_frame *const old_grey = malloc(FIRST), *const old_yuv = malloc(FIRST);
     struct refocus_frame copy;
 
-    (void)state;
     assert_true(old_grey && old_yuv);
     memset(&grey, 0, sizeof grey);
     grey.known = frame_of(REFOCUS_FRAME_GREY);
@@ -427,41 +420,26 @@ static void frames_of_any_size(void **state)
 }
 
 /* A source says how much of its frames there is. */
-static void frames_of_sources(void **state)
+TEST(frames_of_sources)
 {
     struct refocus_source *source = started("replay::size 16x12;frames 2", REFOCUS_SOURCE_FAST);
     const struct refocus_frame *frame;
 
-    (void)state;
     assert_status(refocus_source_wait(source, 1000, &frame, NULL), REFOCUS_OK);
     assert_int_equal(frame->struct_size, sizeof *frame);
     refocus_source_close(&source);
 }
 
-static void registering_nothing(void **state)
+TEST(registering_nothing)
 {
     static uint16_t samples[W * H], out[W * H];
     const struct refocus_pinhole pinhole = {W, H, 16, 16, 8, 6};
     const struct refocus_calibration same = {
         pinhole, pinhole, {1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
 
-    (void)state;
     assert_status(refocus_register_depth(NULL, samples, 1, out), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_register_depth(&same, NULL, 1, out), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_register_depth(&same, samples, 1, NULL), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_register_depth(&same, samples, (double)NAN, out), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_register_depth(&same, samples, 1, out), REFOCUS_OK);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sources_of_nothing),  cmocka_unit_test(wishes_out_of_range),
-        cmocka_unit_test(sinks_of_nothing),    cmocka_unit_test(converters_of_nothing),
-        cmocka_unit_test(modes_of_any_size),   cmocka_unit_test(counters_of_any_size),
-        cmocka_unit_test(frames_of_any_size),  cmocka_unit_test(frames_of_sources),
-        cmocka_unit_test(registering_nothing),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -90,18 +90,16 @@ static const struct {
 };
 enum { PAIRS = sizeof pairs / sizeof *pairs };
 
-static void pairs_of_names(void **state)
+TEST(pairs_of_names)
 {
-    (void)state;
     for (int i = 0; i < PAIRS; i++)
         if (refocus_sink_overwrites(pairs[i].sink, pairs[i].input) != pairs[i].answer)
             fail_msg("'%s' and '%s': not %d", pairs[i].sink, pairs[i].input, pairs[i].answer);
 }
 
 /* Without memory it says so, or knows already. */
-static void every_allocation(void **state)
+TEST(every_allocation)
 {
-    (void)state;
     for (int i = 0; i < PAIRS; i++) {
         long calls;
 
@@ -123,8 +121,5 @@ static void every_allocation(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(pairs_of_names),
-                                       cmocka_unit_test(every_allocation)};
-
-    return cmocka_run_group_tests(tests, make_files, take_files);
+    return unit_test_run(make_files, take_files);
 }

@@ -32,12 +32,11 @@ static void write_picture(int number, int tall)
     write_file(name, tall ? "P6 2 4 255\n" : "P6 4 2 255\n", samples, 24);
 }
 
-static void depth_of_codes(void **state)
+TEST(depth_of_codes)
 {
     const struct refocus_frame *frame;
     struct refocus_source *source;
 
-    (void)state;
     write_file("depth8.pgm", "P5 4 2 255\n", samples, 8);
     write_file("depth16.pgm", "P5 4 2 65535\n", samples, 16);
     write_file("depth.pfm", "Pf 4 2 -1\n", samples, 32);
@@ -69,7 +68,7 @@ static void depth_of_codes(void **state)
 }
 
 /* A picture comes when it is due and no sooner, and its time is told. */
-static void pictures_in_time(void **state)
+TEST(pictures_in_time)
 {
     struct refocus_source_config config = refocus_source_config_default();
     struct refocus_source_mode mode = refocus_source_mode_default();
@@ -77,7 +76,6 @@ static void pictures_in_time(void **state)
     struct refocus_source *source;
     int64_t first;
 
-    (void)state;
     write_picture(1, 0);
     write_picture(2, 0);
     unlink("p-0.ppm");
@@ -111,13 +109,12 @@ static void pictures_in_time(void **state)
 
 /* Sizes that change are told, damage is an error of its picture alone, the end is the beginning
  * where that is asked for, and frames are out until they come back. */
-static void pictures_change(void **state)
+TEST(pictures_change)
 {
     const struct refocus_frame *frame, *kept[32];
     struct refocus_source *source;
     int n = 0, status;
 
-    (void)state;
     for (int i = 0; i < 4; i++)
         write_picture(i, i == 2);
     write_file("p-1.ppm", "P6 4 2 255\n", samples, 5);
@@ -159,12 +156,11 @@ static void pictures_change(void **state)
 }
 
 /* A number that is missing is no end where another one follows, up to a hundred farther on. */
-static void a_gap_is_told(void **state)
+TEST(a_gap_is_told)
 {
     const struct refocus_frame *frame;
     struct refocus_source *source;
 
-    (void)state;
     for (int i = 0; i < 2; i++)
         write_picture(i, 0);
     for (int far = 3; far <= 103; far += 50) {
@@ -185,7 +181,7 @@ static void a_gap_is_told(void **state)
 }
 
 /* The lowest number that is there is the first one; a folder may hold other things, too. */
-static void numbers_begin_anywhere(void **state)
+TEST(numbers_begin_anywhere)
 {
     static const char *const names[] = {"n-x%04d.ppm", "n-0001.ppm", "n-00002.ppm", "n-x%3d.ppm"};
     static const int first[] = {7, 100, 2147483646};
@@ -193,7 +189,6 @@ static void numbers_begin_anywhere(void **state)
     struct refocus_source *source;
     char name[2][32];
 
-    (void)state;
     for (int i = 0; i < 4; i++)
         write_file(names[i], "P6 9 9 255\n", samples, 1);
     for (int i = 0; i < 3; i++) {
@@ -225,7 +220,7 @@ static void numbers_begin_anywhere(void **state)
 }
 
 /* A map that is missing or damaged is a frame that says so, and the next ones come. */
-static void maps_are_left_out(void **state)
+TEST(maps_are_left_out)
 {
     static const char *const why[] = {NULL, "m-1.pgm: ", "m-2.pgm is missing", NULL};
     struct refocus_source_counters counters = refocus_source_counters_default();
@@ -234,7 +229,6 @@ static void maps_are_left_out(void **state)
     struct refocus_source *source;
     uint16_t converted[8];
 
-    (void)state;
     write_file("m-0.pgm", "P5 4 2 255\n", samples, 8);
     write_file("m-1.pgm", "P5 4 2 255\n", samples, 7);
     write_file("m-3.pgm", "P5 4 2 255\n", samples, 8);
@@ -296,7 +290,7 @@ static int write_some(const char *name)
     return status == REFOCUS_OK ? end : status;
 }
 
-static void every_allocation(void **state)
+TEST(every_allocation)
 {
     static const char *const names[] = {
         "y4m:m.y4m",
@@ -310,7 +304,6 @@ static void every_allocation(void **state)
     };
     enum { SINKS = 3 };
 
-    (void)state;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         int (*const act)(const char *) = i < SINKS ? write_some : read_some;
         const int files = count_entries("fd");
@@ -344,14 +337,13 @@ static int always(void *user)
 
 /* A picture of a sequence that is cancelled leaves no file, and the next one that is not has the
  * next number. */
-static void a_cancelled_picture(void **state)
+TEST(a_cancelled_picture)
 {
     static uint8_t rgb[3 * 16 * 16];
     const struct refocus_image picture =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, rgb, 16, 16, 3 * 16);
     struct refocus_sink *sink;
 
-    (void)state;
     unlink("cancelled-0.ppm");
     unlink("cancelled-1.ppm");
     assert_status(refocus_sink_open(&sink, "cancelled-%d.ppm", &reason), REFOCUS_OK);
@@ -365,15 +357,4 @@ static void a_cancelled_picture(void **state)
     assert_int_equal(access("cancelled-1.ppm", F_OK), 0);
     refocus_sink_close(&sink, &reason);
     unlink("cancelled-1.ppm");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(depth_of_codes),         cmocka_unit_test(pictures_in_time),
-        cmocka_unit_test(pictures_change),        cmocka_unit_test(a_gap_is_told),
-        cmocka_unit_test(numbers_begin_anywhere), cmocka_unit_test(maps_are_left_out),
-        cmocka_unit_test(a_cancelled_picture),    cmocka_unit_test(every_allocation)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,7 +15,7 @@
 enum { WIDTH = 37, HEIGHT = 22 };
 
 /* The reader of a pipe goes: a status, and no signal ends this program. */
-static void a_closed_pipe_is_a_status(void **state)
+TEST(a_closed_pipe_is_a_status)
 {
     static uint8_t pixels[WIDTH * HEIGHT * 3];
     struct refocus_sink *sink = NULL;
@@ -24,7 +24,6 @@ static void a_closed_pipe_is_a_status(void **state)
     char name[64];
     int ends[2];
 
-    (void)state;
     assert_int_equal(pipe(ends), 0);
     snprintf(name, sizeof name, "raw:/proc/self/fd/%d", ends[1]);
     assert_status(refocus_sink_open(&sink, name, NULL), REFOCUS_OK);
@@ -51,7 +50,7 @@ static void *leave(void *end)
 }
 
 /* The reader goes while a frame is half written, which is more than a pipe holds. */
-static void a_pipe_closed_within_a_frame_is_a_status(void **state)
+TEST(a_pipe_closed_within_a_frame_is_a_status)
 {
     enum { SIDE = 1024 };
     uint8_t *const pixels = calloc(SIDE * SIDE, 3);
@@ -62,7 +61,6 @@ static void a_pipe_closed_within_a_frame_is_a_status(void **state)
     pthread_t thread;
     int ends[2];
 
-    (void)state;
     assert_non_null(pixels);
     assert_int_equal(pipe(ends), 0);
     snprintf(name, sizeof name, "raw:/proc/self/fd/%d", ends[1]);
@@ -105,7 +103,7 @@ static int interrupted_call(struct refocus_source *source, bool start)
 }
 
 /* Nobody writes, then somebody who stops within a frame: another thread ends either wait. */
-static void a_silent_pipe_is_no_hang(void **state)
+TEST(a_silent_pipe_is_no_hang)
 {
     const char text[] = "YUV4MPEG2 W4 H4\nFRAME\nabcdefghijklmnopqrstuvwxFRAME\nabc";
     struct refocus_source_mode mode = refocus_source_mode_default();
@@ -113,7 +111,6 @@ static void a_silent_pipe_is_no_hang(void **state)
     const struct refocus_frame *frame;
     int writer;
 
-    (void)state;
     unlink("silent.y4m");
     assert_int_equal(mkfifo("silent.y4m", 0600), 0);
     assert_status(refocus_source_open(&source, "y4m:silent.y4m", NULL), REFOCUS_OK);
@@ -128,15 +125,4 @@ static void a_silent_pipe_is_no_hang(void **state)
     assert_status(interrupted_call(source, false), REFOCUS_ERR_CANCELLED);
     refocus_source_close(&source);
     close(writer);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_closed_pipe_is_a_status),
-        cmocka_unit_test(a_pipe_closed_within_a_frame_is_a_status),
-        cmocka_unit_test(a_silent_pipe_is_no_hang),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

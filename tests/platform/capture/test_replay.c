@@ -25,13 +25,12 @@ static struct refocus_source_counters counters(const struct refocus_source *sour
     return c;
 }
 
-static void frames_come_at_their_pace(void **state)
+TEST(frames_come_at_their_pace)
 {
     struct refocus_source *source = started("replay::size 64x48;fps 100;frames 20", 0);
     const struct refocus_frame *frame;
     const double begin = now_ms();
 
-    (void)state;
     for (uint32_t i = 0; i < 20; i++) {
         frame = next(source);
         assert_int_equal(frame->format, REFOCUS_FRAME_NV12);
@@ -46,7 +45,7 @@ static void frames_come_at_their_pace(void **state)
     assert_null(source);
 }
 
-static void drops_and_flags_are_seen(void **state)
+TEST(drops_and_flags_are_seen)
 {
     struct refocus_source *source =
         started("replay::size 64x48;sequence 4294967290;frames 30;at 3 drop 2;at 8 corrupt;"
@@ -56,7 +55,6 @@ static void drops_and_flags_are_seen(void **state)
     int64_t before = INT64_MIN;
     int corrupt = 0, backwards = 0, n = 0;
 
-    (void)state;
     while (refocus_source_wait(source, 100, &frame, NULL) == REFOCUS_OK) {
         corrupt += (frame->flags & REFOCUS_FRAME_CORRUPT) != 0;
         backwards += frame->timestamp_ns < before;
@@ -72,12 +70,11 @@ static void drops_and_flags_are_seen(void **state)
     refocus_source_close(&source);
 }
 
-static void formats_and_strides_change(void **state)
+TEST(formats_and_strides_change)
 {
     struct refocus_source *source = started(
         "replay::size 64x48;frames 9;at 3 format YUYV,32x20;at 6 stride 77", REFOCUS_SOURCE_FAST);
 
-    (void)state;
     for (int i = 0; i < 9; i++) {
         const struct refocus_frame *frame = next(source);
 
@@ -90,14 +87,13 @@ static void formats_and_strides_change(void **state)
     refocus_source_close(&source);
 }
 
-static void a_device_returns_within_a_second(void **state)
+TEST(a_device_returns_within_a_second)
 {
     struct refocus_source *source = started("replay::size 64x48;fps 100;at 5 vanish 300", 0);
     const struct refocus_frame *frame;
     double gone, back;
     int status;
 
-    (void)state;
     for (int i = 0; i < 5; i++)
         refocus_source_release(source, next(source));
     assert_status(refocus_source_wait(source, 1000, &frame, NULL), REFOCUS_ERR_GONE);
@@ -118,14 +114,13 @@ static void a_device_returns_within_a_second(void **state)
     refocus_source_close(&source);
 }
 
-static void a_failed_stream_restarts(void **state)
+TEST(a_failed_stream_restarts)
 {
     struct refocus_source *source =
         started("replay::size 64x48;frames 20;at 5 fail;at 9 memory", REFOCUS_SOURCE_FAST);
     const struct refocus_frame *frame;
     int n = 0, failed = 0, memory = 0, status;
 
-    (void)state;
     while ((status = refocus_source_wait(source, 100, &frame, NULL)) != REFOCUS_ERR_END) {
         if (status == REFOCUS_ERR_IO) {
             failed++;
@@ -145,11 +140,10 @@ static void a_failed_stream_restarts(void **state)
     refocus_source_close(&source);
 }
 
-static void start_errors_pass(void **state)
+TEST(start_errors_pass)
 {
     struct refocus_source *source = NULL;
 
-    (void)state;
     assert_status(refocus_source_open(&source, "replay::start-errors 2", NULL), REFOCUS_OK);
     assert_status(refocus_source_start(source, NULL, NULL, NULL), REFOCUS_ERR_IO);
     assert_status(refocus_source_restart(source, NULL, NULL), REFOCUS_ERR_IO);
@@ -158,14 +152,13 @@ static void start_errors_pass(void **state)
     refocus_source_close(&source);
 }
 
-static void lost_buffers_are_counted(void **state)
+TEST(lost_buffers_are_counted)
 {
     struct refocus_source *source =
         started("replay::size 64x48;at 2 queue-error;at 4 queue-error;at 6 queue-error",
                 REFOCUS_SOURCE_FAST);
     const struct refocus_frame *frame;
 
-    (void)state;
     for (int i = 0; i < 7; i++)
         refocus_source_release(source, next(source));
     /* One of four is left: less than a stream needs. */
@@ -177,12 +170,11 @@ static void lost_buffers_are_counted(void **state)
     refocus_source_close(&source);
 }
 
-static void every_buffer_out_is_a_state(void **state)
+TEST(every_buffer_out_is_a_state)
 {
     struct refocus_source *source = started("replay::size 64x48", REFOCUS_SOURCE_FAST);
     const struct refocus_frame *frame[5];
 
-    (void)state;
     for (int i = 0; i < 4; i++)
         frame[i] = next(source);
     assert_status(refocus_source_wait(source, 10, &frame[4], NULL), REFOCUS_ERR_STATE);
@@ -200,14 +192,13 @@ static void *interrupt(void *source)
     return NULL;
 }
 
-static void another_thread_stops_it(void **state)
+TEST(another_thread_stops_it)
 {
     struct refocus_source *source = started("replay::size 64x48;fps 100;at 3 stall 60000", 0);
     const struct refocus_frame *frame;
     const double begin = now_ms();
     pthread_t thread;
 
-    (void)state;
     for (int i = 0; i < 4; i++)
         refocus_source_release(source, next(source));
     assert_int_equal(pthread_create(&thread, NULL, interrupt, source), 0);
@@ -229,12 +220,11 @@ static int number(const char *name, int usual)
     return text && atoi(text) > 0 ? atoi(text) : usual;
 }
 
-static void opening_and_closing_leaks_nothing(void **state)
+TEST(opening_and_closing_leaks_nothing)
 {
     const int cycles = number("REFOCUS_CYCLES", 10000);
     int fds = 0, threads = 0, mappings = 0;
 
-    (void)state;
     for (int i = 0; i < cycles; i++) {
         struct refocus_source *source = started("replay::size 16x8", REFOCUS_SOURCE_FAST);
 
@@ -256,7 +246,7 @@ static void opening_and_closing_leaks_nothing(void **state)
     assert_true(count_mappings() <= mappings + 2);
 }
 
-static void faults_lose_no_buffer(void **state)
+TEST(faults_lose_no_buffer)
 {
     const int frames = number("REFOCUS_FRAMES", 200000);
     struct refocus_source *source;
@@ -266,7 +256,6 @@ static void faults_lose_no_buffer(void **state)
     char name[128];
     int status, fds = 0, mappings = 0;
 
-    (void)state;
     snprintf(name, sizeof name, "replay::size 16x8;random 1;seed 7;frames %d", frames);
     source = started(name, REFOCUS_SOURCE_FAST);
     for (uint64_t n = 0;; n++) {
@@ -343,14 +332,13 @@ static int look(struct refocus_source *source, double *position)
 
 #define LENS_SCRIPT "replay::stack lens-%d.ppm 3;lens 0 4;"
 
-static void a_lens_is_slow_sticks_and_errs(void **state)
+TEST(a_lens_is_slow_sticks_and_errs)
 {
     struct refocus_source_lens lens = refocus_source_lens_default();
     struct refocus_reason reason;
     struct refocus_source *source;
     double position;
 
-    (void)state;
     write_stack();
     source =
         started(LENS_SCRIPT "lens-speed 0.5;lens-stop 2.5;lens-error 0.25", REFOCUS_SOURCE_FAST);
@@ -395,13 +383,12 @@ static void a_lens_is_slow_sticks_and_errs(void **state)
     refocus_source_close(&source);
 }
 
-static void no_lens_moves_without_one(void **state)
+TEST(no_lens_moves_without_one)
 {
     struct refocus_source_lens lens = refocus_source_lens_default();
     struct refocus_source *source = started("replay::size 16x12", REFOCUS_SOURCE_FAST);
     struct refocus_reason reason;
 
-    (void)state;
     assert_status(refocus_source_get_lens(source, &lens, NULL), REFOCUS_OK);
     assert_int_equal(lens.modes, 0);
     assert_status(refocus_source_set_focus(source, REFOCUS_SOURCE_FOCUS_FIXED, 0, &reason),
@@ -416,25 +403,4 @@ static void no_lens_moves_without_one(void **state)
     source = started("file:lens-%d.ppm", REFOCUS_SOURCE_FAST);
     assert_status(refocus_source_lock_exposure(source, 1, &reason), REFOCUS_ERR_UNSUPPORTED);
     refocus_source_close(&source);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_come_at_their_pace),
-        cmocka_unit_test(drops_and_flags_are_seen),
-        cmocka_unit_test(formats_and_strides_change),
-        cmocka_unit_test(a_device_returns_within_a_second),
-        cmocka_unit_test(a_failed_stream_restarts),
-        cmocka_unit_test(start_errors_pass),
-        cmocka_unit_test(lost_buffers_are_counted),
-        cmocka_unit_test(every_buffer_out_is_a_state),
-        cmocka_unit_test(another_thread_stops_it),
-        cmocka_unit_test(opening_and_closing_leaks_nothing),
-        cmocka_unit_test(faults_lose_no_buffer),
-        cmocka_unit_test(a_lens_is_slow_sticks_and_errs),
-        cmocka_unit_test(no_lens_moves_without_one),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -71,18 +71,16 @@ static void read_frames(const char *name, int bound)
     refocus_source_close(&source);
 }
 
-static void streams_come_back(void **state)
+TEST(streams_come_back)
 {
-    (void)state;
     write_frames("y4m:frames.y4m");
     read_frames("y4m:frames.y4m", 5);
     write_frames("raw:frames.rgb");
     read_frames("raw:frames.rgb,RGB24,37x22,25", 0);
 }
 
-static void pictures_come_back(void **state)
+TEST(pictures_come_back)
 {
-    (void)state;
     write_frames("frame-%03d.ppm");
     read_frames("file:frame-%03d.ppm", 0);
 }
@@ -96,13 +94,12 @@ static void write_text(const char *path, const char *text)
     assert_int_equal(fclose(file), 0);
 }
 
-static void damage_is_named(void **state)
+TEST(damage_is_named)
 {
     const struct refocus_frame *frame;
     struct refocus_source *source = NULL;
     struct refocus_reason reason;
 
-    (void)state;
     write_text("bad.y4m", "YUV5MPEG2 W4 H4\n");
     assert_status(refocus_source_open(&source, "y4m:bad.y4m", &reason), REFOCUS_ERR_FORMAT);
     assert_null(source);
@@ -122,7 +119,7 @@ static void damage_is_named(void **state)
     refocus_source_close(&source);
 }
 
-static void wrong_names_are_refused(void **state)
+TEST(wrong_names_are_refused)
 {
     static const struct {
         const char *name;
@@ -147,7 +144,6 @@ static void wrong_names_are_refused(void **state)
         {"replay::from replay:itself", REFOCUS_ERR_FORMAT},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         struct refocus_reason reason = {""};
         struct refocus_source *source = NULL;
@@ -215,7 +211,7 @@ static void check_y4m_of(uint32_t format, int planes, uint32_t range)
     assert_memory_equal(bytes, expected, length);
 }
 
-static void y4m_keeps_codes(void **state)
+TEST(y4m_keeps_codes)
 {
     static const uint32_t formats[] = {REFOCUS_FORMAT_NV12, REFOCUS_FORMAT_NV21,
                                        REFOCUS_FORMAT_I420, REFOCUS_FORMAT_YUYV};
@@ -226,7 +222,6 @@ static void y4m_keeps_codes(void **state)
                                   .width = 4,
                                   .height = 4};
 
-    (void)state;
     for (int i = 0; i < 4; i++)
         for (uint32_t range = 0; range < 2; range++)
             check_y4m_of(formats[i], planes[i], range);
@@ -316,7 +311,7 @@ static void check_raw_of(uint32_t format, const char *name, uint32_t frame_forma
     refocus_source_close(&source);
 }
 
-static void raw_keeps_codes(void **state)
+TEST(raw_keeps_codes)
 {
     static const struct {
         uint32_t format;
@@ -327,7 +322,6 @@ static void raw_keeps_codes(void **state)
                  {REFOCUS_FORMAT_I420, "YUV420", REFOCUS_FRAME_YUV420},
                  {REFOCUS_FORMAT_YUYV, "YUYV", REFOCUS_FRAME_YUYV}};
 
-    (void)state;
     for (int i = 0; i < 4; i++) {
         check_raw_of(kinds[i].format, kinds[i].name, kinds[i].frame, true);
         for (int k = 0; k < 3 && i < 3; k++)
@@ -338,7 +332,7 @@ static void raw_keeps_codes(void **state)
 }
 
 /* RGB8 into every format, and what is no format. */
-static void raw_formats(void **state)
+TEST(raw_formats)
 {
     static const struct {
         const char *name;
@@ -353,7 +347,6 @@ static void raw_formats(void **state)
                                 .width = 4,
                                 .height = 4};
 
-    (void)state;
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
         char name[80];
 
@@ -392,7 +385,7 @@ static int chroma_as(const struct refocus_image *image, bool tall, int i, int x,
 }
 
 /* 4:2:0 into 4:2:2 and back: codes of Y stay, rows of U and V come twice or are mixed. */
-static void raw_of_other_samples(void **state)
+TEST(raw_of_other_samples)
 {
     static const struct {
         uint32_t from, to;
@@ -406,7 +399,6 @@ static void raw_of_other_samples(void **state)
     static uint8_t memory[3][32 * RAW_H];
     struct refocus_converter *converter;
 
-    (void)state;
     assert_status(refocus_converter_create(&converter), REFOCUS_OK);
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
         const struct refocus_image image = noisy(kinds[k].from, memory, 1);
@@ -441,7 +433,7 @@ static void raw_of_other_samples(void **state)
 }
 
 /* 4:2:2 comes back from y4m as the YUYV that it was. */
-static void y4m_422_comes_back(void **state)
+TEST(y4m_422_comes_back)
 {
     static uint8_t memory[3][32 * RAW_H];
     struct refocus_image image = noisy(REFOCUS_FORMAT_YUYV, memory, 1);
@@ -449,7 +441,6 @@ static void y4m_422_comes_back(void **state)
     const struct refocus_frame *frame;
     struct refocus_sink *sink = NULL;
 
-    (void)state;
     assert_status(refocus_sink_open(&sink, "y4m:tall.y4m", NULL), REFOCUS_OK);
     assert_status(refocus_sink_start_image(sink, &image, 25, NULL), REFOCUS_OK);
     for (int n = 0; n < 2; n++)
@@ -478,12 +469,11 @@ static void y4m_422_comes_back(void **state)
     refocus_source_close(&source);
 }
 
-static void sinks_refuse_what_is_wrong(void **state)
+TEST(sinks_refuse_what_is_wrong)
 {
     struct refocus_sink *sink = NULL;
     struct refocus_image image = picture(0);
 
-    (void)state;
     assert_status(refocus_sink_open(&sink, "nowhere", NULL), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_sink_open(&sink, "y4m:", NULL), REFOCUS_ERR_ARGUMENT);
     assert_status(refocus_sink_open(&sink, "y4m:/not/there/x", NULL), REFOCUS_ERR_GONE);
@@ -497,13 +487,12 @@ static void sinks_refuse_what_is_wrong(void **state)
     assert_status(refocus_sink_close(&sink, NULL), REFOCUS_OK);
 }
 
-static void replay_replays(void **state)
+TEST(replay_replays)
 {
     struct refocus_source *source;
     const struct refocus_frame *frame;
     int n = 0;
 
-    (void)state;
     write_frames("raw:frames.rgb");
     source = started("replay::from raw:frames.rgb,RGB24,37x22,25;frames 10;at 2 drop",
                      REFOCUS_SOURCE_FAST);
@@ -519,12 +508,11 @@ static void replay_replays(void **state)
 }
 
 /* Rates have a point in a program whose locale has a comma, as far as the machine knows one. */
-static void rates_ignore_the_locale(void **state)
+TEST(rates_ignore_the_locale)
 {
     static const char *const names[] = {"raw:rate.tmp,RGB24,4x4,29.97",
                                         "replay::size 4x4;fps 29.97"};
 
-    (void)state;
     write_text("rate.tmp", "");
     setlocale(LC_NUMERIC, "de_DE.UTF-8");
     for (int i = 0; i < 2; i++) {
@@ -538,18 +526,4 @@ static void rates_ignore_the_locale(void **state)
     }
     setlocale(LC_NUMERIC, "C");
     remove("rate.tmp");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(streams_come_back),  cmocka_unit_test(pictures_come_back),
-        cmocka_unit_test(damage_is_named),    cmocka_unit_test(wrong_names_are_refused),
-        cmocka_unit_test(y4m_keeps_codes),    cmocka_unit_test(raw_keeps_codes),
-        cmocka_unit_test(raw_formats),        cmocka_unit_test(raw_of_other_samples),
-        cmocka_unit_test(y4m_422_comes_back), cmocka_unit_test(sinks_refuse_what_is_wrong),
-        cmocka_unit_test(replay_replays),     cmocka_unit_test(rates_ignore_the_locale),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -181,9 +181,8 @@ static void fail_everywhere(bool exports)
     assert_true(fake.calls == all && fake.frames == good);
 }
 
-static void cameras(void **state)
+TEST(cameras)
 {
-    (void)state;
     fake.output = false;
     for (int kind = 0; kind < 4; kind++) {
         fake.multi = kind & 1;
@@ -191,9 +190,8 @@ static void cameras(void **state)
     }
 }
 
-static void virtual_cameras(void **state)
+TEST(virtual_cameras)
 {
-    (void)state;
     fake.output = true;
     for (int multi = 0; multi < 2; multi++) {
         fake.multi = multi;
@@ -203,7 +201,7 @@ static void virtual_cameras(void **state)
 
 /* Frames that are refused cost no buffers, however many they are: each that was mapped is still
  * queued or shown after them. */
-static void refused_frames(void **state)
+TEST(refused_frames)
 {
     static uint8_t pixels[FAKE_WIDTH * FAKE_HEIGHT * 3];
     const struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixels, FAKE_WIDTH,
@@ -211,7 +209,6 @@ static void refused_frames(void **state)
     static const unsigned long requests[] = {VIDIOC_QBUF, VIDIOC_STREAMON};
     enum { REFUSALS = 9 };
 
-    (void)state;
     fake.output = true;
     for (int kind = 0; kind < 4; kind++)
         for (int shown = 0; shown <= 6; shown += 3) { /* buffers that were never queued, or were */
@@ -242,12 +239,11 @@ static void refused_frames(void **state)
 }
 
 /* A buffer that the driver takes back at neither of two attempts is offered again later. */
-static void refused_buffers(void **state)
+TEST(refused_buffers)
 {
     struct refocus_source_config config = refocus_source_config_default();
     struct refocus_source_mode mode = refocus_source_mode_default();
 
-    (void)state;
     fake.output = false;
     for (int multi = 0; multi < 2; multi++)
         for (int refusals = 1; refusals <= 6; refusals++) {
@@ -286,7 +282,7 @@ static struct refocus_source *start(struct refocus_source_config config,
 }
 
 /* A driver tells its colours and the rate, and gives buffers that are too small. */
-static void formats(void **state)
+TEST(formats)
 {
     static const struct {
         uint32_t space, encoding, range, matrix, full;
@@ -303,7 +299,6 @@ static void formats(void **state)
     struct refocus_source_config config = refocus_source_config_default();
     struct refocus_source_mode mode = refocus_source_mode_default();
 
-    (void)state;
     fake.output = false;
     for (size_t i = 0; i < 2 * sizeof cases / sizeof *cases; i++) {
         struct refocus_source *source;
@@ -333,7 +328,7 @@ static void formats(void **state)
 
 /* A driver says of a frame when it was, where it begins in its buffer, by a clock that does not
  * count, and that it is damaged or holds less or more than it can. */
-static void frames(void **state)
+TEST(frames)
 {
     enum { LENGTH = 2 * FAKE_WIDTH * FAKE_HEIGHT, MONOTONIC = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC };
     static const struct {
@@ -350,7 +345,6 @@ static void frames(void **state)
         {true, LENGTH / 2 + 63, 64, MONOTONIC, REFOCUS_FRAME_MONOTONIC | REFOCUS_FRAME_CORRUPT},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct refocus_source_mode mode = refocus_source_mode_default();
         const struct refocus_frame *frame;
@@ -376,14 +370,13 @@ static void frames(void **state)
 }
 
 /* A stream that starts anew knows nothing of buffers that the driver did not take back before. */
-static void starts_anew(void **state)
+TEST(starts_anew)
 {
     struct refocus_source_mode mode = refocus_source_mode_default();
     struct refocus_source *source = start(refocus_source_config_default(), &mode);
     const struct refocus_frame *frame, *kept;
     int status;
 
-    (void)state;
     fake.refused = VIDIOC_QBUF;
     fake.refusals = 1000;
     while ((status = refocus_source_wait(source, 1000, &frame, &reason)) == REFOCUS_OK)
@@ -396,15 +389,4 @@ static void starts_anew(void **state)
     refocus_source_release(source, frame);
     assert_int_equal((fake.queued | fake.done) >> kept->buffer & 1, 0);
     refocus_source_close(&source);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cameras),        cmocka_unit_test(virtual_cameras),
-        cmocka_unit_test(formats),        cmocka_unit_test(frames),
-        cmocka_unit_test(starts_anew),    cmocka_unit_test(refused_frames),
-        cmocka_unit_test(refused_buffers)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

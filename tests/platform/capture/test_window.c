@@ -33,11 +33,10 @@ static int write_one(struct refocus_sink *sink, int width, int height)
     return refocus_sink_write(sink, &image, NULL);
 }
 
-static void frames_of_any_size_are_shown(void **state)
+TEST(frames_of_any_size_are_shown)
 {
     struct refocus_sink *sink = opened();
 
-    (void)state;
     for (int i = 0; i < 30; i++)
         assert_status(write_one(sink, 16 + i / 10 * 40, 96 - i / 10 * 40), REFOCUS_OK);
     assert_status(refocus_sink_start(sink, 65535, 65535, 30, NULL), REFOCUS_ERR_UNSUPPORTED);
@@ -59,14 +58,13 @@ static int until_end(struct refocus_sink *sink, SDL_Event *event)
     return status;
 }
 
-static void its_user_closes_it(void **state)
+TEST(its_user_closes_it)
 {
     SDL_Event events[] = {{.type = SDL_QUIT},
                           {.key = {.type = SDL_KEYDOWN, .keysym = {.sym = SDLK_ESCAPE}}},
                           {.key = {.type = SDL_KEYDOWN, .keysym = {.sym = SDLK_q}}},
                           {.window = {.type = SDL_WINDOWEVENT, .event = SDL_WINDOWEVENT_CLOSE}}};
 
-    (void)state;
     for (int i = 0; i < 4; i++) {
         struct refocus_sink *sink = opened();
 
@@ -76,12 +74,11 @@ static void its_user_closes_it(void **state)
     }
 }
 
-static void no_display_is_a_status(void **state)
+TEST(no_display_is_a_status)
 {
     struct refocus_sink *sink = NULL;
     struct refocus_reason reason;
 
-    (void)state;
     setenv("SDL_VIDEODRIVER", "none-such", 1);
     assert_status(refocus_sink_open(&sink, "window", &reason), REFOCUS_ERR_GONE);
     assert_null(sink);
@@ -89,11 +86,10 @@ static void no_display_is_a_status(void **state)
     setenv("SDL_VIDEODRIVER", "dummy", 1);
 }
 
-static void cycles_leak_nothing(void **state)
+TEST(cycles_leak_nothing)
 {
     int fds = 0, threads = 0;
 
-    (void)state;
     for (int i = 0; i < 200; i++) {
         struct refocus_sink *sink = opened();
 
@@ -110,13 +106,6 @@ static void cycles_leak_nothing(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_of_any_size_are_shown),
-        cmocka_unit_test(its_user_closes_it),
-        cmocka_unit_test(no_display_is_a_status),
-        cmocka_unit_test(cycles_leak_nothing),
-    };
-
     setenv("SDL_VIDEODRIVER", "dummy", 1);
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

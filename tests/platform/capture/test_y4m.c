@@ -36,14 +36,13 @@ static void check_header(const char *in, uint32_t format, const char *out)
     assert_string_equal(strstr(header, " F") + 1, out);
 }
 
-static void y4m_keeps_its_header(void **state)
+TEST(y4m_keeps_its_header)
 {
     static const char *const rates[] = {"30000:1001", "24000:1001", "60000:1001",   "25:1",
                                         "50:1",       "1:5000",     "10000:1",      "2997:100",
                                         "1:1",        "15:2",       "999983:999979"};
     char in[40], out[80];
 
-    (void)state;
     for (size_t i = 0; i < sizeof rates / sizeof *rates; i++) {
         snprintf(in, sizeof in, "F%s", rates[i]);
         snprintf(out, sizeof out, "F%s Ip A1:1 C420jpeg XCOLORRANGE=LIMITED", rates[i]);
@@ -62,12 +61,11 @@ static void y4m_keeps_its_header(void **state)
 }
 
 /* The old contents are there until a frame is announced, and no file is left empty. */
-static void nothing_is_lost_before_it_begins(void **state)
+TEST(nothing_is_lost_before_it_begins)
 {
     static const char *const names[] = {"y4m:begun.tmp", "raw:begun.tmp,NV12"};
     struct refocus_sink *sink = NULL;
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         char text[8] = "";
         FILE *file;
@@ -94,12 +92,4 @@ static void nothing_is_lost_before_it_begins(void **state)
         fclose(file);
     }
     remove("begun.tmp");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(y4m_keeps_its_header),
-                                       cmocka_unit_test(nothing_is_lost_before_it_begins)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

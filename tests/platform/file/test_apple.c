@@ -9,9 +9,8 @@
     "apdi:FloatMinValue=\"0.25\" apdi:FloatMaxValue=\"4\" apdi:IntMinValue=\"0\" "                 \
     "apdi:IntMaxValue=\"255\" depthData:Accuracy=\"relative\""
 
-static void apple_disparity(void **state)
+TEST(apple_disparity)
 {
-    (void)state;
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         struct bytes main_jpeg = make_jpeg(64, 32, false, false);
         struct bytes parts[3] = {
@@ -44,7 +43,7 @@ static void apple_disparity(void **state)
 
 /* A matte of no picture is damage; a second one, those of hair and skin, and that of a depth file
  * alone are passed over. */
-static void apple_mattes(void **state)
+TEST(apple_mattes)
 {
     static const char matte[] = "urn:com:apple:photo:2018:aux:portraiteffectsmatte";
     struct bytes parts[3] = {
@@ -53,7 +52,6 @@ static void apple_mattes(void **state)
     struct bytes file = make_mpf(make_jpeg(32, 16, false, false), parts, 3, true), depth;
     struct refocus_photo *photo = read_photo(file, REFOCUS_OK);
 
-    (void)state;
     assert_non_null(photo->matte->samples);
     assert_null(photo->depth->samples);
     assert_true(has_evidence(photo, "image 3 passed over, it is no depth but"));
@@ -70,13 +68,12 @@ static void apple_mattes(void **state)
     refocus_photo_free(&photo);
 }
 
-static void apple_gain_map_is_no_depth(void **state)
+TEST(apple_gain_map_is_no_depth)
 {
     struct bytes part = make_auxiliary("urn:com:apple:photo:2020:aux:hdrgainmap", NULL);
     struct bytes file = make_mpf(make_jpeg(32, 32, false, false), &part, 1, true);
     struct refocus_photo *photo = read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
 
-    (void)state;
     assert_null(photo->depth->samples);
     assert_int_equal(photo->info->depth_source, REFOCUS_DEPTH_SOURCE_NONE);
     assert_true(has_evidence(photo, "it is no depth"));
@@ -85,14 +82,13 @@ static void apple_gain_map_is_no_depth(void **state)
 }
 
 /* An MPO: the other view behind the main one. Anything else is refused. */
-static void mpo_second_view(void **state)
+TEST(mpo_second_view)
 {
     char path[] = "/tmp/refocus-mpo-XXXXXX";
     const int file = mkstemp(path);
     struct refocus_reason reason;
     struct refocus_photo *photo;
 
-    (void)state;
     assert_true(file >= 0);
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         struct bytes part = make_jpeg(48, 24, true, false);
@@ -123,7 +119,7 @@ static void mpo_second_view(void **state)
 }
 
 /* Another JPEG behind the main one without MPF, after a few bytes or none. */
-static void second_view_behind(void **state)
+TEST(second_view_behind)
 {
     static const struct {
         size_t between;
@@ -138,7 +134,6 @@ static void second_view_behind(void **state)
     struct refocus_reason reason;
     struct refocus_photo *photo;
 
-    (void)state;
     assert_true(file >= 0);
     for (size_t i = 0; i < sizeof behind / sizeof *behind; i++) {
         static const uint8_t numbers[65];
@@ -169,11 +164,10 @@ static void second_view_behind(void **state)
 }
 
 /* MPF tells views for stereo from previews, and which of them there are is told. */
-static void mpo_views(void **state)
+TEST(mpo_views)
 {
     const size_t attributes = 10 + 50 + 16; /* the second picture has them there, see make_mpf() */
 
-    (void)state;
     for (int view = 0; view < 2; view++) {
         struct bytes part = make_jpeg(48, 24, true, false);
         struct bytes mpo = make_mpf(make_jpeg(48, 32, false, false), &part, 1, true);
@@ -196,7 +190,7 @@ static struct refocus_photo *apple_with(const char *type, const char *extra, int
 }
 
 /* Type and subtype as iOS 12 wrote them, the matte before the depth. */
-static void apple_subtypes(void **state)
+TEST(apple_subtypes)
 {
     struct bytes parts[2] = {
         make_auxiliary("depth", "apdi:AuxiliaryImageSubType=\"portraiteffectsmatte\""),
@@ -204,7 +198,6 @@ static void apple_subtypes(void **state)
     struct bytes file = make_mpf(make_jpeg(32, 16, false, false), parts, 2, true);
     struct refocus_photo *photo = read_photo(file, REFOCUS_OK);
 
-    (void)state;
     assert_non_null(photo->matte->samples);
     assert_true(has_evidence(photo, "image 2 is the portrait matte"));
     assert_true(has_evidence(photo, "image 3 is disparity"));
@@ -215,11 +208,10 @@ static void apple_subtypes(void **state)
     refocus_photo_free(&photo);
 }
 
-static void apple_ranges(void **state)
+TEST(apple_ranges)
 {
     struct refocus_photo *photo;
 
-    (void)state;
     photo =
         apple_with("disparity", "apdi:FloatMinValue=\"-1\" apdi:FloatMaxValue=\"4\"", REFOCUS_OK);
     assert_near(photo->depth->value_far, 51); /* code where disparity is 0 */
@@ -247,14 +239,13 @@ static void apple_ranges(void **state)
     apple_with("disparity", "apdi:FloatMinValue=\"x\"", REFOCUS_ERR_FORMAT);
 }
 
-static void mpf_index_of_another_file(void **state)
+TEST(mpf_index_of_another_file)
 {
     struct bytes part = make_auxiliary("disparity", APPLE_RANGE);
     struct bytes file = make_mpf(make_jpeg(32, 32, false, false), &part, 1, true);
     const size_t main_size = file.size - part.size;
     struct refocus_photo *photo;
 
-    (void)state;
     /* An editor dropped the image and left the index. */
     photo = read_photo(bytes_copy(file.data, main_size), REFOCUS_OK);
     assert_null(photo->depth->samples);
@@ -266,7 +257,7 @@ static void mpf_index_of_another_file(void **state)
     read_photo(file, REFOCUS_ERR_FORMAT);
 }
 
-static void xmp_hostile(void **state)
+TEST(xmp_hostile)
 {
     static const char *const entities =
         "<?xml version=\"1.0\"?><!DOCTYPE x [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b "
@@ -275,7 +266,6 @@ static void xmp_hostile(void **state)
     struct bytes jpeg = make_jpeg(16, 16, false, false);
     struct refocus_photo *photo;
 
-    (void)state;
     jpeg_insert_xmp(&jpeg, entities);
     read_photo(jpeg, REFOCUS_ERR_FORMAT);
     jpeg = make_jpeg(16, 16, false, false);
@@ -283,22 +273,4 @@ static void xmp_hostile(void **state)
     photo = read_photo(jpeg, REFOCUS_OK);
     assert_true(has_evidence(photo, "XMP: damaged"));
     refocus_photo_free(&photo);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(mpo_second_view),
-        cmocka_unit_test(second_view_behind),
-        cmocka_unit_test(mpo_views),
-        cmocka_unit_test(apple_disparity),
-        cmocka_unit_test(apple_mattes),
-        cmocka_unit_test(apple_subtypes),
-        cmocka_unit_test(apple_gain_map_is_no_depth),
-        cmocka_unit_test(apple_ranges),
-        cmocka_unit_test(mpf_index_of_another_file),
-        cmocka_unit_test(xmp_hostile),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -64,9 +64,8 @@ static void fail_each(const char *name, const struct rf_codec *codec, struct rf_
     }
 }
 
-static void readers(void **state)
+TEST(readers)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof codecs / sizeof *codecs; i++) {
         char folder[512], path[1024];
         const struct dirent *entry;
@@ -110,9 +109,8 @@ static int write_one(const struct rf_codec *codec)
     return status;
 }
 
-static void writers(void **state)
+TEST(writers)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof codecs / sizeof *codecs; i++) {
         long total;
 
@@ -130,11 +128,4 @@ static void writers(void **state)
             assert_int_equal(failing.live, 0);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(readers), cmocka_unit_test(writers)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -80,9 +80,8 @@ static struct bytes heif(const struct layout *layout)
     return file;
 }
 
-static void heif_layouts(void **state)
+TEST(heif_layouts)
 {
-    (void)state;
     for (int i = 0; i < 3 * 2 * 2 * 3 * 2; i++) {
         const struct layout layout = {.way = i % 3,
                                       .version = i / 3 % 2,
@@ -100,7 +99,7 @@ static void heif_layouts(void **state)
 }
 
 /* Properties that are not there, or say nothing, turn nothing. */
-static void heif_without_a_turn(void **state)
+TEST(heif_without_a_turn)
 {
     static const struct layout layouts[] = {
         {.index = 0},
@@ -111,7 +110,6 @@ static void heif_without_a_turn(void **state)
         {.index = 32767, .large = 1},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
         struct bytes file = heif(&layouts[i]);
 
@@ -121,13 +119,12 @@ static void heif_without_a_turn(void **state)
 }
 
 /* Each box in turn has a name that nobody looks for, or a size that no box has. */
-static void heif_without_a_box(void **state)
+TEST(heif_without_a_box)
 {
     static const char *const names[] = {"meta", "pitm", "iprp", "ipco", "ipma", "irot"};
     static const uint32_t sizes[] = {1, 2, 7, 0x7fffffff, 0xffffffff};
     const struct layout layout = {.index = 2};
 
-    (void)state;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         for (size_t n = 0; n <= sizeof sizes / sizeof *sizes; n++) {
             struct bytes file = heif(&layout);
@@ -153,7 +150,7 @@ static bool is_raw(const void *data, size_t size)
 }
 
 /* The makers' own headers, whole and cut by a byte; a dot stands for any byte. */
-static void raw_headers(void **state)
+TEST(raw_headers)
 {
     static const struct {
         const char *text;
@@ -168,7 +165,6 @@ static void raw_headers(void **state)
                    {"\1\2\3\4ftypcrx ", 12},
                    {"II*\0\1\2\3\4CR", 10}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof headers / sizeof *headers; i++) {
         char other[16];
 
@@ -208,7 +204,7 @@ static struct bytes tiff(bool high_first, const struct tag *tags, int count)
 
 enum { LONG = 4, SHORT = 3, REDUCED = 254, COLOURS = 262, TURN = 274, PARTS = 330, DNG = 50706 };
 
-static void raw_directories(void **state)
+TEST(raw_directories)
 {
     static const struct {
         struct tag tags[3];
@@ -229,7 +225,6 @@ static void raw_directories(void **state)
         {{{TURN, SHORT, 6}}, 1, false},
     };
 
-    (void)state;
     for (size_t i = 0; i < 2 * (sizeof cases / sizeof *cases); i++) {
         const int count = cases[i / 2].count;
         struct bytes file = tiff(i % 2, cases[i / 2].tags, count);
@@ -264,7 +259,7 @@ static struct refocus_photo *read_preview(struct bytes *file, int expected)
 
 /* The largest of the JPEGs is taken, wherever it lies; one of samples without loss or of 12 bits is
  * none, nor are bytes that begin like one. The directory's orientation turns it. */
-static void raw_previews(void **state)
+TEST(raw_previews)
 {
     static const struct {
         int width, height; /* 0: something else */
@@ -273,7 +268,6 @@ static void raw_previews(void **state)
     static const char twelve[] = "\xff\xd8\xff\xc1\0\x0b\x0c\x03\0\x03\0\1\1\x11\0";
     static const uint16_t turns[] = {1, 6, 8, 0, 9};
 
-    (void)state;
     for (int last = 1; last <= 5; last++) {
         for (size_t t = 0; t < sizeof turns / sizeof *turns; t++) {
             const struct tag tags[] = {{TURN, SHORT, turns[t]}, {DNG, 1, 0x01040000}};
@@ -299,14 +293,13 @@ static void raw_previews(void **state)
 
 /* Half a megabyte of segments in each of which the next JPEG begins: gone over from each beginning,
  * it took a minute. The preview before them is found all the same. */
-static void raw_of_many_beginnings(void **state)
+TEST(raw_of_many_beginnings)
 {
     const struct tag tag = {DNG, 1, 0x01040000};
     struct bytes file = tiff(false, &tag, 1);
     struct refocus_photo *photo;
     const clock_t begin = clock();
 
-    (void)state;
     bytes_join(&file, make_jpeg(48, 32, false, false));
     for (int i = 0; i < 87000; i++)
         bytes_add(&file, "\xff\xfe\0\4\xff\xd8", 6);
@@ -316,7 +309,7 @@ static void raw_of_many_beginnings(void **state)
     assert_true((double)(clock() - begin) / CLOCKS_PER_SEC < 10);
 }
 
-static void raw_without_a_preview(void **state)
+TEST(raw_without_a_preview)
 {
     static const char *const ends[] = {"",
                                        "\xff",
@@ -327,7 +320,6 @@ static void raw_without_a_preview(void **state)
                                        "\xff\xd8\xff\xc3"};
     const struct tag tag = {DNG, 1, 0x01040000};
 
-    (void)state;
     for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
         struct bytes file = tiff(i % 2, &tag, 1);
 
@@ -336,18 +328,3 @@ static void raw_without_a_preview(void **state)
     }
 }
 #endif
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(heif_layouts),           cmocka_unit_test(heif_without_a_turn),
-        cmocka_unit_test(heif_without_a_box),     cmocka_unit_test(raw_headers),
-        cmocka_unit_test(raw_directories),
-#ifdef RF_HAVE_JPEG
-        cmocka_unit_test(raw_previews),           cmocka_unit_test(raw_without_a_preview),
-        cmocka_unit_test(raw_of_many_beginnings),
-#endif
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}

@@ -20,13 +20,12 @@ static int read_exact(const uint8_t *bytes, size_t size, bool depth, struct refo
     return status;
 }
 
-static void whole_samples_are_read(void **state)
+TEST(whole_samples_are_read)
 {
     struct sample samples[SAMPLES_MAX];
     const int count = make_samples(samples);
     struct refocus_reason reason;
 
-    (void)state;
     assert_true(count >= 7);
     for (int i = 0; i < count; i++) {
         const struct bytes *const b = &samples[i].bytes;
@@ -38,13 +37,12 @@ static void whole_samples_are_read(void **state)
     free_samples(samples, count);
 }
 
-static void cut_at_every_byte(void **state)
+TEST(cut_at_every_byte)
 {
     struct sample samples[SAMPLES_MAX];
     const int count = make_samples(samples);
     struct refocus_reason reason;
 
-    (void)state;
     for (int i = 0; i < count; i++) {
         const struct sample *const s = &samples[i];
         for (size_t size = 0; size < s->bytes.size; size++) {
@@ -58,14 +56,13 @@ static void cut_at_every_byte(void **state)
     free_samples(samples, count);
 }
 
-static void every_byte_changed(void **state)
+TEST(every_byte_changed)
 {
     static const uint8_t changes[] = {0x01, 0x80, 0xff};
     struct sample samples[SAMPLES_MAX];
     const int count = make_samples(samples);
     struct refocus_reason reason;
 
-    (void)state;
     for (int i = 0; i < count; i++) {
         struct bytes *const b = &samples[i].bytes;
         for (size_t at = 0; at < b->size; at++) {
@@ -79,14 +76,13 @@ static void every_byte_changed(void **state)
     free_samples(samples, count);
 }
 
-static void limits_of_parts(void **state)
+TEST(limits_of_parts)
 {
     struct sample samples[SAMPLES_MAX];
     const int count = make_samples(samples);
     const struct refocus_read_limits limits = {.struct_size = sizeof(struct refocus_read_limits),
                                                .max_pixels = 1};
 
-    (void)state;
     for (int i = 0; i < count; i++) {
         struct refocus_reason reason;
         struct refocus_photo *photo;
@@ -118,27 +114,11 @@ static struct bytes jpeg_of_size(unsigned width, unsigned height)
     return jpeg;
 }
 
-static void jpeg_absurd(void **state)
+TEST(jpeg_absurd)
 {
-    (void)state;
     read_photo(jpeg_of_size(65500, 65500), REFOCUS_ERR_SIZE);
     read_photo(jpeg_of_size(32000, 4000), REFOCUS_ERR_FORMAT);
     read_photo(jpeg_of_size(0, 16), REFOCUS_ERR_FORMAT);
     read_photo(jpeg_of_size(16, 17), REFOCUS_ERR_FORMAT);
 }
 #endif
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(whole_samples_are_read),
-        cmocka_unit_test(cut_at_every_byte),
-        cmocka_unit_test(every_byte_changed),
-        cmocka_unit_test(limits_of_parts),
-#ifdef RF_HAVE_JPEG
-        cmocka_unit_test(jpeg_absurd),
-#endif
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}

@@ -31,12 +31,11 @@ static void check_samples(const struct refocus_photo *photo)
     }
 }
 
-static void formats_and_units(void **state)
+TEST(formats_and_units)
 {
     struct refocus_photo *photo = read_photo(
         make_dynamic(with("DepthMap:Format=\"RangeInverse\" " METRES URIS, false), 0), REFOCUS_OK);
 
-    (void)state;
     check_samples(photo);
     assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISPARITY);
     assert_true(photo->depth->value_near == 0 && photo->depth->value_far == 255);
@@ -54,7 +53,7 @@ static void formats_and_units(void **state)
 }
 
 /* Dioptres are metres where the nearest has most of them. "None" and nothing are none. */
-static void dioptres_and_no_unit(void **state)
+TEST(dioptres_and_no_unit)
 {
     static const char *const none[] = {
         "DepthMap:Format=\"RangeInverse\" DepthMap:Near=\"2\" DepthMap:Far=\"9\" " URIS,
@@ -66,7 +65,6 @@ static void dioptres_and_no_unit(void **state)
     };
     struct refocus_photo *photo;
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         photo = read_photo(
             make_dynamic(with(i ? "DepthMap:Format=\"RangeInverse\" DepthMap:Near=\"4\" "
@@ -93,9 +91,8 @@ static void dioptres_and_no_unit(void **state)
 }
 
 /* The directory of Ultra HDR names items by what they are, with and without a DepthMap. */
-static void directory_of_ultra_hdr(void **state)
+TEST(directory_of_ultra_hdr)
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct refocus_photo *photo = read_photo(
             make_dynamic(with(i ? "DepthMap:Format=\"RangeInverse\" " METRES : NULL, true), 0),
@@ -110,11 +107,10 @@ static void directory_of_ultra_hdr(void **state)
 }
 
 /* Padding behind each item; and something else behind the main picture, which no item counts. */
-static void places(void **state)
+TEST(places)
 {
     static const size_t padding[] = {0, 1, 7, 0, 5}, between[] = {0, 0, 0, 9, 400};
 
-    (void)state;
     for (int i = 0; i < 10; i++) {
         struct dynamic dynamic = with("DepthMap:Format=\"RangeInverse\" " URIS, i % 2);
         struct refocus_photo *photo;
@@ -128,9 +124,8 @@ static void places(void **state)
     }
 }
 
-static void original_and_orientation(void **state)
+TEST(original_and_orientation)
 {
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct dynamic dynamic = with("DepthMap:Format=\"RangeInverse\" " URIS, i);
         struct refocus_photo *photo;
@@ -150,7 +145,7 @@ static void original_and_orientation(void **state)
     }
 }
 
-static void confidence_of_all_kinds(void **state)
+TEST(confidence_of_all_kinds)
 {
     struct dynamic dynamic = with("DepthMap:Format=\"RangeInverse\" " URIS, false);
     const struct gdepth gdepth = {.format = "RangeInverse",
@@ -159,7 +154,6 @@ static void confidence_of_all_kinds(void **state)
     struct bytes png = make_png(6, 4, 0, 8), text = {NULL, 0}, coded;
     struct refocus_photo *photo;
 
-    (void)state;
     bytes_free(&dynamic.confidence);
     dynamic.confidence = make_png(6, 4, 0, 16);
     photo = read_photo(make_dynamic(dynamic, 0), REFOCUS_OK);
@@ -191,7 +185,7 @@ static void confidence_of_all_kinds(void **state)
     bytes_free(&text);
 }
 
-static void damaged(void **state)
+TEST(damaged)
 {
     static const char *const bad[] = {
         "DepthMap:Format=\"RangeSquare\" " URIS,
@@ -205,7 +199,6 @@ static void damaged(void **state)
     struct refocus_photo *photo;
     struct bytes file;
 
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         read_photo(make_dynamic(with(bad[i], false), 0), REFOCUS_ERR_FORMAT);
     for (int i = 0; i < 3; i++) { /* parts that are no picture, or one in colour */
@@ -228,13 +221,12 @@ static void damaged(void **state)
 }
 
 /* Beside the directory by URIs there is one by meanings: each counts the same bytes by itself. */
-static void two_directories(void **state)
+TEST(two_directories)
 {
     struct bytes jpeg = make_jpeg(48, 32, false, false), png = make_png(6, 4, 0, 8);
     struct refocus_photo *photo;
     char text[1200];
 
-    (void)state;
     snprintf(text, sizeof text,
              "<x xmlns:C=\"http://ns.google.com/photos/1.0/container/\" "
              "xmlns:I=\"http://ns.google.com/photos/1.0/container/item/\" "
@@ -276,9 +268,8 @@ static void check_items(const char *items, int count, int expected)
 }
 
 /* Lengths that overflow, that are no lengths, and more items than anything has. */
-static void hostile_directories(void **state)
+TEST(hostile_directories)
 {
-    (void)state;
     check_items("<c:Item i:DataURI=\"a\" i:Length=\"1\"/>", 32, REFOCUS_OK);
     check_items("<c:Item i:DataURI=\"a\" i:Length=\"1\"/>", 33, REFOCUS_ERR_SIZE);
     check_items("<c:Item i:Semantic=\"Depth\" i:Length=\"9e15\" i:Padding=\"9e15\"/>", 32,
@@ -291,7 +282,7 @@ static void hostile_directories(void **state)
 }
 
 /* Metres are written where both ends are known and in order. */
-static void metres_are_written(void **state)
+TEST(metres_are_written)
 {
     static const struct {
         double near, far;
@@ -299,7 +290,6 @@ static void metres_are_written(void **state)
     } cases[] = {{2, 8, true},  {2, INFINITY, true}, {0, 8, false},
                  {2, 0, false}, {2, 2, false},       {0, 0, false}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct refocus_depth_write depth = refocus_depth_write_default();
         struct rf_text text = {NULL, 0, 0, false};
@@ -323,22 +313,4 @@ static void metres_are_written(void **state)
         assert_int_equal(text.size, 0);
         free(text.data);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(formats_and_units),
-        cmocka_unit_test(dioptres_and_no_unit),
-        cmocka_unit_test(directory_of_ultra_hdr),
-        cmocka_unit_test(places),
-        cmocka_unit_test(original_and_orientation),
-        cmocka_unit_test(confidence_of_all_kinds),
-        cmocka_unit_test(damaged),
-        cmocka_unit_test(hostile_directories),
-        cmocka_unit_test(metres_are_written),
-        cmocka_unit_test(two_directories),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

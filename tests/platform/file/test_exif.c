@@ -38,11 +38,10 @@ static struct rf_exif facts(struct bytes block)
     return exif;
 }
 
-static void header_is_whole(void **state)
+TEST(header_is_whole)
 {
     struct rf_exif exif;
 
-    (void)state;
     for (size_t size = 0; size < 8; size++) {
         struct bytes block = bytes_copy("MM\0*\0\0\0\10", 8);
 
@@ -67,9 +66,8 @@ static bool is_portrait(const char *make, uint32_t custom)
     return facts(block).is_portrait;
 }
 
-static void portraits_are_told(void **state)
+TEST(portraits_are_told)
 {
-    (void)state;
     assert_true(is_portrait("Apple", 7));
     assert_true(is_portrait("Apple", 8));
     assert_false(is_portrait("Apple", 9)); /* one with depth, but not blurred */
@@ -91,11 +89,10 @@ static struct bytes with_subject(int type, uint32_t count, uint32_t x, uint32_t 
 }
 
 /* A point within sides that are known, and nothing else. */
-static void subject_lies_within(void **state)
+TEST(subject_lies_within)
 {
     const struct rf_exif exif = facts(with_subject(SHORT, 2, 320, 479, 2));
 
-    (void)state;
     assert_near(exif.subject.x, 320.5 / 640);
     assert_near(exif.subject.y, 479.5 / 480);
     assert_true(facts(with_subject(SHORT, 2, 640, 0, 2)).subject.x == -1);
@@ -108,12 +105,11 @@ static void subject_lies_within(void **state)
 }
 
 /* The number of entries lies within the block. */
-static void directory_lies_within(void **state)
+TEST(directory_lies_within)
 {
     const uint32_t size = 40;
     struct rf_exif exif;
 
-    (void)state;
     for (int beyond = -1; beyond <= 16; beyond++) {
         struct bytes block = {NULL, 0};
 
@@ -133,11 +129,10 @@ static void directory_lies_within(void **state)
 }
 
 /* More entries are said than there are. */
-static void entries_lie_within(void **state)
+TEST(entries_lie_within)
 {
     struct rf_exif exif;
 
-    (void)state;
     for (size_t rest = 0; rest < 12; rest++) {
         struct bytes block = {NULL, 0};
 
@@ -159,11 +154,10 @@ static void entries_lie_within(void **state)
 }
 
 /* The link to the thumbnail's directory, whole, in part, or not there. */
-static void link_lies_within(void **state)
+TEST(link_lies_within)
 {
     struct rf_exif exif;
 
-    (void)state;
     for (size_t rest = 0; rest <= 4; rest++) {
         struct bytes block = {NULL, 0};
 
@@ -180,11 +174,10 @@ static void link_lies_within(void **state)
 }
 
 /* Values of 8 bytes: inside, cut off by the end of the block, behind it. */
-static void values_lie_within(void **state)
+TEST(values_lie_within)
 {
     const uint32_t place = 8 + 2 + 2 * 12 + 4 + 2 + 12;
 
-    (void)state;
     for (uint32_t beyond = 0; beyond <= 64; beyond++) {
         struct bytes block = with_settings(1, 1);
 
@@ -196,13 +189,12 @@ static void values_lie_within(void **state)
 }
 
 /* Metres; the greatest numerator is infinity, 0 is not known. */
-static void distances_are_metres(void **state)
+TEST(distances_are_metres)
 {
     static const uint32_t above[] = {5, UINT32_MAX, 0, UINT32_MAX};
     static const double metres[] = {2.5, INFINITY, 0, INFINITY};
     const uint32_t place = 8 + 2 + 2 * 12 + 4 + 2 + 12;
 
-    (void)state;
     for (int i = 0; i < 4; i++) {
         struct bytes block = with_settings(1, 1);
 
@@ -214,11 +206,10 @@ static void distances_are_metres(void **state)
 }
 
 /* 0x20000000 of 8 bytes are 2^32: none, where sizes have 32 bits. And none has no value. */
-static void counts_are_possible(void **state)
+TEST(counts_are_possible)
 {
     static const uint32_t counts[] = {0, 0x20000000, 0x20000001, 0x80000000, 0xffffffff};
 
-    (void)state;
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
         struct bytes block = with_settings(1, 1);
 
@@ -232,12 +223,11 @@ static void counts_are_possible(void **state)
 }
 
 /* A text ends with its count, and after what there is room for. */
-static void texts_end(void **state)
+TEST(texts_end)
 {
     char text[300];
     struct rf_exif exif;
 
-    (void)state;
     memset(text, 'x', sizeof text);
     for (uint32_t count = 1; count <= sizeof text; count++) {
         struct bytes block = {NULL, 0};
@@ -259,9 +249,8 @@ static void texts_end(void **state)
 }
 
 /* A value is taken for what its type says: 8 bytes are not read of a number of 2. */
-static void types_are_what_they_say(void **state)
+TEST(types_are_what_they_say)
 {
-    (void)state;
     for (int type = 1; type < RATIONAL; type++) {
         struct bytes block = with_settings(1, 1);
 
@@ -286,9 +275,8 @@ static void types_are_what_they_say(void **state)
     }
 }
 
-static void orientations_are_1_to_8(void **state)
+TEST(orientations_are_1_to_8)
 {
-    (void)state;
     for (uint32_t orientation = 0; orientation <= 10; orientation++) {
         struct bytes block = {NULL, 0};
 
@@ -320,9 +308,8 @@ static bool exchanges(int orientation, int type, uint32_t count, int second)
 }
 
 /* Types that TIFF does not have stand in no table, and what has no value is no side. */
-static void sides_are_exchanged(void **state)
+TEST(sides_are_exchanged)
 {
-    (void)state;
     for (int orientation = 1; orientation <= 9; orientation++) {
         assert_int_equal(exchanges(orientation, SHORT, 1, HEIGHT),
                          orientation >= 5 && orientation <= 8);
@@ -335,11 +322,10 @@ static void sides_are_exchanged(void **state)
 }
 
 /* Only the other side: nothing to exchange it with. */
-static void one_side_stays(void **state)
+TEST(one_side_stays)
 {
     static const int tags[] = {WIDTH, HEIGHT};
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct bytes block = with_settings(6, 1), before;
         struct rf_exif exif;
@@ -355,12 +341,11 @@ static void one_side_stays(void **state)
 }
 
 /* Two numbers of a side are none, whichever of the sides has them. */
-static void two_heights_are_none(void **state)
+TEST(two_heights_are_none)
 {
     struct bytes block = with_settings(6, 2), before;
     struct rf_exif exif;
 
-    (void)state;
     entry_short(&block, WIDTH, 640);
     entry(&block, HEIGHT, SHORT, 2, 480 << 16);
     before = bytes_copy(block.data, block.size);
@@ -372,9 +357,8 @@ static void two_heights_are_none(void **state)
 }
 
 /* ICC.1, 7.2: less than a header is no profile, whatever it says. */
-static void profiles_have_a_header(void **state)
+TEST(profiles_have_a_header)
 {
-    (void)state;
     for (size_t size = 0; size <= 128; size++) {
         struct refocus_photo_info info = {.evidence_count = 0};
         struct rf_read read = {.info = &info};
@@ -390,20 +374,4 @@ static void profiles_have_a_header(void **state)
         assert_null(profile.data);
         free(read.icc.data);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(header_is_whole),         cmocka_unit_test(directory_lies_within),
-        cmocka_unit_test(entries_lie_within),      cmocka_unit_test(link_lies_within),
-        cmocka_unit_test(values_lie_within),       cmocka_unit_test(distances_are_metres),
-        cmocka_unit_test(counts_are_possible),     cmocka_unit_test(texts_end),
-        cmocka_unit_test(types_are_what_they_say), cmocka_unit_test(orientations_are_1_to_8),
-        cmocka_unit_test(sides_are_exchanged),     cmocka_unit_test(one_side_stays),
-        cmocka_unit_test(two_heights_are_none),    cmocka_unit_test(portraits_are_told),
-        cmocka_unit_test(subject_lies_within),     cmocka_unit_test(profiles_have_a_header),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -96,9 +96,8 @@ static uint32_t main_directory(bool high_first)
     return number(copied + 4, 4, high_first);
 }
 
-static void headers(void **state)
+TEST(headers)
 {
-    (void)state;
     for (int high = 0; high < 2; high++) {
         struct block from = block(high, 1);
 
@@ -128,9 +127,8 @@ static void headers(void **state)
 
 /* Values that are too large, of no known type, without bytes or outside of the file are left out,
  * as is all that is not shared; what stands between them is copied. */
-static void left_out(void **state)
+TEST(left_out)
 {
-    (void)state;
     for (int high = 0; high < 2; high++) {
         struct block from = block(high, 9);
         const uint32_t text = 10 + 9 * 12 + 4, size = text + 16386;
@@ -159,9 +157,8 @@ static void left_out(void **state)
 
 /* Settings are copied but for the maker's note; a directory of them that is empty, behind the file
  * or counted otherwise is left out, and what follows stays. */
-static void settings(void **state)
+TEST(settings)
 {
-    (void)state;
     for (int i = 0; i < 12; i++) {
         const bool high = i % 2;
         const int way = i / 2;
@@ -205,14 +202,13 @@ static void settings(void **state)
 }
 
 /* As many values as there is room for; a directory for more entries than that is none. */
-static void room(void **state)
+TEST(room)
 {
     enum { TEXTS = 6, LENGTH = 16383 };
     struct block from = block(true, TEXTS), many = block(true, 6000);
     const uint32_t text = 10 + TEXTS * 12 + 4;
     uint32_t directory;
 
-    (void)state;
     for (int i = 0; i < TEXTS; i++)
         entry(&from, ARTIST, ASCII, LENGTH, text);
     bytes_number(&from.bytes, 0, 4, true);
@@ -235,14 +231,13 @@ static void room(void **state)
     bytes_free(&many.bytes);
 }
 
-static void texts_and_places(void **state)
+TEST(texts_and_places)
 {
     struct block from = block(false, 4);
     const uint32_t below = 10 + 4 * 12 + 4, value = below + 2 + 12 + 4;
     struct rf_bytes exif;
     char text[8];
 
-    (void)state;
     entry(&from, ARTIST, ASCII, 3, 'A' | 'b' << 8);
     entry(&from, MODEL, ASCII, 10, value);
     entry(&from, TURN, SHORT, 1, 1);
@@ -267,14 +262,4 @@ static void texts_and_places(void **state)
     assert_int_equal(rf_exif_directory(exif, MODEL, 1000, copied), 0);
     assert_int_equal(rf_exif_directory((struct rf_bytes){NULL, 0}, PLACE, 0, copied), 0);
     bytes_free(&from.bytes);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(headers), cmocka_unit_test(left_out),         cmocka_unit_test(settings),
-        cmocka_unit_test(room),    cmocka_unit_test(texts_and_places),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

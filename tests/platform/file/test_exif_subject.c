@@ -45,7 +45,7 @@ static void assert_area(const struct bytes *block, unsigned x, unsigned y, unsig
 }
 
 /* Point and rectangle go where the pixels under them go. */
-static void subject_turns_with_the_picture(void **state)
+TEST(subject_turns_with_the_picture)
 {
     static const unsigned turned[9][4] = {
         {0, 0, 0, 0},     {320, 470, 30, 20}, {319, 470, 30, 20},
@@ -53,7 +53,6 @@ static void subject_turns_with_the_picture(void **state)
         {9, 320, 20, 30}, {9, 319, 20, 30},   {470, 319, 20, 30},
     };
 
-    (void)state;
     for (int orientation = 1; orientation <= 8; orientation++) {
         struct bytes block = with_subject(orientation, 640, 480);
         const unsigned *const t = turned[orientation];
@@ -81,12 +80,11 @@ static bool mentions(const struct bytes *block, unsigned tag)
 }
 
 /* Beyond sides that are said it cannot be turned. */
-static void subject_outside_is_dropped(void **state)
+TEST(subject_outside_is_dropped)
 {
     struct bytes block = with_subject(6, 640, 400);
     struct rf_exif exif;
 
-    (void)state;
     assert_true(rf_exif_parse(block.data, block.size, &exif));
     assert_true(exif.subject.x == -1);
     assert_int_equal(number(&block, AREA_ENTRY - 2), 2);
@@ -98,11 +96,10 @@ static void subject_outside_is_dropped(void **state)
 }
 
 /* A picture of other sides may be any part of the old one. */
-static void subject_goes_with_its_size(void **state)
+TEST(subject_goes_with_its_size)
 {
     static const uint32_t sides[][2] = {{640, 480}, {320, 240}, {640, 400}, {600, 480}};
 
-    (void)state;
     for (int i = 0; i < 4; i++) {
         struct bytes block = with_subject(1, 640, 480);
 
@@ -134,12 +131,11 @@ static bool focus(const struct rf_subject *subject, int width, int height, int o
 }
 
 /* 2398,1575 of 4032 x 3024, in pictures whose pixels were turned and whose EXIF was not. */
-static void turned_pixels_turn_the_point(void **state)
+TEST(turned_pixels_turn_the_point)
 {
     struct rf_subject subject = {2398.5 / 4032, 1575.5 / 3024, 4032, 3024, 1, 6};
     double x, y;
 
-    (void)state;
     assert_true(focus(&subject, 4032, 3024, 1, &x, &y));
     assert_near(x, 2398.5);
     assert_near(y, 1575.5);
@@ -192,9 +188,8 @@ static int held(int32_t x, int32_t y, uint32_t count, const char *lens)
     return exif.subject.held;
 }
 
-static void gravity_says_how_a_phone_was_held(void **state)
+TEST(gravity_says_how_a_phone_was_held)
 {
-    (void)state;
     assert_int_equal(held(-105, -989, 3, "back\0"), 6);
     assert_int_equal(held(105, 989, 3, "back\0"), 8);
     assert_int_equal(held(-997, 34, 3, "back\0"), 0); /* on its side, nothing is turned */
@@ -241,11 +236,10 @@ static int left(struct bytes block)
     return n;
 }
 
-static void thumbnails_are_erased(void **state)
+TEST(thumbnails_are_erased)
 {
     struct bytes block;
 
-    (void)state;
     assert_int_equal(left(with_thumbnail(0x201, 1, DATA, 32)), 0);
     assert_int_equal(left(with_thumbnail(0x201, 1, DATA + 4, 20)), 12);
     assert_int_equal(left(with_thumbnail(0x201, 1, DATA + 8, 0xffffffff)), 8);
@@ -263,18 +257,4 @@ static void thumbnails_are_erased(void **state)
     add(&block, 10, 4);
     add(&block, 12, 4);
     assert_int_equal(left(block), 10);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(subject_turns_with_the_picture),
-        cmocka_unit_test(subject_outside_is_dropped),
-        cmocka_unit_test(subject_goes_with_its_size),
-        cmocka_unit_test(turned_pixels_turn_the_point),
-        cmocka_unit_test(gravity_says_how_a_phone_was_held),
-        cmocka_unit_test(thumbnails_are_erased),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -182,23 +182,21 @@ static int each_call(int (*act)(struct refocus_reason *reason), bool moves, int 
     }
 }
 
-static void saving(void **state)
+TEST_BETWEEN(saving, make_folder, remove_folder)
 {
     static const int errors[] = {EIO, ENOSPC, EACCES, EROFS, EDQUOT};
 
-    (void)state;
     for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) {
         assert_true(each_call(save, false, errors[i]) >= 10);
         assert_true(each_call(move, true, errors[i]) >= 6);
     }
 }
 
-static void reading(void **state)
+TEST_BETWEEN(reading, make_folder, remove_folder)
 {
     const int files = entries("/proc/self/fd");
     int made = 0;
 
-    (void)state;
     fail_at = 0;
     failure = EIO;
     assert_int_equal(save(NULL), REFOCUS_OK);
@@ -225,13 +223,4 @@ static void reading(void **state)
         assert_true(at < 100);
     }
     assert_true(made >= 4); /* it is opened, looked at, read and closed */
-}
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {TEST(saving), TEST(reading)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

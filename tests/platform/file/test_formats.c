@@ -19,9 +19,8 @@
 #ifdef RF_HAVE_TIFF
 static const struct tiff_kind rgb8 = {.bits = 8, .channels = 3, .photometric = 2, .orientation = 1};
 
-static void tiff_kinds(void **state)
+TEST(tiff_kinds)
 {
-    (void)state;
     for (int i = 0; i < 32; i++) {
         const bool deep = i & 1, planar = i & 4 && i & 8;
         const struct tiff_kind kind = {.bits = deep ? 16 : 8,
@@ -48,12 +47,11 @@ static void tiff_kinds(void **state)
     }
 }
 
-static void tiff_floats(void **state)
+TEST(tiff_floats)
 {
     struct tiff_kind kind = {.bits = 32, .floats = true, .channels = 3, .photometric = 2};
     struct refocus_photo *photo;
 
-    (void)state;
     kind.orientation = 6;
     photo = read_photo(make_tiff(W, H, kind), REFOCUS_OK);
     assert_int_equal(photo->info->orientation, 6);
@@ -75,12 +73,11 @@ static void tiff_floats(void **state)
     refocus_photo_free(&photo);
 }
 
-static void tiff_transparent(void **state)
+TEST(tiff_transparent)
 {
     struct tiff_kind kind = {.channels = 2, .photometric = 1, .orientation = 1, .alpha = true};
     struct refocus_photo *photo;
 
-    (void)state;
     for (kind.bits = 8; kind.bits <= 16; kind.bits += 8) {
         photo = read_depth(make_tiff(W, H, kind), NULL, REFOCUS_OK);
         for (int i = 0; i < W * H; i++) {
@@ -98,12 +95,11 @@ static void tiff_transparent(void **state)
 }
 
 /* CMYK goes by way of libtiff's RGB: it is turned once, as other pictures are. */
-static void tiff_cmyk_is_turned(void **state)
+TEST(tiff_cmyk_is_turned)
 {
     struct tiff_kind kind = {.bits = 8, .channels = 4, .photometric = 5, .orientation = 1};
     struct refocus_photo *const upright = read_photo(make_tiff(W, H, kind), REFOCUS_OK);
 
-    (void)state;
     for (kind.orientation = 2; kind.orientation <= 8; kind.orientation++) {
         struct refocus_photo *photo = read_photo(make_tiff(W, H, kind), REFOCUS_OK);
 
@@ -119,12 +115,11 @@ static void tiff_cmyk_is_turned(void **state)
     refocus_photo_free(&(struct refocus_photo *){upright});
 }
 
-static void tiff_refused(void **state)
+TEST(tiff_refused)
 {
     const struct tiff_kind odd = {.bits = 32, .channels = 3, .photometric = 2, .orientation = 1};
     struct bytes file = make_tiff(W, H, rgb8);
 
-    (void)state;
     refuse_cut(file, false);
     refuse_large(file);
     bytes_free(&file);
@@ -133,13 +128,12 @@ static void tiff_refused(void **state)
 }
 
 /* A picture that is written is read again, sample by sample. */
-static void tiff_written(void **state)
+TEST(tiff_written)
 {
     uint16_t samples[3 * W * H];
     struct refocus_image image = refocus_image_packed(REFOCUS_FORMAT_RGB16, samples, W, H, 6 * W);
     struct refocus_photo *photo = NULL;
 
-    (void)state;
     for (int i = 0; i < 3 * W * H; i++)
         samples[i] = (uint16_t)(i * 1091);
     assert_int_equal(refocus_image_write("formats.tif", &image, NULL, NULL), REFOCUS_OK);
@@ -164,13 +158,12 @@ static void tiff_written(void **state)
 }
 
 /* EXIF goes into a TIFF and out of it, in either order of bytes, with the picture's own sides. */
-static void tiff_exif(void **state)
+TEST(tiff_exif)
 {
     static const uint8_t pixels[3 * W * H] = {1, 2, 3};
     const struct refocus_image image =
         refocus_image_packed(REFOCUS_FORMAT_RGB8, (uint8_t *)(uintptr_t)pixels, W, H, 3 * W);
 
-    (void)state;
     for (int big = 0; big < 2; big++) {
         struct refocus_write_options options = refocus_write_options_default();
         struct bytes exif = make_exif(big, 1);
@@ -197,13 +190,12 @@ static void tiff_exif(void **state)
 
 #ifdef RF_HAVE_WEBP
 /* Grey of 40 with one pixel that is transparent. */
-static void webp_transparent(void **state)
+TEST(webp_transparent)
 {
     uint8_t rgba[4 * W * H], *made = NULL;
     struct refocus_photo *photo;
     size_t size;
 
-    (void)state;
     for (int i = 0; i < W * H; i++) {
         memset(rgba + 4 * i, 40, 3);
         rgba[4 * i + 3] = i == 3 ? 0 : 255;
@@ -216,14 +208,13 @@ static void webp_transparent(void **state)
     refocus_photo_free(&photo);
 }
 
-static void webp(void **state)
+TEST(webp)
 {
     uint8_t rgb[3 * W * H], *made = NULL;
     struct bytes file = {NULL, 0}, exif = make_exif(false, 3);
     struct refocus_photo *photo;
     size_t size;
 
-    (void)state;
     for (int i = 0; i < 3 * W * H; i++)
         rgb[i] = (uint8_t)pattern(i / 3 % W, i / 3 / W, i % 3, 255);
     size = WebPEncodeLosslessRGB(rgb, W, H, 3 * W, &made);
@@ -308,7 +299,7 @@ static struct bytes make_jxl(const void *samples, size_t size, JxlDataType type,
 
 /* EXIF that is packed is read, however much larger it is unpacked, and passed over where it is
  * larger than the limit. */
-static void jxl_packed_exif(void **state)
+TEST(jxl_packed_exif)
 {
     const uint8_t offset[4] = {0}, room[100000] = {0};
     uint8_t codes[3 * W * H] = {0};
@@ -317,7 +308,6 @@ static void jxl_packed_exif(void **state)
     struct refocus_photo *photo;
     struct refocus_reason reason;
 
-    (void)state;
     bytes_add(&exif, offset, sizeof offset);
     bytes_add(&exif, block.data, block.size);
     bytes_add(&exif, room, sizeof room);
@@ -339,12 +329,11 @@ static void jxl_packed_exif(void **state)
     bytes_free(&block);
 }
 
-static void jxl_transparent(void **state)
+TEST(jxl_transparent)
 {
     uint8_t rgba[4 * W * H];
     struct refocus_photo *photo;
 
-    (void)state;
     for (int i = 0; i < W * H; i++) {
         memset(rgba + 4 * i, 40, 3);
         rgba[4 * i + 3] = i == 3 ? 0 : 255;
@@ -356,7 +345,7 @@ static void jxl_transparent(void **state)
     refocus_photo_free(&photo);
 }
 
-static void jxl(void **state)
+TEST(jxl)
 {
     uint8_t codes[3 * W * H];
     uint16_t deep[3 * W * H];
@@ -364,7 +353,6 @@ static void jxl(void **state)
     struct refocus_photo *photo;
     struct bytes file;
 
-    (void)state;
     for (int i = 0; i < 3 * W * H; i++) {
         codes[i] = (uint8_t)pattern(i / 3 % W, i / 3 / W, i % 3, 255);
         deep[i] = (uint16_t)pattern(i / 3 % W, i / 3 / W, i % 3, 65535);
@@ -400,13 +388,12 @@ static void jxl(void **state)
 
 #ifdef RF_HAVE_RAW
 /* Grey of half the range is half the light. */
-static void raw_developed(void **state)
+TEST(raw_developed)
 {
     const struct bytes none = {NULL, 0};
     struct bytes file = make_dng(64, 48, 32768, none);
     struct refocus_photo *photo = read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
 
-    (void)state;
     assert_string_equal(photo->info->container, "raw");
     assert_int_equal(photo->image->width, 64);
     assert_int_equal(photo->image->height, 48);
@@ -520,12 +507,11 @@ static void check_light(struct bytes file, double right)
     refocus_photo_free(&photo);
 }
 
-static void heic(void **state)
+TEST(heic)
 {
     const enum heif_compression_format hevc = heif_compression_HEVC;
     struct bytes file = make_heif(hevc, 300, 801, heif_transfer_characteristic_IEC_61966_2_1);
 
-    (void)state;
     if (file.size == 0) /* not each libheif writes them */
         skip();
     check_codes(file, "HEIC");
@@ -536,45 +522,11 @@ static void heic(void **state)
 }
 
 /* Made by avifenc: libheif 1.15 does not write 10 bits. The second has primaries of BT.2020. */
-static void avif(void **state)
+TEST(avif)
 {
-    (void)state;
     if (!heif_have_decoder_for_format(heif_compression_AV1))
         skip();
     check_codes(load("srgb10.avif"), "AVIF");
     check_light(load("pq10.avif"), 1000.0 / 203);
 }
 #endif
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-#ifdef RF_HAVE_TIFF
-        cmocka_unit_test(tiff_kinds),
-        cmocka_unit_test(tiff_floats),
-        cmocka_unit_test(tiff_refused),
-        cmocka_unit_test(tiff_cmyk_is_turned),
-        cmocka_unit_test(tiff_transparent),
-        cmocka_unit_test(tiff_written),
-        cmocka_unit_test(tiff_exif),
-#endif
-#ifdef RF_HAVE_WEBP
-        cmocka_unit_test(webp),
-        cmocka_unit_test(webp_transparent),
-#endif
-#ifdef RF_HAVE_JXL
-        cmocka_unit_test(jxl),
-        cmocka_unit_test(jxl_transparent),
-        cmocka_unit_test(jxl_packed_exif),
-#endif
-#ifdef RF_HAVE_HEIC
-        cmocka_unit_test(heic),
-        cmocka_unit_test(avif),
-#endif
-#ifdef RF_HAVE_RAW
-        cmocka_unit_test(raw_developed),
-#endif
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}

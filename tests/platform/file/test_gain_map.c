@@ -98,9 +98,8 @@ static void check_light(struct bytes file, double least, double greatest, double
     refocus_photo_free(&photo);
 }
 
-static void light_of_maps(void **state)
+TEST(light_of_maps)
 {
-    (void)state;
     for (int indexed = 0; indexed < 2; indexed++) {
         check_light(with_part(xmp_part("<hdrgm:GainMapMax>3</hdrgm:GainMapMax>"
                                        "<hdrgm:HDRCapacityMax>3</hdrgm:HDRCapacityMax>"),
@@ -178,21 +177,19 @@ static void lamp_of(int only)
     }
 }
 
-static void lamp(void **state)
+TEST(lamp)
 {
-    (void)state;
     for (int only = -1; only < 3; only++)
         lamp_of(only);
 }
 
 /* The map is turned with its photo: quarter 0 of the upright one was quarter 2. */
-static void turned(void **state)
+TEST(turned)
 {
     struct refocus_photo *photo =
         read_photo(with_part(iso_part(1, one_channel), true, 6), REFOCUS_OK);
     const struct rf_gain_map *const map = rf_photo_gain_map(photo);
 
-    (void)state;
     assert_int_equal(photo->image->width, 32);
     assert_int_equal(map->samples.width, 16);
     assert_int_equal(map->samples.height, 32);
@@ -202,14 +199,13 @@ static void turned(void **state)
 }
 
 /* Each channel has a gain of its own. */
-static void three_channels(void **state)
+TEST(three_channels)
 {
     static const int32_t values[] = {0,    3000, 0, 1000, 1000, 0,    0, 0, 2000,
                                      1000, 0,    0, 0,    3000, 1000, 0, 0};
     struct refocus_photo *photo = read_photo(with_part(iso_part(3, values), true, 1), REFOCUS_OK);
     struct refocus_light *light;
 
-    (void)state;
     assert_int_equal(refocus_light_create(&light, photo), REFOCUS_OK);
     for (int c = 0; c < 3; c++) /* white, where the map is white too */
         expect_quarter(photo, refocus_light_image(light), 3, c, c + 1, 0, 0);
@@ -242,7 +238,7 @@ static struct bytes iphone_photo(int headroom, int gain, const char *extra)
     return make_mpf(photo, &part, 1, true);
 }
 
-static void apple(void **state)
+TEST(apple)
 {
     static const struct {
         int headroom, gain;
@@ -252,7 +248,6 @@ static void apple(void **state)
     struct refocus_photo *photo;
     struct refocus_light *light;
 
-    (void)state;
     for (size_t i = 0; i < sizeof notes / sizeof *notes; i++) {
         photo = read_photo(iphone_photo(notes[i].headroom, notes[i].gain, NULL), REFOCUS_OK);
         assert_near(photo->info->gain_map_stops, notes[i].stops);
@@ -294,7 +289,7 @@ static void expect_passed_over(struct bytes file, const char *why)
     refocus_photo_free(&photo);
 }
 
-static void passed_over(void **state)
+TEST(passed_over)
 {
     static const char *const damaged[] = {
         "",
@@ -311,7 +306,6 @@ static void passed_over(void **state)
     };
     struct bytes part, file;
 
-    (void)state;
     for (size_t i = 0; i < sizeof damaged / sizeof *damaged; i++)
         expect_passed_over(with_part(xmp_part(damaged[i]), true, 1), "its metadata is damaged");
     expect_passed_over(
@@ -349,13 +343,12 @@ static void passed_over(void **state)
 }
 
 /* A map beyond the limits is none; the photo is read. */
-static void limits(void **state)
+TEST(limits)
 {
     const struct refocus_read_limits few = {.struct_size = sizeof few, .max_pixels = 64 * 32};
     struct bytes part = make_jpeg(64, 48, true, false), iso = make_gain_iso(1, one_channel), file;
     struct refocus_photo *photo;
 
-    (void)state;
     jpeg_insert(&part, 0xe2, "urn:iso:std:iso:ts:21496:-1", 28, iso.data, iso.size);
     bytes_free(&iso);
     file = with_part(part, true, 1);
@@ -393,12 +386,11 @@ static void check_iso(struct bytes iso, size_t denominator)
     bytes_free(&iso);
 }
 
-static void iso_metadata(void **state)
+TEST(iso_metadata)
 {
     struct bytes iso = make_gain_iso(1, one_channel);
     struct rf_gain_values values;
 
-    (void)state;
     iso.data[1] = 1; /* a later version */
     assert_non_null(rf_gain_from_iso((struct rf_bytes){iso.data, iso.size}, &values));
     bytes_free(&iso);
@@ -407,19 +399,18 @@ static void iso_metadata(void **state)
 }
 
 /* Metadata of ISO that cannot be used is no reason to pass over what XMP says. */
-static void xmp_beside_damaged_iso(void **state)
+TEST(xmp_beside_damaged_iso)
 {
     static const char *const elements = "<hdrgm:GainMapMax>2</hdrgm:GainMapMax>"
                                         "<hdrgm:HDRCapacityMax>2</hdrgm:HDRCapacityMax>";
     struct bytes part = xmp_part(elements);
 
-    (void)state;
     jpeg_insert(&part, 0xe2, "urn:iso:std:iso:ts:21496:-1", 28, "\0\1\0\0\100", 5);
     check_light(with_part(part, true, 1), 0, 2, 1, 1 / 64.0, 1 / 64.0);
 }
 
 /* Light that nothing changed has the photo's codes; light between two quarters their tones. */
-static void tones(void **state)
+TEST(tones)
 {
     struct refocus_photo *photo =
         read_photo(with_part(iso_part(1, one_channel), true, 1), REFOCUS_OK);
@@ -433,7 +424,6 @@ static void tones(void **state)
     uint16_t *pixels;
     int bright = 0;
 
-    (void)state;
     assert_int_equal(refocus_light_create(&light, photo), REFOCUS_OK);
     from = *refocus_light_image(light);
     assert_int_equal(refocus_light_to_base(light, &from, 0, 0, 0, &to), REFOCUS_OK);
@@ -476,9 +466,8 @@ static void tones(void **state)
 }
 
 /* Every half comes back, and values between two go to the nearest. */
-static void halves(void **state)
+TEST(halves)
 {
-    (void)state;
     for (int half = 0; half < RF_HALF_MOST; half++) {
         const float a = rf_half_value((uint16_t)half), b = rf_half_value((uint16_t)(half + 1));
 
@@ -489,23 +478,4 @@ static void halves(void **state)
     assert_int_equal(rf_half_of(NAN), 0);
     assert_int_equal(rf_half_of(-1), 0);
     assert_int_equal(rf_half_of(INFINITY), RF_HALF_MOST);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(light_of_maps),
-        cmocka_unit_test(lamp),
-        cmocka_unit_test(turned),
-        cmocka_unit_test(three_channels),
-        cmocka_unit_test(apple),
-        cmocka_unit_test(passed_over),
-        cmocka_unit_test(limits),
-        cmocka_unit_test(iso_metadata),
-        cmocka_unit_test(xmp_beside_damaged_iso),
-        cmocka_unit_test(tones),
-        cmocka_unit_test(halves),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,11 +22,10 @@ static void check_quarter(const struct refocus_image *image, int x, int y, const
         assert_in_range(pixel_at(image, x, y)[c] + 10, colour[c], colour[c] + 20);
 }
 
-static void orientation_of_photo_and_depth(void **state)
+TEST(orientation_of_photo_and_depth)
 {
     static const uint8_t colours[4][3] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 255}};
 
-    (void)state;
     for (int orientation = 1; orientation <= 8; orientation++) {
         struct refocus_photo *photo =
             read_photo(make_gdepth(small_gdepth(), orientation), REFOCUS_OK);
@@ -50,11 +49,10 @@ static void orientation_of_photo_and_depth(void **state)
     }
 }
 
-static void gdepth_range_inverse(void **state)
+TEST(gdepth_range_inverse)
 {
     struct refocus_photo *photo = read_photo(make_gdepth(small_gdepth(), 0), REFOCUS_OK);
 
-    (void)state;
     assert_int_equal(photo->info->depth_source, REFOCUS_DEPTH_SOURCE_GDEPTH);
     assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISPARITY);
     assert_true(photo->depth->value_near == 0 && photo->depth->value_far == 255);
@@ -71,12 +69,11 @@ static void gdepth_range_inverse(void **state)
     refocus_photo_free(&photo);
 }
 
-static void unit_overrules_the_file(void **state)
+TEST(unit_overrules_the_file)
 {
     struct refocus_photo *photo =
         read_depth(make_gdepth(small_gdepth(), 0), "disparity", REFOCUS_OK);
 
-    (void)state;
     /* Turned round, the range is the same. */
     assert_true(photo->depth->value_near == 255 && photo->depth->value_far == 0);
     assert_true(photo->depth->near_m == 0.5 && photo->depth->far_m == 8);
@@ -87,7 +84,7 @@ static void unit_overrules_the_file(void **state)
     refocus_photo_free(&photo);
 }
 
-static void gdepth_range_linear(void **state)
+TEST(gdepth_range_linear)
 {
     const struct gdepth gdepth = {.format = "RangeLinear",
                                   .extra = "GDepth:Near=\"500\" GDepth:Far=\"3500\" "
@@ -96,7 +93,6 @@ static void gdepth_range_linear(void **state)
     const struct gdepth without = {.format = "RangeLinear", .depth = make_png(6, 4, 0, 8)};
     struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
 
-    (void)state;
     assert_int_equal(photo->depth->meaning, REFOCUS_DEPTH_DISTANCE);
     assert_near(photo->depth->metres_at_zero, 0.5);
     assert_near(photo->depth->metres_per_unit, 3.0 / 65535);
@@ -107,12 +103,11 @@ static void gdepth_range_linear(void **state)
     read_photo(make_gdepth(without, 0), REFOCUS_ERR_FORMAT);
 }
 
-static void gdepth_payload_jpeg_without_range(void **state)
+TEST(gdepth_payload_jpeg_without_range)
 {
     const struct gdepth gdepth = {.format = "RangeInverse", .depth = make_jpeg(32, 16, true, true)};
     struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
 
-    (void)state;
     assert_in_range(sample_at(photo->depth, 4, 4), 28, 36);
     assert_in_range(sample_at(photo->depth, 30, 14), 220, 228);
     assert_true(photo->depth->near_m == 0 && photo->depth->far_m == 0);
@@ -120,13 +115,12 @@ static void gdepth_payload_jpeg_without_range(void **state)
 }
 
 /* Phones write the map as RGB or RGBA with equal channels. */
-static void gdepth_payload_in_colour_form(void **state)
+TEST(gdepth_payload_in_colour_form)
 {
     static const uint8_t rgb[12] = {9, 9, 9, 80, 80, 80, 7, 7, 7, 200, 200, 200};
     static const uint8_t rgba[16] = {9, 9, 9, 255, 80,  80,  80,  255,
                                      7, 7, 7, 255, 200, 200, 200, 255};
 
-    (void)state;
     for (int alpha = 0; alpha < 2; alpha++) {
         const struct gdepth gdepth = {
             .format = "RangeInverse",
@@ -140,14 +134,13 @@ static void gdepth_payload_in_colour_form(void **state)
     }
 }
 
-static void gdepth_units_absent_are_told(void **state)
+TEST(gdepth_units_absent_are_told)
 {
     const struct gdepth gdepth = {.format = "RangeInverse",
                                   .extra = "GDepth:Near=\"2\" GDepth:Far=\"9\"",
                                   .depth = make_png(6, 4, 0, 8)};
     struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
 
-    (void)state;
     assert_true(has_evidence(photo, "without a unit: no metres"));
     assert_true(photo->depth->near_m == 0 && photo->depth->far_m == 0);
     assert_true(photo->depth->value_near == 0 && photo->depth->value_far == 255);
@@ -155,13 +148,12 @@ static void gdepth_units_absent_are_told(void **state)
 }
 
 /* Distances of no unit and of a strange one: disparities, and no metres. */
-static void gdepth_linear_without_metres(void **state)
+TEST(gdepth_linear_without_metres)
 {
     static const char *const extra[] = {"GDepth:Near=\"2\" GDepth:Far=\"9\"",
                                         "GDepth:Near=\"0\" GDepth:Far=\"9\"",
                                         "GDepth:Near=\"2\" GDepth:Far=\"9\" GDepth:Units=\"feet\""};
 
-    (void)state;
     for (int i = 0; i < 6; i++) {
         const int bits = i % 2 ? 16 : 8, max = (1 << bits) - 1;
         const double near = i / 2 == 1 ? 0 : 2, step = (9 - near) / max;
@@ -197,11 +189,10 @@ static double own_blur(const char *extra)
 
 /* K = B (1/near - 1/far) zf, by hand; whatever the unit. Without zf that of the focus
  * point, and without a range disparity 0 is infinity. */
-static void gdepth_own_blur(void **state)
+TEST(gdepth_own_blur)
 {
     const double d = 1 - pattern(3, 2, 0, 255) / 255.0;
 
-    (void)state;
 #define BLUR  "GFocus:BlurAtInfinity=\"0.01\" "
 #define POINT "GFocus:FocalPointX=\"0.6\" GFocus:FocalPointY=\"0.6\" "
     assert_near(own_blur(BLUR "GDepth:Near=\"2\" GDepth:Far=\"10\" "
@@ -218,7 +209,7 @@ static void gdepth_own_blur(void **state)
 }
 
 /* A focus point is both numbers, within the picture; else there is none. */
-static void focus_point(void **state)
+TEST(focus_point)
 {
     static const char *const none[] = {
         "GFocus:FocalPointX=\"0.5\"",
@@ -232,7 +223,6 @@ static void focus_point(void **state)
     struct refocus_photo *photo = read_photo(make_gdepth(gdepth, 0), REFOCUS_OK);
     const double x = photo->info->focus_x, y = photo->info->focus_y;
 
-    (void)state;
     refocus_photo_free(&photo);
     assert_false(x >= 0 && x <= 1);
     for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
@@ -250,7 +240,7 @@ static void focus_point(void **state)
     refocus_photo_free(&photo);
 }
 
-static void gdepth_damaged(void **state)
+TEST(gdepth_damaged)
 {
     const struct gdepth bad[] = {
         {.format = "RangeInverse"},
@@ -274,17 +264,15 @@ static void gdepth_damaged(void **state)
          .original = bytes_copy("no picture", 10)},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         read_photo(make_gdepth(bad[i], 0), REFOCUS_ERR_FORMAT);
 }
 
-static void original_replaces_a_blurred_picture(void **state)
+TEST(original_replaces_a_blurred_picture)
 {
     struct gdepth gdepth = small_gdepth();
     struct refocus_photo *photo;
 
-    (void)state;
     gdepth.original = make_png(9, 7, 2, 8);
     photo = read_photo(make_gdepth(gdepth, 6), REFOCUS_OK);
     assert_int_equal(photo->info->original_used, 1);
@@ -302,11 +290,10 @@ static void original_replaces_a_blurred_picture(void **state)
     refocus_photo_free(&photo);
 }
 
-static void extended_in_any_order(void **state)
+TEST(extended_in_any_order)
 {
     static const size_t chunks[] = {64, 100, 1000, 60000};
 
-    (void)state;
     for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
         /* 23 has no common divisor with any number of chunks here. */
         struct refocus_photo *photo = read_photo(
@@ -316,12 +303,11 @@ static void extended_in_any_order(void **state)
     }
 }
 
-static void extended_damaged(void **state)
+TEST(extended_damaged)
 {
     struct bytes jpeg;
     uint8_t *place;
 
-    (void)state;
     read_photo(make_gdepth_extended(small_gdepth(), 64, 1, 0), REFOCUS_ERR_FORMAT);
     read_photo(make_gdepth_extended(small_gdepth(), 64, 1, 3), REFOCUS_ERR_FORMAT);
     read_photo(make_gdepth_extended(small_gdepth(), 60000, 1, 0), REFOCUS_ERR_FORMAT);
@@ -354,26 +340,4 @@ static void extended_damaged(void **state)
         place[change == 0 ? 31 : change == 1 ? 35 : 39] ^= 1;
         read_photo(jpeg, REFOCUS_ERR_FORMAT);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(orientation_of_photo_and_depth),
-        cmocka_unit_test(gdepth_range_inverse),
-        cmocka_unit_test(unit_overrules_the_file),
-        cmocka_unit_test(gdepth_range_linear),
-        cmocka_unit_test(gdepth_payload_jpeg_without_range),
-        cmocka_unit_test(gdepth_payload_in_colour_form),
-        cmocka_unit_test(gdepth_units_absent_are_told),
-        cmocka_unit_test(gdepth_linear_without_metres),
-        cmocka_unit_test(gdepth_own_blur),
-        cmocka_unit_test(focus_point),
-        cmocka_unit_test(gdepth_damaged),
-        cmocka_unit_test(original_replaces_a_blurred_picture),
-        cmocka_unit_test(extended_in_any_order),
-        cmocka_unit_test(extended_damaged),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -96,9 +96,8 @@ static const uint8_t *content_of(const uint8_t *at, const uint8_t *end, const ch
 
 /* Descriptions and auxiliary images have one target each; all else is as it was, and where it was
  * but for what lies between the two boxes. */
-static void one_target(void **state)
+TEST(one_target)
 {
-    (void)state;
     for (int i = 0; i < 16; i++) {
         const int targets = 1 + i / 2 % 4;
         const struct layout layout = {i % 2, targets, targets, false, i < 8 ? "cdsc" : "auxl", 0};
@@ -140,7 +139,7 @@ static void one_target(void **state)
 }
 
 /* Files that are read as they are: of another order, or that are damaged. */
-static void others(void **state)
+TEST(others)
 {
     static const struct layout layouts[] = {{false, 2, 2, true, "cdsc", 0},
                                             {false, 2, 2, false, "cdsc", 3},
@@ -148,7 +147,6 @@ static void others(void **state)
                                             {true, 3, 200, false, "cdsc", 0},
                                             {true, 3, 200, false, "auxl", 0}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
         struct bytes file = make(&layouts[i]);
         uint8_t *changed;
@@ -161,14 +159,13 @@ static void others(void **state)
 }
 
 /* Cut off anywhere, and with any byte changed, nothing beyond the file is touched. */
-static void damaged(void **state)
+TEST(damaged)
 {
     static const uint8_t bytes[] = {0, 1, 7, 8, 9, 127, 255};
     const struct layout layout = {false, 2, 2, false, "cdsc", 0};
     struct bytes file = make(&layout);
     struct guarded guarded;
 
-    (void)state;
     assert_true(guarded_create(&guarded, file.size));
     for (size_t i = 0; i < file.size * (1 + sizeof bytes); i++) {
         const size_t place = i % file.size, size = i < file.size ? place : file.size;
@@ -185,12 +182,4 @@ static void damaged(void **state)
     }
     guarded_destroy(&guarded);
     bytes_free(&file);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(one_target), cmocka_unit_test(others),
-                                       cmocka_unit_test(damaged)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

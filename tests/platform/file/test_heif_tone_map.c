@@ -116,9 +116,8 @@ static struct rf_bytes whole(struct bytes file)
 }
 
 /* Each way to write numbers and places. */
-static void found(void **state)
+TEST(found)
 {
-    (void)state;
     for (int version = 0; version <= 2; version++) {
         for (int i = 0; i < 16; i++) {
             struct layout layout = plain;
@@ -141,11 +140,10 @@ static void found(void **state)
 }
 
 /* Tone maps of other pictures than the main one, or of none, and data at an unknown place. */
-static void others(void **state)
+TEST(others)
 {
     struct layout layouts[8];
 
-    (void)state;
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
         layouts[i] = plain;
     layouts[0].type = "grid";
@@ -166,9 +164,8 @@ static void others(void **state)
 }
 
 /* The copy differs in the number of the main picture and in one flag. */
-static void main_picture(void **state)
+TEST(main_picture)
 {
-    (void)state;
     for (int number = 2; number <= 4; number += 2) {
         struct layout layout = plain;
         uint8_t *changed;
@@ -200,14 +197,13 @@ static void main_picture(void **state)
 }
 
 /* Cut off anywhere, and with any byte changed, nothing beyond the file is touched. */
-static void damaged(void **state)
+TEST(damaged)
 {
     static const uint8_t values[] = {0, 1, 2, 7, 8, 9, 127, 255};
     struct layout layout = plain;
     struct guarded guarded;
     struct bytes file;
 
-    (void)state;
     layout.version = 1;
     layout.inside = true;
     file = make(&layout);
@@ -235,7 +231,7 @@ static void damaged(void **state)
 }
 
 /* 65,535 pieces for each of many items cost no time. */
-static void many_pieces(void **state)
+TEST(many_pieces)
 {
     struct bytes file = {NULL, 0}, meta = {NULL, 0}, iloc = {NULL, 0};
     struct layout layout = plain;
@@ -243,7 +239,6 @@ static void many_pieces(void **state)
     struct rf_heif_tone_map map;
     size_t at;
 
-    (void)state;
     bytes_number(&iloc, 2u << 24, 4, true);
     bytes_number(&iloc, 0, 2, true); /* fields of 0 bytes */
     bytes_number(&iloc, 1u << 20, 4, true);
@@ -264,13 +259,4 @@ static void many_pieces(void **state)
     assert_false(rf_heif_find_tone_map(whole(file), &map));
     bytes_free(&file);
     bytes_free(&model);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(found), cmocka_unit_test(others),
-                                       cmocka_unit_test(main_picture), cmocka_unit_test(damaged),
-                                       cmocka_unit_test(many_pieces)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

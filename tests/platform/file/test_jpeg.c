@@ -6,9 +6,8 @@
 #include "original.h"
 
 #ifdef RF_HAVE_PNG
-static void orientation_of_png(void **state)
+TEST(orientation_of_png)
 {
-    (void)state;
     for (int orientation = 1; orientation <= 8; orientation++) {
         for (int big_endian = 0; big_endian < 2; big_endian++) {
             struct bytes exif = make_exif(big_endian, orientation);
@@ -52,12 +51,11 @@ static struct bytes plain_with_icc(struct bytes profile, size_t chunk, int skip)
     return jpeg;
 }
 
-static void icc_in_chunks(void **state)
+TEST(icc_in_chunks)
 {
     uint8_t profile[300];
     struct refocus_photo *photo;
 
-    (void)state;
     for (int i = 0; i < 300; i++)
         profile[i] = (uint8_t)i;
     memcpy(profile + 16, "RGB ", 4);
@@ -78,12 +76,11 @@ static void icc_in_chunks(void **state)
 }
 
 /* One part of no bytes. */
-static void icc_of_nothing(void **state)
+TEST(icc_of_nothing)
 {
     struct bytes jpeg = make_jpeg(32, 16, false, false);
     struct refocus_photo *photo;
 
-    (void)state;
     jpeg_insert(&jpeg, 0xe2, "ICC_PROFILE\0\1\1", 14, "", 0);
     photo = read_photo(jpeg, REFOCUS_OK);
     assert_null(photo->icc.data);
@@ -91,9 +88,8 @@ static void icc_of_nothing(void **state)
     refocus_photo_free(&photo);
 }
 
-static void exif_facts(void **state)
+TEST(exif_facts)
 {
-    (void)state;
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         struct bytes jpeg = make_jpeg(32, 16, false, false);
         struct bytes expected = make_exif(big_endian, 1);
@@ -117,12 +113,11 @@ static void exif_facts(void **state)
     }
 }
 
-static void exif_without_sense(void **state)
+TEST(exif_without_sense)
 {
     struct bytes jpeg = make_jpeg(32, 16, false, false);
     struct refocus_photo *photo;
 
-    (void)state;
     jpeg_insert_exif(&jpeg, make_exif(true, 9));
     photo = read_photo(jpeg, REFOCUS_OK);
     assert_int_equal(photo->info->orientation, 1);
@@ -136,12 +131,11 @@ static void exif_without_sense(void **state)
 }
 
 /* Some cameras leave a byte or two before the end; damage inside is an error. */
-static void bytes_too_many(void **state)
+TEST(bytes_too_many)
 {
     struct bytes jpeg = make_jpeg(64, 64, false, false);
     struct refocus_photo *photo;
 
-    (void)state;
     jpeg.size -= 2;
     bytes_add(&jpeg, "UUUUUUUUUUUU\xff\xd9", 14);
     photo = read_photo(jpeg, REFOCUS_OK);
@@ -158,11 +152,10 @@ static void bytes_too_many(void **state)
     read_photo(jpeg, REFOCUS_ERR_FORMAT);
 }
 
-static void grey_jpeg_is_depth(void **state)
+TEST(grey_jpeg_is_depth)
 {
     struct refocus_photo *photo = read_depth(make_jpeg(32, 16, true, false), "inverse", REFOCUS_OK);
 
-    (void)state;
     assert_true(photo->depth->value_near == 0 && photo->depth->value_far == 255);
     assert_in_range(sample_at(photo->depth, 2, 2), 28, 36);
     refocus_photo_free(&photo);
@@ -170,9 +163,8 @@ static void grey_jpeg_is_depth(void **state)
 }
 
 /* The original of an editable result says how its pixels lie, as the photo did. */
-static void original_says_how_it_lies(void **state)
+TEST(original_says_how_it_lies)
 {
-    (void)state;
     for (int orientation = 1; orientation <= 8; orientation++) {
         struct bytes file = make_jpeg(32, 16, false, false);
         struct rf_text out = {NULL, 0, 0, false};
@@ -244,12 +236,11 @@ static const uint8_t warm[3] = {150, 73, 27}, cold[3] = {30, 106, 168};
 /* An edge between samples of colour is sharp where luma has it, in columns and in rows: less than a
  * quarter of the squared error that interpolation leaves. Where colour alone changes, and less than
  * was quantised away, it is interpolated as TurboJPEG does it, but for rounding. */
-static void colour_follows_luma(void **state)
+TEST(colour_follows_luma)
 {
     static const uint8_t bright[3] = {210, 90, 60}, dark[3] = {30, 60, 110};
     uint8_t rgb[3 * HALF_W * HALF_H], plain[sizeof rgb];
 
-    (void)state;
     for (int kind = 0; kind < 3; kind++) {
         struct refocus_photo *photo;
         struct bytes jpeg;
@@ -283,9 +274,8 @@ static void colour_follows_luma(void **state)
 
 /* Stripes of colours that are three pixels wide keep the means that the file has: a
  * quarter of the squared error that interpolation leaves is gone, and more. */
-static void colour_keeps_its_means(void **state)
+TEST(colour_keeps_its_means)
 {
-    (void)state;
     for (int by_rows = 0; by_rows < 2; by_rows++) {
         uint8_t rgb[3 * HALF_W * HALF_H], plain[sizeof rgb];
         struct refocus_photo *photo;
@@ -304,13 +294,12 @@ static void colour_keeps_its_means(void **state)
 }
 
 /* Whole files of kinds that TurboJPEG does not decode are not called damaged. */
-static void rare_kinds_are_told(void **state)
+TEST(rare_kinds_are_told)
 {
     static const struct {
         uint8_t marker, bits;
     } kinds[] = {{0xc1, 12}, {0xc3, 8}, {0xc3, 16}, {0xc5, 8}, {0xcb, 8}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         struct bytes jpeg = make_jpeg(16, 16, false, false);
 
@@ -322,25 +311,4 @@ static void rare_kinds_are_told(void **state)
         }
         assert_null(read_photo(jpeg, REFOCUS_ERR_UNSUPPORTED));
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rare_kinds_are_told),
-#ifdef RF_HAVE_PNG
-        cmocka_unit_test(orientation_of_png),
-#endif
-        cmocka_unit_test(icc_in_chunks),
-        cmocka_unit_test(icc_of_nothing),
-        cmocka_unit_test(exif_facts),
-        cmocka_unit_test(exif_without_sense),
-        cmocka_unit_test(bytes_too_many),
-        cmocka_unit_test(grey_jpeg_is_depth),
-        cmocka_unit_test(colour_follows_luma),
-        cmocka_unit_test(original_says_how_it_lies),
-        cmocka_unit_test(colour_keeps_its_means),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

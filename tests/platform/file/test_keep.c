@@ -69,9 +69,8 @@ static int count(const struct bytes *png, const char *type, struct rf_png_chunk 
     return n;
 }
 
-static void chunks(void **state)
+TEST(chunks)
 {
-    (void)state;
     for (int has_xmp = 0; has_xmp < 2; has_xmp++) {
         struct bytes packet = {NULL, 0}, png;
         struct rf_png_chunk chunk = {0};
@@ -98,13 +97,12 @@ static void chunks(void **state)
 }
 
 /* A checksum that belongs to the chunk, and no chunk where there was none. */
-static void nothing_is_made_up(void **state)
+TEST(nothing_is_made_up)
 {
     struct bytes png = rewritten(png_with((struct bytes){NULL, 0}, false), 8, 4);
     struct rf_png_chunk chunk;
     struct refocus_photo *photo;
 
-    (void)state;
     assert_int_equal(count(&png, "tEXt", &chunk), 0);
     assert_int_equal(count(&png, "iTXt", &chunk), 0);
     assert_int_equal(count(&png, "IHDR", &chunk), 1);
@@ -115,13 +113,12 @@ static void nothing_is_made_up(void **state)
 
 /* Depth that is written into a photo does not make its main picture blurred: the original of the
  * packet before is used where that says that it is, and only there. */
-static void depth_beside_an_original(void **state)
+TEST(depth_beside_an_original)
 {
     static const uint16_t disparity[4] = {0, 1000, 40000, 65535};
     struct refocus_depth_write depth = refocus_depth_write_default();
     char path[64];
 
-    (void)state;
     depth.disparity = disparity;
     depth.width = depth.height = 2;
     depth.stride = 4;
@@ -153,14 +150,13 @@ static void depth_beside_an_original(void **state)
 }
 
 /* Whatever is said of a depth is read again, beside a picture that lies on its side, too. */
-static void all_of_a_depth(void **state)
+TEST(all_of_a_depth)
 {
     static const uint16_t disparity[6] = {0, 1000, 2000, 40000, 50000, 65535};
     static const uint8_t confidence[6] = {0, 50, 100, 150, 200, 255};
     struct refocus_depth_write depth = refocus_depth_write_default();
     char path[64];
 
-    (void)state;
     depth.disparity = disparity;
     depth.width = 3;
     depth.height = 2;
@@ -205,11 +201,10 @@ static void all_of_a_depth(void **state)
 
 /* A picture with transparency, of its own or of its palette, says that it is dropped, another does
  * not. */
-static void transparency(void **state)
+TEST(transparency)
 {
     static const int types[] = {0, 2, 3, 4, 6};
 
-    (void)state;
     for (int i = 0; i < 5; i++) {
         struct refocus_photo *photo = read_photo(make_png(6, 4, types[i], 8), REFOCUS_OK);
         bool told = false;
@@ -222,11 +217,10 @@ static void transparency(void **state)
 }
 
 /* Sides that XMP says are kept where they are still those of the picture. */
-static void sides(void **state)
+TEST(sides)
 {
     static const int32_t sizes[][2] = {{8, 4}, {7, 4}, {8, 3}, {7, 3}};
 
-    (void)state;
     for (int i = 0; i < 4; i++) {
         struct bytes png =
             rewritten(png_with(make_xmp("xmlns:q=\"q:\" q:a=\"kept\" "
@@ -268,7 +262,7 @@ static int write_editable(const char *name, const struct refocus_photo *photo,
 }
 
 /* One thing of an editable picture is wrong at a time: an error, and no file. */
-static void editables_refused(void **state)
+TEST(editables_refused)
 {
     static uint16_t samples[8 * 4];
     struct refocus_depth_write depth = refocus_depth_write_default();
@@ -276,7 +270,6 @@ static void editables_refused(void **state)
     struct refocus_photo *photo = read_photo(make_png(8, 4, 2, 8), REFOCUS_OK);
     double *const lens[] = {&bad.focus_disparity, &bad.max_blur_radius, &bad.simulated_f_number};
 
-    (void)state;
     depth.disparity = samples;
     depth.width = 8;
     depth.height = 4;
@@ -325,18 +318,4 @@ static void editables_refused(void **state)
     }
     assert_int_equal(write_editable("jpg", photo, &good), REFOCUS_OK);
     refocus_photo_free(&photo);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(chunks),
-        cmocka_unit_test(nothing_is_made_up),
-        cmocka_unit_test(sides),
-        cmocka_unit_test(all_of_a_depth),
-        cmocka_unit_test(transparency),
-        cmocka_unit_test(depth_beside_an_original),
-        cmocka_unit_test(editables_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

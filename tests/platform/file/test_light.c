@@ -50,7 +50,7 @@ static void is_light(float is, double should, const char *what)
 
 /* Values of BT.2100 and BT.2408: 203 cd/m2 are 58.07 % of PQ, 100 are 50.81 %, and HLG has its
  * peak at 3.7743 times white. */
-static void curves(void **state)
+TEST(curves)
 {
     static const struct {
         int curve;
@@ -72,7 +72,6 @@ static void curves(void **state)
         {RF_CURVE_LINEAR, 0.3f, 0.3},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         const uint32_t bits[] = {0, 65535};
 
@@ -94,13 +93,12 @@ static void curves(void **state)
 
 /* Codes of 10 bits end at 1023, and what lies beyond is white; floats of PQ end at 1, of linear
  * light nowhere. */
-static void ends(void **state)
+TEST(ends)
 {
     const float codes[6] = {1023, 1022, 1024, 65535, 512, 0};
     const float floats[3] = {4, 1, 2};
     float light[6];
 
-    (void)state;
     light_of(codes, 6, 1023, RF_CURVE_LINEAR, RF_PRIMARIES_BT709, light);
     is_light(light[0], 1, "1023");
     is_light(light[1], 1022.0 / 1023, "1022");
@@ -114,7 +112,7 @@ static void ends(void **state)
 }
 
 /* White stays white, light adds up, and what BT.709 cannot show is 0. */
-static void primaries(void **state)
+TEST(primaries)
 {
     static const struct {
         int primaries;
@@ -132,7 +130,6 @@ static void primaries(void **state)
         {RF_PRIMARIES_P3, {0.5f, 0.25f, 0.125f}, {0.556235, 0.239486, 0.107806}},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         float two[6], light[6];
 
@@ -145,9 +142,8 @@ static void primaries(void **state)
 }
 
 /* Each allocation fails once, and the codes are still the caller's. */
-static void memory(void **state)
+TEST(memory)
 {
-    (void)state;
     for (long k = 1; k <= 2; k++) {
         struct rf_read read = reading();
         struct rf_raster raster = {.width = 2,
@@ -167,15 +163,4 @@ static void memory(void **state)
         assert_int_equal(raster.sample, REFOCUS_SAMPLE_U16);
         rf_raster_free(&raster);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(curves),
-        cmocka_unit_test(ends),
-        cmocka_unit_test(primaries),
-        cmocka_unit_test(memory),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,9 +35,8 @@ static struct bytes grey(bool tall)
     return bytes_copy(tall ? upright : text, sizeof text - 1);
 }
 
-static void pictures(void **state)
+TEST(pictures)
 {
-    (void)state;
     NEEDS(grey(false), max_side, 4);
     NEEDS(grey(true), max_side, 4);
     NEEDS(grey(false), max_pixels, 12);
@@ -46,13 +45,12 @@ static void pictures(void **state)
 }
 
 /* A side beyond the default, with so few pixels that nothing else forbids it. */
-static void sides(void **state)
+TEST(sides)
 {
     struct refocus_read_limits limits = refocus_read_limits_default();
     char text[40000] = "P5 32769 1 255\n";
     const size_t size = strlen(text) + 32769;
 
-    (void)state;
     assert_int_equal(read_within(bytes_copy(text, size), limits), REFOCUS_ERR_SIZE);
     limits.max_side = UINT32_MAX;
     assert_int_equal(read_within(bytes_copy(text, size), limits), REFOCUS_OK);
@@ -73,11 +71,10 @@ static void refused_at_once(const char *path)
 }
 
 /* A pipe without a writer would be waited for, for ever. */
-static void files_alone(void **state)
+TEST(files_alone)
 {
     const char *const pipe = "test-limits.fifo";
 
-    (void)state;
     unlink(pipe);
     assert_int_equal(mkfifo(pipe, 0600), 0);
     refused_at_once(pipe);
@@ -96,13 +93,12 @@ static uint32_t count(const struct bytes *jpeg, uint8_t marker)
     return n;
 }
 
-static void jpeg_scans(void **state)
+TEST(jpeg_scans)
 {
     struct bytes jpeg = make_jpeg(64, 64, false, true);
     const uint32_t scans = count(&jpeg, 0xda);
     const size_t size = jpeg.size;
 
-    (void)state;
     bytes_free(&jpeg);
     assert_in_range(scans, 2, 100);
     NEEDS(make_jpeg(64, 64, false, true), max_scans, scans);
@@ -123,11 +119,10 @@ static struct bytes jpeg_of_segments(int more)
     return jpeg;
 }
 
-static void jpeg_segments(void **state)
+TEST(jpeg_segments)
 {
     struct refocus_read_limits limits = refocus_read_limits_default();
 
-    (void)state;
     limits.max_segments = 20;
     assert_int_equal(read_within(jpeg_of_segments(0), limits), REFOCUS_OK);
     assert_int_equal(read_within(jpeg_of_segments(20), limits), REFOCUS_ERR_SIZE);
@@ -136,12 +131,11 @@ static void jpeg_segments(void **state)
 
 #ifdef RF_HAVE_PNG
 /* A text that could not be unpacked is not looked at. */
-static void png_texts(void **state)
+TEST(png_texts)
 {
     struct bytes png = make_png(3, 2, 2, 8), text = {NULL, 0};
     const size_t header = 33;
 
-    (void)state;
     png_chunk(&text, "zTXt", "a\0\0no zlib at all", 18);
     png.data = realloc(png.data, png.size + text.size);
     memmove(png.data + header + text.size, png.data + header, png.size - header);
@@ -170,13 +164,12 @@ static struct bytes with_xmp(const char *inside)
     return jpeg;
 }
 
-static void xmp(void **state)
+TEST(xmp)
 {
     struct refocus_read_limits limits = refocus_read_limits_default();
     struct refocus_photo *photo = NULL;
     struct bytes jpeg;
 
-    (void)state;
     NEEDS(with_depth(), max_pixels, 6 * 4 + 16 * 16); /* both pictures of the packet */
     NEEDS(with_depth(), max_depth, 3);
     limits.max_elements = 5;
@@ -200,24 +193,3 @@ static void xmp(void **state)
     bytes_free(&jpeg);
 }
 #endif
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pictures),
-        cmocka_unit_test(sides),
-        cmocka_unit_test(files_alone),
-#ifdef RF_HAVE_JPEG
-        cmocka_unit_test(jpeg_scans),
-        cmocka_unit_test(jpeg_segments),
-#endif
-#ifdef RF_HAVE_PNG
-        cmocka_unit_test(png_texts),
-#endif
-#if defined(RF_HAVE_JPEG) && defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
-        cmocka_unit_test(xmp),
-#endif
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}

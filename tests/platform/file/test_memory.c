@@ -47,12 +47,11 @@ static void fail_each_in(const struct sample *sample, bool depth)
     }
 }
 
-static void readers(void **state)
+TEST(readers)
 {
     struct sample samples[SAMPLES_MAX];
     const int count = make_samples(samples);
 
-    (void)state;
     for (int i = 0; i < count; i++) {
         if (samples[i].photo)
             fail_each_in(&samples[i], false);
@@ -74,12 +73,11 @@ static int make_light(const struct refocus_photo *photo)
 }
 
 /* The light of a gain map, and the memory that is stated for it. */
-static void lights(void **state)
+TEST(lights)
 {
     struct sample samples[SAMPLES_MAX];
     const int count = make_samples(samples);
 
-    (void)state;
     for (int i = 0; i < count; i++) {
         struct refocus_photo *photo;
         long total;
@@ -111,11 +109,10 @@ static void lights(void **state)
 
 #ifdef RF_HAVE_HEIC
 /* libheif's own memory is not ours to refuse; this is what the heic_*.c ask for. */
-static void heic(void **state)
+TEST(heic)
 {
     struct sample sample = {.name = "heic"};
 
-    (void)state;
     if (!find_photos()) {
         print_message("SKIPPED: no photos in %s\n", photos_folder);
         skip();
@@ -126,11 +123,10 @@ static void heic(void **state)
 }
 
 /* A gain map beside XMP, and one that is decoded from a copy of the file. */
-static void heic_gain_maps(void **state)
+TEST(heic_gain_maps)
 {
     static const char *const names[] = {"gain_xmp", "toned"};
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct sample sample = {.name = names[i]};
         struct refocus_photo *photo = NULL;
@@ -177,13 +173,12 @@ static void peak_of(const struct sample *sample)
     refocus_photo_free(&photo);
 }
 
-static void stated_peak(void **state)
+TEST(stated_peak)
 {
     struct sample samples[SAMPLES_MAX];
     const int count = make_samples(samples);
     struct sample large = {.name = "large.pgm"};
 
-    (void)state;
     for (int i = 0; i < count; i++)
         if (samples[i].photo)
             peak_of(&samples[i]);
@@ -235,7 +230,7 @@ static int write_one(const char *path, long fail)
     return status;
 }
 
-static void writers(void **state)
+TEST(writers)
 {
     static const char *const endings[] = {
         ".ppm",  ".pgm", ".pfm",
@@ -250,7 +245,6 @@ static void writers(void **state)
 #endif
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
         char path[64];
         long total;
@@ -289,14 +283,13 @@ static int write_depth(const char *path, const char *original, long fail)
     return status;
 }
 
-static void depth_writers(void **state)
+TEST(depth_writers)
 {
     struct bytes jpeg = make_jpeg(16, 8, false, false);
     char original[64], path[64];
     FILE *file;
     long total;
 
-    (void)state;
     snprintf(original, sizeof original, "/tmp/refocus-memory-%ld-o.jpg", (long)getpid());
     snprintf(path, sizeof path, "/tmp/refocus-memory-%ld.jpg", (long)getpid());
     file = fopen(original, "wb");
@@ -409,9 +402,8 @@ static void keepers_of(bool has_original, const char *container, int streams)
     refocus_photo_free(&photo);
 }
 
-static void keepers(void **state)
+TEST(keepers)
 {
-    (void)state;
     keepers_of(true, NULL, 1);
     keepers_of(false, NULL, 2);
     keepers_of(false, "HEIC", 4);
@@ -436,12 +428,11 @@ static int read_path(const char *path, bool depth, long fail)
     return status;
 }
 
-static void files(void **state)
+TEST(files)
 {
     const uint16_t samples[12] = {0};
     char path[64];
 
-    (void)state;
     snprintf(path, sizeof path, "/tmp/refocus-memory-%ld.pgm", (long)getpid());
     assert_int_equal(refocus_gray16_write(path, samples, 4, 3, 8, NULL), REFOCUS_OK);
     for (int depth = 0; depth < 2; depth++) {
@@ -450,27 +441,4 @@ static void files(void **state)
             assert_int_equal(read_path(path, depth, k), REFOCUS_ERR_MEMORY);
     }
     assert_int_equal(unlink(path), 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(readers),
-#if defined(RF_HAVE_JPEG) && defined(RF_HAVE_XMP)
-        cmocka_unit_test(lights),
-#endif
-#ifdef RF_HAVE_HEIC
-        cmocka_unit_test(heic),
-        cmocka_unit_test(heic_gain_maps),
-#endif
-        cmocka_unit_test(stated_peak),
-        cmocka_unit_test(writers),
-#if defined(RF_HAVE_JPEG) && defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
-        cmocka_unit_test(depth_writers),
-        cmocka_unit_test(keepers),
-#endif
-        cmocka_unit_test(files),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

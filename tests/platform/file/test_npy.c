@@ -36,9 +36,8 @@ static const struct {
     {"f8", 8, {UINT64_C(0x7fefffffffffffff), UINT64_C(0xffefffffffffffff)}, {INFINITY, -INFINITY}},
 };
 
-static void numbers_of_every_type(void **state)
+TEST(numbers_of_every_type)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
         for (int high_first = 0; high_first < 2; high_first++) {
             struct bytes samples = {NULL, 0};
@@ -61,7 +60,7 @@ static void numbers_of_every_type(void **state)
     }
 }
 
-static void no_number_is_none(void **state)
+TEST(no_number_is_none)
 {
     static const struct {
         const char *type;
@@ -70,7 +69,6 @@ static void no_number_is_none(void **state)
     } nans[] = {
         {"<f2", "\1\174", 2}, {">f4", "\177\300\0\0", 4}, {"<f8", "\1\0\0\0\0\0\370\177", 8}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof nans / sizeof *nans; i++) {
         struct refocus_photo *photo =
             read_depth(array(nans[i].type, "False", "(1, 1)", nans[i].bits, (size_t)nans[i].bytes),
@@ -81,12 +79,11 @@ static void no_number_is_none(void **state)
     }
 }
 
-static void codes_stay_codes(void **state)
+TEST(codes_stay_codes)
 {
     struct refocus_photo *photo =
         read_depth(array("|u1", "False", "(2, 3)", "\1\2\3\4\5\377", 6), NULL, REFOCUS_OK);
 
-    (void)state;
     assert_int_equal(photo->depth->sample, REFOCUS_SAMPLE_U8);
     assert_int_equal(photo->depth->width, 3);
     assert_int_equal(photo->depth->height, 2);
@@ -102,7 +99,7 @@ static void codes_stay_codes(void **state)
 }
 
 /* Rows and columns; batches of one, one channel; versions; blanks, quotes, order and Python 2. */
-static void forms_of_one_array(void **state)
+TEST(forms_of_one_array)
 {
     static const struct {
         int version;
@@ -116,7 +113,6 @@ static void forms_of_one_array(void **state)
         {1, " {\t'descr' : '>u1' ,'fortran_order' : True,'shape':(2, 3, 1)\n}", "\1\4\2\5\3\6"},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
         struct refocus_photo *photo = read_depth(
             make_npy(forms[i].version, forms[i].header, forms[i].samples, 6), NULL, REFOCUS_OK);
@@ -129,12 +125,11 @@ static void forms_of_one_array(void **state)
     }
 }
 
-static void shapes_that_are_no_map(void **state)
+TEST(shapes_that_are_no_map)
 {
     static const char *const shapes[] = {"()", "(4,)", "(2, 2, 3)", "(3, 2, 2)", "(1, 2, 2, 2)"};
     static const char samples[16];
 
-    (void)state;
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         read_depth(array("|u1", "False", shapes[i], samples, sizeof samples), NULL,
                    REFOCUS_ERR_UNSUPPORTED);
@@ -144,19 +139,18 @@ static void shapes_that_are_no_map(void **state)
     read_depth(array("<f8", "False", "(65535, 65535)", samples, 16), NULL, REFOCUS_ERR_SIZE);
 }
 
-static void types_that_are_no_numbers(void **state)
+TEST(types_that_are_no_numbers)
 {
     static const char *const descrs[] = {"|b1", "<c8", "|O", "<U3", "<f3", "=f4", "<f16", "f", "<"};
     static const char samples[32];
 
-    (void)state;
     for (size_t i = 0; i < sizeof descrs / sizeof *descrs; i++) {
         read_depth(array(descrs[i], "False", "(1, 2)", samples, sizeof samples), NULL,
                    REFOCUS_ERR_UNSUPPORTED);
     }
 }
 
-static void headers_that_are_damaged(void **state)
+TEST(headers_that_are_damaged)
 {
     static const char *const headers[] = {
         "",
@@ -184,7 +178,6 @@ static void headers_that_are_damaged(void **state)
     };
     struct bytes file;
 
-    (void)state;
     for (size_t i = 0; i < sizeof headers / sizeof *headers; i++)
         read_depth(make_npy(1, headers[i], "\1\2", 2), NULL, REFOCUS_ERR_FORMAT);
     for (int version = 0; version < 5; version += 4) {
@@ -199,15 +192,4 @@ static void headers_that_are_damaged(void **state)
     file.data[9] = 1;
     read_depth(file, NULL, REFOCUS_ERR_FORMAT);
     read_photo(array("|u1", "False", "(1, 2)", "\1\2", 2), REFOCUS_ERR_UNSUPPORTED);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers_of_every_type),    cmocka_unit_test(no_number_is_none),
-        cmocka_unit_test(codes_stay_codes),         cmocka_unit_test(forms_of_one_array),
-        cmocka_unit_test(shapes_that_are_no_map),   cmocka_unit_test(types_that_are_no_numbers),
-        cmocka_unit_test(headers_that_are_damaged),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

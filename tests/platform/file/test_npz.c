@@ -24,7 +24,7 @@ static bool notes(const struct refocus_photo *photo, const char *line)
 }
 
 /* An archive may hold several: the one called depth is taken, else the first. */
-static void an_array_is_chosen(void **state)
+TEST(an_array_is_chosen)
 {
     static const char *const names[][2] = {
         {"stored", "NPZ: the array 'arr_0'"},
@@ -32,7 +32,6 @@ static void an_array_is_chosen(void **state)
         {"several", "NPZ: the array 'Depth'"},
         {"unnamed", "NPZ: the array 'a', the first one; 2 more, none is called depth"}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         struct refocus_photo *photo = read_depth(archive(names[i][0]), NULL, REFOCUS_OK);
 
@@ -59,12 +58,11 @@ static size_t find(const struct bytes *file, const char *text)
 }
 
 /* A checksum tells the damage that an array alone does not. */
-static void damage_is_told(void **state)
+TEST(damage_is_told)
 {
     struct bytes file = archive("stored");
     const size_t samples = find(&file, "}") + 60;
 
-    (void)state;
     file.data[samples] ^= 1;
     read_depth(file, NULL, REFOCUS_ERR_FORMAT);
     file = archive("deflated");
@@ -73,12 +71,11 @@ static void damage_is_told(void **state)
     bytes_free(&file);
 }
 
-static void others_are_refused(void **state)
+TEST(others_are_refused)
 {
     static const uint8_t empty[22] = "PK\5\6";
     struct bytes file = archive("stored");
 
-    (void)state;
     read_depth(bytes_copy(empty, sizeof empty), NULL, REFOCUS_ERR_UNSUPPORTED);
     for (int i = 0; i < 2; i++) /* here and in the directory */
         memcpy(file.data + find(&file, "arr_0.npy"), "arr_0.txt", 9);
@@ -86,14 +83,4 @@ static void others_are_refused(void **state)
     file = archive("stored");
     memcpy(file.data + find(&file, "NUMPY"), "numpy", 5);
     read_depth(file, NULL, REFOCUS_ERR_FORMAT);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(an_array_is_chosen),
-        cmocka_unit_test(damage_is_told),
-        cmocka_unit_test(others_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

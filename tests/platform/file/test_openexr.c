@@ -6,12 +6,11 @@
 #include <math.h>
 #include <unistd.h>
 
-static void exr_colour_and_depth(void **state)
+TEST(exr_colour_and_depth)
 {
     struct bytes file = make_exr(W, H, "B G R Z", -3, 7);
     struct refocus_photo *photo = read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
 
-    (void)state;
     assert_string_equal(photo->info->container, "OpenEXR");
     assert_int_equal(photo->info->stored_bits, 0);
     for (int i = 0; i < 3 * W * H; i++) {
@@ -31,12 +30,11 @@ static void exr_colour_and_depth(void **state)
     bytes_free(&file);
 }
 
-static void exr_layers(void **state)
+TEST(exr_layers)
 {
     struct refocus_photo *photo =
         read_photo(make_exr(W, H, "beauty.B beauty.G beauty.R depth.Z normal.X", 0, 0), REFOCUS_OK);
 
-    (void)state;
     assert_true(light_at(photo->deep, 2, 1, 0) == (float)pattern(2, 1, 2, 255) / 64);
     assert_true(float_at(photo->depth, 2, 1) == (double)((float)pattern(2, 1, 3, 255) / 64));
     assert_true(has_evidence(photo, "beauty.R"));
@@ -54,7 +52,7 @@ static void exr_layers(void **state)
 
 /* The picture and its depth are found among the many layers that renderers write. Channels are
  * counted in the order of their names. */
-static void exr_many_layers(void **state)
+TEST(exr_many_layers)
 {
     static const struct {
         const char *channels;
@@ -77,7 +75,6 @@ static void exr_many_layers(void **state)
         {"A.X A.Y B G R X Y Z", 4, 3, 2, -1, "taken R G B"},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         struct refocus_photo *photo =
             read_photo(make_exr(W, H, cases[i].channels, 0, 0), REFOCUS_OK);
@@ -108,13 +105,12 @@ static void set_sample(struct bytes *file, int channels, int channel, int y, flo
 }
 
 /* Depth by other names, in pictures of one colour, and of nothing at all. */
-static void exr_other_depth(void **state)
+TEST(exr_other_depth)
 {
     static const char *const names[] = {"ViewLayer.Depth.Z", "Depth.V", "Depth", "z.depth"};
     struct refocus_photo *photo;
     struct bytes file;
 
-    (void)state;
     for (int i = 0; i < 4; i++) {
         file = make_exr(W, H, names[i], 0, 0);
         set_sample(&file, 1, 0, 2, INFINITY);
@@ -151,7 +147,7 @@ static void exr_other_depth(void **state)
 }
 
 /* Colour and depth in parts of their own: depth is that of the same pixels and the same view. */
-static void exr_parts(void **state)
+TEST(exr_parts)
 {
     static const struct exr_part parts[] = {
         {"normals", "N.X N.Y", NULL, W, 2, 1, false},
@@ -164,7 +160,6 @@ static void exr_parts(void **state)
     struct bytes file = make_exr_parts(H, parts, 6);
     struct refocus_photo *photo = read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
 
-    (void)state;
     for (int i = 0; i < W * H; i++) {
         const int x = i % W, y = i / W;
 
@@ -197,7 +192,7 @@ static void exr_parts(void **state)
     refocus_photo_free(&photo);
 }
 
-static void exr_deep_parts(void **state)
+TEST(exr_deep_parts)
 {
     static const struct exr_part parts[] = {
         {"deep", "B G R Z", NULL, W, 0, 0, true},
@@ -208,7 +203,6 @@ static void exr_deep_parts(void **state)
     struct refocus_photo *photo = read_photo(make_exr_parts(H, parts, 2), REFOCUS_OK);
     struct bytes file;
 
-    (void)state;
     assert_true(light_at(photo->deep, 2, 1, 0) == (float)pattern(2, 1, 6, 255) / 64);
     assert_true(float_at(photo->depth, 2, 1) == (double)((float)pattern(2, 1, 7, 255) / 64));
     refocus_photo_free(&photo);
@@ -219,7 +213,7 @@ static void exr_deep_parts(void **state)
     bytes_free(&file);
 }
 
-static void exr_written(void **state)
+TEST(exr_written)
 {
     static const float values[4] = {1, 0x1p-24f, 65504, 100};
     float samples[3 * W * H];
@@ -227,7 +221,6 @@ static void exr_written(void **state)
         refocus_image_packed(REFOCUS_FORMAT_RGB_FLOAT, samples, W, H, 12 * W);
     struct refocus_photo *photo = NULL;
 
-    (void)state;
     for (int i = 0; i < 3 * W * H; i++)
         samples[i] = values[i % 4];
     assert_int_equal(refocus_image_write("formats.exr", &image, NULL, NULL), REFOCUS_OK);
@@ -237,19 +230,4 @@ static void exr_written(void **state)
     assert_true(light_at(photo->deep, 0, 0, 2) == 65504);
     refocus_photo_free(&photo);
     unlink("formats.exr");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(exr_colour_and_depth),
-        cmocka_unit_test(exr_layers),
-        cmocka_unit_test(exr_many_layers),
-        cmocka_unit_test(exr_other_depth),
-        cmocka_unit_test(exr_parts),
-        cmocka_unit_test(exr_deep_parts),
-        cmocka_unit_test(exr_written),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

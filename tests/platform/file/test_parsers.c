@@ -16,7 +16,7 @@
 
 #include <math.h>
 
-static void numbers(void **state)
+TEST(numbers)
 {
     static const struct {
         const char *text;
@@ -38,7 +38,6 @@ static void numbers(void **state)
                                       "nan", "inf", "1 2", "1e999", "--1", "1.2.3"};
     double value;
 
-    (void)state;
     for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
         assert_true(rf_parse_number(good[i].text, &value));
         assert_true(fabs(value - good[i].value) <= 1e-15 * fabs(good[i].value));
@@ -48,9 +47,8 @@ static void numbers(void **state)
 }
 
 /* Letters in either case are the same, signs that are as far apart as they are not. */
-static void words(void **state)
+TEST(words)
 {
-    (void)state;
     assert_true(rf_same_word("", ""));
     assert_true(rf_same_word(".TIF", ".tif"));
     assert_true(rf_same_word("AZaz09", "azAZ09"));
@@ -64,13 +62,12 @@ static void words(void **state)
     assert_false(rf_begins_with("my_disp", "disp"));
 }
 
-static void base64_text(void **state)
+TEST(base64_text)
 {
     static const char *const bad[] = {"A", "AAAAA", "A*AA", "AA=A", "====A", "AA-_"};
     uint8_t bytes[256];
     char text[400];
 
-    (void)state;
     for (int i = 0; i < 256; i++)
         bytes[i] = (uint8_t)(i * 89);
     for (size_t size = 0; size <= 256; size++) {
@@ -90,13 +87,12 @@ static void base64_text(void **state)
 }
 
 /* Directories that point at themselves, at each other and outside. */
-static void exif_offsets(void **state)
+TEST(exif_offsets)
 {
     static const uint32_t places[] = {0,   1,   7,   8,          62,         100,
                                       171, 176, 177, 0x7fffffff, 0xfffffffe, 0xffffffff};
     struct rf_exif exif;
 
-    (void)state;
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
             /* Offsets where the first directory and the settings' directory are said to be. */
@@ -119,12 +115,11 @@ static void exif_offsets(void **state)
     }
 }
 
-static void exif_texts_are_clean(void **state)
+TEST(exif_texts_are_clean)
 {
     struct bytes block = make_exif(true, 1);
     struct rf_exif exif;
 
-    (void)state;
     block.data[128 + 1] = '\n';
     assert_true(rf_exif_parse(block.data, block.size, &exif));
     assert_string_equal(exif.camera, "M?ker Model X");
@@ -136,12 +131,11 @@ static void exif_texts_are_clean(void **state)
     bytes_free(&block);
 }
 
-static void mpf_bounds(void **state)
+TEST(mpf_bounds)
 {
     struct bytes tiff = {NULL, 0};
     struct rf_mpf mpf;
 
-    (void)state;
     bytes_add(&tiff, "MM\0*\0\0\0\10\0\1\260\2\0\7\0\0\0\40\0\0\0\32\0\0\0\0", 26);
     bytes_add(&tiff, "\0\3\0\0\0\0\1\0\0\0\0\0\0\0\0\0", 16);
     bytes_add(&tiff, "\0\0\0\0\0\0\0\5\0\0\1\2\0\0\0\0", 16);
@@ -156,11 +150,10 @@ static void mpf_bounds(void **state)
 }
 
 /* Depth that reaches beyond infinity: d = 0 is at infinity. */
-static void disparity_ranges(void **state)
+TEST(disparity_ranges)
 {
     struct refocus_depth_map map = refocus_depth_map_default();
 
-    (void)state;
     rf_depth_from_disparity(&map, 0, 255, 0.5, 2);
     assert_true(map.near_m == 0.5 && map.far_m == 2 && map.value_far == 0);
     rf_depth_from_disparity(&map, 0, 255, 0, 2);
@@ -170,13 +163,12 @@ static void disparity_ranges(void **state)
 }
 
 /* Tracks without a picture are refused in words of their own; a file with both is a picture. */
-static void heif_sequences(void **state)
+TEST(heif_sequences)
 {
     static const char head[] = "\0\0\0\24ftypmsf1\0\0\0\0hevc";
     static const char track[] = "\0\0\0\14moov\1\2\3\4", meta[] = "\0\0\0\14meta\0\0\0\0";
     struct bytes film = bytes_copy(head, 20), both;
 
-    (void)state;
     assert_false(rf_heif_is_sequence((struct rf_bytes){film.data, film.size}));
     bytes_add(&film, track, 12);
     assert_true(rf_heif_is_sequence((struct rf_bytes){film.data, film.size}));
@@ -190,11 +182,10 @@ static void heif_sequences(void **state)
 }
 
 /* Two pictures are a stereo pair if a group of theirs says so, and two of a burst are none. */
-static void heif_stereo(void **state)
+TEST(heif_stereo)
 {
     static const char names[][5] = {"ster", "altr", "brst"};
 
-    (void)state;
     for (int i = 0; i < 3; i++) {
         struct bytes file = bytes_copy("\0\0\0\24ftypheic\0\0\0\0mif1", 20);
         uint32_t pair[2];
@@ -210,7 +201,7 @@ static void heif_stereo(void **state)
     }
 }
 
-static void heif_orientations(void **state)
+TEST(heif_orientations)
 {
     static const struct {
         struct heif_property properties[2];
@@ -228,7 +219,6 @@ static void heif_orientations(void **state)
         {{{"xxxx", 1}}, 1, 1},
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         for (int large = 0; large < 2; large++) {
             struct bytes file = make_heif_boxes(cases[i].properties, cases[i].count, large);
@@ -249,14 +239,13 @@ static void heif_orientations(void **state)
 
 /* A main picture whose number is cut off, at the end of the boxes: what lies behind it is no
  * number. Without the cut the same bytes turn the picture. */
-static void heif_short_primary(void **state)
+TEST(heif_short_primary)
 {
     const struct heif_property turned = {"irot", 1};
     struct bytes boxes = make_heif_boxes(&turned, 1, false);
     const size_t meta = 20, pitm = meta + 12, iprp = pitm + 14, all = boxes.size - iprp;
     uint8_t *const file = calloc(1, boxes.size);
 
-    (void)state;
     assert_memory_equal(boxes.data + iprp + 4, "iprp", 4);
     memcpy(file, boxes.data, pitm);
     memcpy(file + pitm, boxes.data + iprp, all);
@@ -271,7 +260,7 @@ static void heif_short_primary(void **state)
 }
 
 /* RFC 1321, A.5, and lengths around a block of 64 bytes. */
-static void md5_of_the_rfc(void **state)
+TEST(md5_of_the_rfc)
 {
     static const struct {
         const char *text, *hex;
@@ -292,7 +281,6 @@ static void md5_of_the_rfc(void **state)
     uint8_t same[65];
     char hex[33];
 
-    (void)state;
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         const struct rf_bytes text = {(const uint8_t *)known[i].text, strlen(known[i].text)};
 
@@ -307,7 +295,7 @@ static void md5_of_the_rfc(void **state)
 }
 
 /* Four letters are a brand, whatever follows; there are files of other things with a brand, too. */
-static void heif_brands(void **state)
+TEST(heif_brands)
 {
     static const struct {
         const char *begin;
@@ -316,7 +304,6 @@ static void heif_brands(void **state)
                  {"\0\0\0\20ftypmif1x", true},  {"\0\0\0\20ftypmp42x", false},
                  {"\0\0\0\20ftypheiXx", false}, {"\0\0\0\20freeheicx", false}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         const uint8_t *const begin = (const uint8_t *)files[i].begin;
 
@@ -330,7 +317,7 @@ static void heif_brands(void **state)
 }
 
 /* Parts that are left out are told behind what was told before, as far as there is room. */
-static void reasons_end(void **state)
+TEST(reasons_end)
 {
     struct {
         struct refocus_reason reason;
@@ -338,7 +325,6 @@ static void reasons_end(void **state)
     } told;
     const size_t room = sizeof told.reason.text;
 
-    (void)state;
     for (size_t used = 0; used < room; used++) {
         memset(&told, 'a', sizeof told);
         told.reason.text[used] = '\0';
@@ -352,35 +338,11 @@ static void reasons_end(void **state)
     }
 }
 
-static void png_signature(void **state)
+TEST(png_signature)
 {
     static const uint8_t begin[] = "\x89PNG\r\n\x1a\n\xff";
 
-    (void)state;
     assert_false(rf_is_png((struct rf_bytes){begin, 7}));
     assert_true(rf_is_png((struct rf_bytes){begin, 8}));
     assert_true(rf_is_png((struct rf_bytes){begin, 9}));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(numbers),
-        cmocka_unit_test(words),
-        cmocka_unit_test(base64_text),
-        cmocka_unit_test(exif_offsets),
-        cmocka_unit_test(exif_texts_are_clean),
-        cmocka_unit_test(heif_sequences),
-        cmocka_unit_test(heif_stereo),
-        cmocka_unit_test(heif_orientations),
-        cmocka_unit_test(heif_short_primary),
-        cmocka_unit_test(md5_of_the_rfc),
-        cmocka_unit_test(png_signature),
-        cmocka_unit_test(reasons_end),
-        cmocka_unit_test(heif_brands),
-        cmocka_unit_test(mpf_bounds),
-        cmocka_unit_test(disparity_ranges),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

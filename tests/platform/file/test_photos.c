@@ -6,11 +6,10 @@
 
 #ifdef RF_HAVE_JPEG
 #if defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
-static void lens_blur_photo(void **state)
+TEST(lens_blur_photo)
 {
     struct refocus_photo *photo = photo_of("phone/gdepth-dahlia.jpg");
 
-    (void)state;
     assert_sizes(photo, 1536, 2048, 1536, 2048);
     assert_int_equal(photo->info->depth_source, REFOCUS_DEPTH_SOURCE_GDEPTH);
     assert_int_equal(photo->info->original_used, 1);
@@ -34,11 +33,10 @@ static void lens_blur_photo(void **state)
 #endif
 
 #ifdef RF_HAVE_XMP
-static void apple_jpeg(void **state)
+TEST(apple_jpeg)
 {
     struct refocus_photo *photo = photo_of("phone/apple-jpeg-cup.jpg");
 
-    (void)state;
     assert_sizes(photo, 4032, 3024, 768, 576);
     assert_int_equal(photo->info->depth_source, REFOCUS_DEPTH_SOURCE_APPLE_MPF);
     assert_true(photo->depth->value_near == 255 && photo->depth->value_far == 0);
@@ -53,12 +51,11 @@ static void apple_jpeg(void **state)
 }
 #endif
 
-static void triples(void **state)
+TEST(triples)
 {
     struct refocus_photo *depth = depth_of("lens-blur-triples/hut-depth.jpg", "inverse");
     struct refocus_photo *photo = photo_of("lens-blur-triples/hut-alternative.jpg");
 
-    (void)state;
     assert_int_equal(depth->depth->width, 580);
     assert_int_equal(depth->depth->height, 1024);
     assert_true(depth->depth->value_near == 0 && depth->depth->value_far == 255);
@@ -70,11 +67,10 @@ static void triples(void **state)
     refocus_photo_free(&depth);
 }
 
-static void network_depth(void **state)
+TEST(network_depth)
 {
     struct refocus_photo *depth = depth_of("mono/street_8_disparity.jpg", NULL);
 
-    (void)state;
     assert_int_equal(depth->depth->width, 2000);
     assert_true(depth->depth->value_near == 255);
     assert_samples(depth->depth, 0, 255);
@@ -97,30 +93,27 @@ static double part_of_zeros(const char *name)
     return zeros / (640 * 480.0);
 }
 
-static void kinect(void **state)
+TEST(kinect)
 {
-    (void)state;
     assert_true(fabs(part_of_zeros("rgbd/tum-office-depth.png") - 0.192) < 0.001);
     assert_true(fabs(part_of_zeros("rgbd/tum-fr2-desk-depth.png") - 0.333) < 0.001);
 }
 
-static void stereo_truth(void **state)
+TEST(stereo_truth)
 {
     struct refocus_photo *depth = depth_of("stereo-gt/aloeGT.png", NULL);
 
-    (void)state;
     assert_int_equal(depth->depth->width, 1282);
     assert_samples(depth->depth, 0, 211);
     refocus_photo_free(&depth);
 }
 #endif
 
-static void light_field_truth(void **state)
+TEST(light_field_truth)
 {
     struct refocus_photo *depth = depth_of("light-field/antinous/gt_disp_lowres.pfm", NULL);
     double low = INFINITY, high = -INFINITY;
 
-    (void)state;
     assert_int_equal(depth->depth->width, 512);
     for (int i = 0; i < 512 * 512; i++) {
         const double v = float_at(depth->depth, i % 512, i / 512);
@@ -134,11 +127,10 @@ static void light_field_truth(void **state)
 }
 
 #ifdef RF_HAVE_HEIC
-static void heic_depth(void **state)
+TEST(heic_depth)
 {
     struct refocus_photo *photo = photo_of("phone/apple-heic-pug.heic");
 
-    (void)state;
     assert_string_equal(photo->info->container, "HEIC");
     assert_sizes(photo, 4032, 3024, 768, 576);
     assert_int_equal(photo->info->depth_source, REFOCUS_DEPTH_SOURCE_HEIF);
@@ -156,12 +148,11 @@ static void heic_depth(void **state)
 
 /* EXIF begins so many bytes behind its first four as those say: six, and where there are
  * none any more. */
-static void heic_exif_lies_within(void **state)
+TEST(heic_exif_lies_within)
 {
     static const uint8_t skips[][4] = {
         {0, 0, 0, 6}, {0, 1, 0, 0}, {0x7f, 0xff, 0xff, 0xff}, {0xff, 0xff, 0xff, 0xff}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof skips / sizeof *skips; i++) {
         struct bytes file = load("phone/apple-heic-pug.heic");
         struct refocus_photo *photo;
@@ -179,12 +170,11 @@ static void heic_exif_lies_within(void **state)
 
 /* The container's rotation by 90 degrees anticlockwise: photo and depth follow, once.
  */
-static void heic_turned(void **state)
+TEST(heic_turned)
 {
     struct refocus_photo *straight = photo_of("phone/apple-heic-pug.heic"), *turned;
     struct bytes file = load("phone/apple-heic-pug.heic");
 
-    (void)state;
     for (size_t i = 0; i + 8 < file.size; i++)
         if (memcmp(file.data + i, "irot", 4) == 0)
             file.data[i + 4] = 1;
@@ -208,13 +198,12 @@ static void heic_turned(void **state)
 }
 
 /* A depth image without a rotation of its own lies as the stored main picture does. */
-static void heic_depth_without_rotation(void **state)
+TEST(heic_depth_without_rotation)
 {
     struct refocus_photo *straight = photo_of("phone/apple-heic-pug.heic"), *turned;
     struct bytes file = load("phone/apple-heic-pug.heic");
     int changed = 0;
 
-    (void)state;
     for (size_t i = 0; i + 8 < file.size; i++) {
         /* Item 54, five properties, among them 5, the rotation; 2 is a size. */
         static const uint8_t association[] = {0, 54, 5};
@@ -238,7 +227,7 @@ static void heic_depth_without_rotation(void **state)
     refocus_photo_free(&straight);
 }
 
-static void heic_cut_and_limited(void **state)
+TEST(heic_cut_and_limited)
 {
     struct bytes file = load("phone/apple-heic-pug.heic");
     const struct refocus_read_limits limits = {.struct_size = sizeof(struct refocus_read_limits),
@@ -246,7 +235,6 @@ static void heic_cut_and_limited(void **state)
     struct refocus_photo *photo = NULL;
     struct refocus_reason reason;
 
-    (void)state;
     for (size_t k = 0; k < 40; k++) {
         /* The boxes closely, the picture data in steps. */
         const size_t size = k < 24 ? k * k * 7 : file.size / 16 * (k - 24) + 5;
@@ -264,11 +252,10 @@ static void heic_cut_and_limited(void **state)
     bytes_free(&file);
 }
 
-static void heic_without_depth(void **state)
+TEST(heic_without_depth)
 {
     struct refocus_photo *photo = photo_of("stereo/spatial-photo.heic");
 
-    (void)state;
     assert_int_equal(photo->image->width, 2560);
     assert_null(photo->depth->samples);
     refocus_photo_free(&photo);
@@ -277,35 +264,9 @@ static void heic_without_depth(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-#ifdef RF_HAVE_JPEG
-#if defined(RF_HAVE_PNG) && defined(RF_HAVE_XMP)
-        cmocka_unit_test(lens_blur_photo),
-#endif
-#ifdef RF_HAVE_XMP
-        cmocka_unit_test(apple_jpeg),
-#endif
-        cmocka_unit_test(triples),
-        cmocka_unit_test(network_depth),
-#endif
-#ifdef RF_HAVE_PNG
-        cmocka_unit_test(kinect),
-        cmocka_unit_test(stereo_truth),
-#endif
-        cmocka_unit_test(light_field_truth),
-#ifdef RF_HAVE_HEIC
-        cmocka_unit_test(heic_depth),
-        cmocka_unit_test(heic_exif_lies_within),
-        cmocka_unit_test(heic_turned),
-        cmocka_unit_test(heic_depth_without_rotation),
-        cmocka_unit_test(heic_cut_and_limited),
-        cmocka_unit_test(heic_without_depth),
-#endif
-    };
-
     if (!find_photos()) {
         printf("SKIPPED: no photos in %s; set REFOCUS_PHOTOS to their folder\n", photos_folder);
         return 77;
     }
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return unit_test_run(NULL, NULL);
 }

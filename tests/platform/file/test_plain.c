@@ -11,12 +11,11 @@ static struct bytes text_file(const char *text)
     return bytes_copy(text, strlen(text));
 }
 
-static void ppm_raw_and_plain(void **state)
+TEST(ppm_raw_and_plain)
 {
     struct bytes raw = text_file("P6 # a comment\n2 2\n255\n");
     struct refocus_photo *photo;
 
-    (void)state;
     bytes_add(&raw, "\1\2\3\4\5\6\7\10\11\12\13\14trailing bytes do not matter", 40);
     photo = read_photo(raw, REFOCUS_OK);
     assert_int_equal(photo->image->width, 2);
@@ -31,12 +30,11 @@ static void ppm_raw_and_plain(void **state)
     refocus_photo_free(&photo);
 }
 
-static void pgm_16_bits_as_photo_and_depth(void **state)
+TEST(pgm_16_bits_as_photo_and_depth)
 {
     struct bytes file = text_file("P5\n3 1\n65535\n");
     struct refocus_photo *photo;
 
-    (void)state;
     bytes_add(&file, "\0\0\200\0\377\377", 6);
     photo = read_photo(bytes_copy(file.data, file.size), REFOCUS_OK);
     assert_memory_equal(photo->image->plane[0], "\0\0\0\200\200\200\377\377\377", 9);
@@ -51,11 +49,10 @@ static void pgm_16_bits_as_photo_and_depth(void **state)
     refocus_photo_free(&photo);
 }
 
-static void pgm_white_is_its_greatest_value(void **state)
+TEST(pgm_white_is_its_greatest_value)
 {
     struct refocus_photo *photo = read_depth(text_file("P2 2 1 1000\n0 1000\n"), NULL, REFOCUS_OK);
 
-    (void)state;
     assert_true(photo->depth->value_near == 1000);
     refocus_photo_free(&photo);
     photo = read_depth(text_file("P2 2 1 1000\n0 1000\n"), "mm", REFOCUS_OK);
@@ -65,7 +62,7 @@ static void pgm_white_is_its_greatest_value(void **state)
     refocus_photo_free(&photo);
 }
 
-static void pnm_damaged(void **state)
+TEST(pnm_damaged)
 {
     static const char *const bad[] = {
         "P6",
@@ -84,7 +81,6 @@ static void pnm_damaged(void **state)
         "P6 2 2 255 xxxxxxxxxxx",
     };
 
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         read_photo(text_file(bad[i]), REFOCUS_ERR_FORMAT);
     read_photo(text_file("P6 2147483648 2147483648 255 x"), REFOCUS_ERR_SIZE);
@@ -107,9 +103,8 @@ static struct bytes make_pfm(bool big_endian, const char *kind)
     return file;
 }
 
-static void pfm_both_byte_orders(void **state)
+TEST(pfm_both_byte_orders)
 {
-    (void)state;
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         struct refocus_photo *photo = read_depth(make_pfm(big_endian, "Pf"), NULL, REFOCUS_OK);
 
@@ -128,12 +123,11 @@ static void pfm_both_byte_orders(void **state)
 /* Light of three colours is a photo: floats as they are, and codes of sRGB beside them. */
 /* Lines may end as in Windows; a blank may be a carriage return, and the first sample begin with a
  * line feed. */
-static void pfm_line_ends(void **state)
+TEST(pfm_line_ends)
 {
     static const char samples[] = "\n\0\200\77\0\0\0\100";
     static const char *const heads[] = {"Pf\r\n2 1\r\n-1.0\r\n", "Pf\r2 1\r-1.0\r"};
 
-    (void)state;
     for (int i = 0; i < 2; i++) {
         struct bytes file = text_file(heads[i]);
         struct refocus_photo *photo;
@@ -146,12 +140,11 @@ static void pfm_line_ends(void **state)
     }
 }
 
-static void pfm_in_colour(void **state)
+TEST(pfm_in_colour)
 {
     static const float values[6] = {-1.5f, 0.0f, 2.25f, 3.0f, 100.0f, 0.125f};
     static const int codes[6] = {0, 0, 255, 255, 255, 99};
 
-    (void)state;
     for (int big_endian = 0; big_endian < 2; big_endian++) {
         struct refocus_photo *photo = read_photo(make_pfm(big_endian, "PF"), REFOCUS_OK);
 
@@ -174,11 +167,10 @@ static void pfm_in_colour(void **state)
     read_photo(text_file("PF\n65535 65535\n-1\n...."), REFOCUS_ERR_SIZE);
 }
 
-static void pfm_units(void **state)
+TEST(pfm_units)
 {
     struct refocus_photo *photo = read_depth(make_pfm(false, "Pf"), "inverse", REFOCUS_OK);
 
-    (void)state;
     assert_true(photo->depth->value_near == -1.5 && photo->depth->value_far == 100.0);
     refocus_photo_free(&photo);
     photo = read_depth(make_pfm(false, "Pf"), "m", REFOCUS_OK);
@@ -187,11 +179,10 @@ static void pfm_units(void **state)
     refocus_photo_free(&photo);
 }
 
-static void pfm_refused(void **state)
+TEST(pfm_refused)
 {
     struct bytes tall = text_file("Pf\n2147483648 2147483648\n-1\n....");
 
-    (void)state;
     read_depth(make_pfm(false, "PF"), NULL, REFOCUS_ERR_NO_DEPTH);
     read_photo(make_pfm(false, "Pf"), REFOCUS_ERR_UNSUPPORTED);
     read_depth(tall, NULL, REFOCUS_ERR_SIZE);
@@ -203,7 +194,7 @@ static void pfm_refused(void **state)
 }
 
 /* The ends of floats are those of the map, not of what lies between its rows. */
-static void ends_of_floats(void **state)
+TEST(ends_of_floats)
 {
     static const float rows[2][4] = {{2, (float)NAN, 5, 90}, {(float)INFINITY, 3, 1, -90}};
     struct refocus_depth_map map = {.struct_size = sizeof(struct refocus_depth_map),
@@ -213,21 +204,19 @@ static void ends_of_floats(void **state)
                                     .height = 2,
                                     .stride = sizeof rows[0]};
 
-    (void)state;
     assert_int_equal(refocus_depth_set_unit(&map, "inverse"), REFOCUS_OK);
     assert_true(map.value_near == 1 && map.value_far == 5);
     assert_int_equal(refocus_depth_set_unit(&map, "disparity"), REFOCUS_OK);
     assert_true(map.value_near == 0 && map.value_far == 0);
 }
 
-static void unit_words(void **state)
+TEST(unit_words)
 {
     static const char *const bad[] = {"",     "M",       "cm",      "m/m",  "/m",    "0/m",
                                       "-1/m", "1e999/m", "5000/mm", "5000", "nan/m", "inf/m"};
     struct refocus_depth_map map = {.struct_size = sizeof(struct refocus_depth_map),
                                     .sample = REFOCUS_SAMPLE_U8};
 
-    (void)state;
     assert_int_equal(refocus_depth_set_unit(&map, "disparity"), REFOCUS_OK);
     assert_true(map.value_near == 255 && map.value_far == 0 && map.flags == 0);
     assert_int_equal(refocus_depth_set_unit(&map, "inverse"), REFOCUS_OK);
@@ -252,13 +241,12 @@ static void unit_words(void **state)
     assert_int_equal(refocus_depth_set_unit(&map, NULL), REFOCUS_ERR_ARGUMENT);
 }
 
-static void invalid_words(void **state)
+TEST(invalid_words)
 {
     static const char *const bad[] = {"x",         "zero,x",   "ma",        "maxi", ",max",
                                       "max,,zero", "max zero", "1,2,3,4,5", "1e99", "nan"};
     struct refocus_depth_map map = refocus_depth_map_default();
 
-    (void)state;
     assert_int_equal(refocus_depth_set_invalid(&map, NULL), REFOCUS_OK);
     assert_int_equal(refocus_depth_set_invalid(&map, ""), REFOCUS_OK);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
@@ -283,12 +271,11 @@ static void invalid_words(void **state)
 
 /* A sample that stands for no value is no end of the inverse of floats, be it the least or the
  * greatest. */
-static void invalid_ends(void **state)
+TEST(invalid_ends)
 {
     static const float samples[] = {-1, 2, 5, 3, 99, 4};
     struct refocus_depth_map map = refocus_depth_map_default();
 
-    (void)state;
     map.sample = REFOCUS_SAMPLE_F32;
     map.samples = samples;
     map.width = 3;
@@ -306,14 +293,13 @@ static void invalid_ends(void **state)
     assert_true(map.value_near == 2 && map.value_far == 5);
 }
 
-static void range_overrules(void **state)
+TEST(range_overrules)
 {
     static const double bad[][2] = {{-1, 0},  {0, -1},  {2, 1},       {1, 1},
                                     {NAN, 0}, {0, NAN}, {INFINITY, 0}};
     struct bytes file = text_file("P5\n1 1\n255\n\1");
     struct refocus_photo *photo;
 
-    (void)state;
     assert_int_equal(refocus_depth_read_memory(&photo, file.data, file.size, "disparity", 0.5,
                                                INFINITY, NULL, NULL),
                      REFOCUS_OK);
@@ -328,12 +314,11 @@ static void range_overrules(void **state)
     bytes_free(&file);
 }
 
-static void unknown_content(void **state)
+TEST(unknown_content)
 {
     struct refocus_reason reason;
     struct refocus_photo *photo;
 
-    (void)state;
     read_photo(text_file("GIF89a..........."), REFOCUS_ERR_FORMAT);
     read_photo(text_file(""), REFOCUS_ERR_FORMAT);
     read_photo(text_file("P"), REFOCUS_ERR_FORMAT);
@@ -350,7 +335,7 @@ static void unknown_content(void **state)
     refocus_photo_free(NULL);
 }
 
-static void limits_are_kept(void **state)
+TEST(limits_are_kept)
 {
     const struct refocus_read_limits few_pixels = {
         .struct_size = sizeof(struct refocus_read_limits), .max_pixels = 11};
@@ -360,7 +345,6 @@ static void limits_are_kept(void **state)
     struct refocus_reason reason;
     struct refocus_photo *photo;
 
-    (void)state;
     assert_int_equal(refocus_photo_read_memory(&photo, file.data, file.size, &few_pixels, &reason),
                      REFOCUS_ERR_SIZE);
     assert_non_null(strstr(reason.text, "11"));
@@ -369,9 +353,8 @@ static void limits_are_kept(void **state)
     bytes_free(&file);
 }
 
-static void numbers_ignore_the_locale(void **state)
+TEST(numbers_ignore_the_locale)
 {
-    (void)state;
     /* Not every machine has one with a decimal comma; with one this is the test. */
     if (!setlocale(LC_NUMERIC, "de_DE.UTF-8"))
         setlocale(LC_NUMERIC, "C.UTF-8");
@@ -380,9 +363,8 @@ static void numbers_ignore_the_locale(void **state)
 }
 
 /* "one, two or three", each as it is listed. */
-static void endings_in_words(void **state)
+TEST(endings_in_words)
 {
-    (void)state;
     for (int depth = 0; depth < 2; depth++) {
         char words[192], expected[192] = "";
         int count = 0;
@@ -399,9 +381,8 @@ static void endings_in_words(void **state)
     }
 }
 
-static void formats_are_named(void **state)
+TEST(formats_are_named)
 {
-    (void)state;
     assert_non_null(strstr(refocus_file_formats(), "PFM"));
     for (int depth = 0; depth < 2; depth++) {
         assert_non_null(refocus_file_ending(depth, 0));
@@ -424,7 +405,7 @@ static void formats_are_named(void **state)
 
 /* This program is linked without the shared library, beside which modules are looked for: each says
  * which library it lacks. */
-static void modules_are_missed_in_words(void **state)
+TEST(modules_are_missed_in_words)
 {
     static const struct {
         const char *begin;
@@ -436,7 +417,6 @@ static void modules_are_missed_in_words(void **state)
                    {"\xff\x0a", 2, "libjxl"},
                    {"PK\3\4", 4, "libzip"}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
         struct refocus_photo *photo = NULL;
         struct refocus_reason reason;
@@ -459,13 +439,12 @@ static void modules_are_missed_in_words(void **state)
 }
 
 #ifdef RF_HAVE_JPEG
-static void raw_by_its_preview(void **state)
+TEST(raw_by_its_preview)
 {
     struct bytes file = make_dng(32, 32, 20000, make_jpeg(16, 32, false, false));
     struct refocus_read_limits limits = refocus_read_limits_default();
     struct refocus_photo *photo = NULL;
 
-    (void)state;
     limits.raw_preview = 1;
     assert_int_equal(refocus_photo_read_memory(&photo, file.data, file.size, &limits, NULL),
                      REFOCUS_OK);
@@ -489,34 +468,3 @@ static void raw_by_its_preview(void **state)
     bytes_free(&file);
 }
 #endif
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ppm_raw_and_plain),
-        cmocka_unit_test(pgm_16_bits_as_photo_and_depth),
-        cmocka_unit_test(pgm_white_is_its_greatest_value),
-        cmocka_unit_test(pnm_damaged),
-        cmocka_unit_test(pfm_both_byte_orders),
-        cmocka_unit_test(pfm_in_colour),
-        cmocka_unit_test(pfm_line_ends),
-        cmocka_unit_test(pfm_units),
-        cmocka_unit_test(pfm_refused),
-        cmocka_unit_test(ends_of_floats),
-        cmocka_unit_test(unit_words),
-        cmocka_unit_test(invalid_words),
-        cmocka_unit_test(invalid_ends),
-        cmocka_unit_test(range_overrules),
-        cmocka_unit_test(unknown_content),
-        cmocka_unit_test(limits_are_kept),
-        cmocka_unit_test(numbers_ignore_the_locale),
-        cmocka_unit_test(endings_in_words),
-        cmocka_unit_test(formats_are_named),
-        cmocka_unit_test(modules_are_missed_in_words),
-#ifdef RF_HAVE_JPEG
-        cmocka_unit_test(raw_by_its_preview),
-#endif
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}

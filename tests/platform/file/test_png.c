@@ -4,12 +4,11 @@
 
 #include <math.h>
 
-static void png_kinds(void **state)
+TEST(png_kinds)
 {
     static const int kinds[][2] = {{0, 8}, {0, 16}, {2, 8}, {2, 16}, {3, 8},
                                    {4, 8}, {4, 16}, {6, 8}, {6, 16}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         const int type = kinds[i][0], bits = kinds[i][1];
         struct refocus_photo *photo = read_photo(make_png(7, 5, type, bits), REFOCUS_OK);
@@ -54,13 +53,12 @@ static unsigned shallow(int x, int y, int channel)
 
 /* Means over 8 x 8 pixels are kept, wherever they lie; white, black and the codes that 8
  * bits have stay what they are; grey stays grey; and twice is the same. */
-static void more_than_8_bits_are_dithered(void **state)
+TEST(more_than_8_bits_are_dithered)
 {
     static uint8_t samples[DITHER_WIDE * DITHER_HIGH * 6];
     struct refocus_photo *photo, *again;
     int rounded = 0;
 
-    (void)state;
     for (int i = 0; i < DITHER_WIDE * DITHER_HIGH * 3; i++) {
         const unsigned v = shallow(i / 3 % DITHER_WIDE, i / 3 / DITHER_WIDE, i % 3);
 
@@ -106,24 +104,22 @@ static void more_than_8_bits_are_dithered(void **state)
     }
 }
 
-static void png_small_samples(void **state)
+TEST(png_small_samples)
 {
     /* 5 pixels of 2 bits: 0 1 2 3 0 */
     struct refocus_photo *photo =
         read_photo(make_png_raw(5, 1, 0, 2, (const uint8_t *)"\x1b\x00", NULL), REFOCUS_OK);
 
-    (void)state;
     assert_int_equal(pixel_at(photo->image, 1, 0)[0], 85);
     assert_int_equal(pixel_at(photo->image, 3, 0)[0], 255);
     refocus_photo_free(&photo);
 }
 
-static void png_depth(void **state)
+TEST(png_depth)
 {
     struct refocus_photo *photo = read_depth(make_png(6, 4, 0, 16), "5000/m", REFOCUS_OK);
     uint8_t grey_rgb[2 * 3 * 2];
 
-    (void)state;
     assert_int_equal(photo->depth->sample, REFOCUS_SAMPLE_U16);
     assert_int_equal(sample_at(photo->depth, 5, 3), pattern(5, 3, 0, 65535));
     assert_near(photo->depth->metres_per_unit, 1 / 5000.0);
@@ -141,14 +137,13 @@ static void png_depth(void **state)
 
 /* A sample without opacity is no distance; the others keep their codes and the ends of the codes.
  */
-static void transparent_samples_are_unknown(void **state)
+TEST(transparent_samples_are_unknown)
 {
     static const uint8_t grey8[] = {0, 255, 7, 0, 255, 1, 255, 255};
     static const uint8_t rgb16[] = {1, 2, 1, 2, 1, 2, 255, 255, 9, 9, 9, 9, 9, 9, 0, 0};
     struct refocus_photo *photo =
         read_depth(make_png_raw(2, 2, 4, 8, grey8, NULL), "inverse", REFOCUS_OK);
 
-    (void)state;
     assert_true(float_at(photo->depth, 0, 0) == 0);
     assert_true(isnan(float_at(photo->depth, 1, 0)));
     assert_true(float_at(photo->depth, 0, 1) == 255);
@@ -192,9 +187,8 @@ static struct bytes png_of_size(uint64_t width, uint64_t height)
     return png;
 }
 
-static void png_absurd(void **state)
+TEST(png_absurd)
 {
-    (void)state;
     read_photo(png_of_size(0x7fffffff, 0x7fffffff), REFOCUS_ERR_SIZE);
     read_photo(png_of_size(65535, 65535), REFOCUS_ERR_SIZE);
     read_photo(png_of_size(65536, 1), REFOCUS_ERR_SIZE);
@@ -225,7 +219,7 @@ static bool tells(const struct refocus_photo *photo, const char *words)
 
 /* White of PQ, 203 cd/m2, is the code .580689 (ITU-R BT.2408), and 1000 cd/m2 are .751827; white of
  * HLG is .75; a linear code is light. */
-static void code_points_of_hdr_are_light(void **state)
+TEST(code_points_of_hdr_are_light)
 {
     static const struct {
         uint8_t curve;
@@ -233,7 +227,6 @@ static void code_points_of_hdr_are_light(void **state)
         double light;
     } kinds[] = {{16, 38055, 1}, {16, 49271, 1000.0 / 203}, {18, 49151, 1}, {8, 16384, 0.25}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         const uint8_t code_points[4] = {9, kinds[i].curve, 0, 1};
         uint8_t samples[6];
@@ -260,7 +253,7 @@ static void code_points_of_hdr_are_light(void **state)
 }
 
 /* All other colours are codes as before, and told; a depth map has no colours. */
-static void other_colours_are_told(void **state)
+TEST(other_colours_are_told)
 {
     static const struct {
         int type, bits;
@@ -285,7 +278,6 @@ static void other_colours_are_told(void **state)
                   "\0\0\x75\x30\0\0\xea\x60\0\0\x3a\x98\0\0\x17\x70",
                   32, false}};
 
-    (void)state;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         const int type = kinds[i].type, bits = kinds[i].bits;
         struct refocus_photo *photo =
@@ -308,20 +300,4 @@ static void other_colours_are_told(void **state)
         assert_int_equal(sample_at(map->depth, 3, 2), pattern(3, 2, 0, 65535));
         refocus_photo_free(&map);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(png_kinds),
-        cmocka_unit_test(more_than_8_bits_are_dithered),
-        cmocka_unit_test(png_small_samples),
-        cmocka_unit_test(png_depth),
-        cmocka_unit_test(transparent_samples_are_unknown),
-        cmocka_unit_test(png_absurd),
-        cmocka_unit_test(code_points_of_hdr_are_light),
-        cmocka_unit_test(other_colours_are_told),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -95,11 +95,10 @@ static void took(const char *expected)
 }
 
 /* The whole file before it has its name, its folder after that. */
-static void all_writers_wait_for_the_disk(void **state)
+TEST_BETWEEN(all_writers_wait_for_the_disk, make_folder, remove_folder)
 {
     const uint16_t grey[4] = {0};
 
-    (void)state;
     assert_int_equal(save("a.ppm", NULL), REFOCUS_OK);
     took("frd");
     assert_int_equal(synced, facts_of("a.ppm").st_size);
@@ -125,13 +124,12 @@ static void all_writers_wait_for_the_disk(void **state)
 }
 
 #if defined(RF_HAVE_JPEG) && defined(RF_HAVE_PNG)
-static void depth_in_a_photo_waits_too(void **state)
+TEST_BETWEEN(depth_in_a_photo_waits_too, make_folder, remove_folder)
 {
     struct refocus_depth_write depth = refocus_depth_write_default();
     struct bytes jpeg = make_jpeg(16, 16, false, false);
     const uint16_t disparity[4] = {0, 1, 2, 3};
 
-    (void)state;
     assert_int_equal(refocus_file_write("jpeg.jpg", jpeg.data, jpeg.size, NULL), REFOCUS_OK);
     took("frd");
     assert_int_equal(chmod("jpeg.jpg", 0604), 0);
@@ -147,9 +145,8 @@ static void depth_in_a_photo_waits_too(void **state)
 #endif
 
 /* A disk that fails: the old file stays. One that cannot sync: nothing is lost. */
-static void errors_of_the_disk(void **state)
+TEST_BETWEEN(errors_of_the_disk, make_folder, remove_folder)
 {
-    (void)state;
     assert_int_equal(refocus_file_write("a.ppm", "old", 3, NULL), REFOCUS_OK);
     took("frd");
     error = EIO;
@@ -172,12 +169,11 @@ static void errors_of_the_disk(void **state)
 
 /* New files have what the umask leaves; others keep what they had, and the bytes are never
  * for more eyes on their way. */
-static void mode_is_kept(void **state)
+TEST_BETWEEN(mode_is_kept, make_folder, remove_folder)
 {
     static const mode_t modes[] = {0640, 0600, 0444, 0666, 0755};
     const mode_t mask = umask(022);
 
-    (void)state;
     assert_int_equal(save("a.ppm", NULL), REFOCUS_OK);
     assert_int_equal(facts_of("a.ppm").st_mode & 07777, 0644);
     for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
@@ -194,11 +190,10 @@ static void mode_is_kept(void **state)
     umask(mask);
 }
 
-static void owner_is_kept(void **state)
+TEST_BETWEEN(owner_is_kept, make_folder, remove_folder)
 {
     enum { OWNER = 4711, GROUP = 4712 };
 
-    (void)state;
     if (geteuid() != 0) {
         print_message("not root: owners cannot be kept\n");
         skip();
@@ -234,12 +229,11 @@ static void assert_unchanged(const struct stat *was)
 
 /* A user who may write in the folder but does not own the file is refused, and nothing is left
  * beside it. */
-static void owner_that_cannot_be_kept(void **state)
+TEST_BETWEEN(owner_that_cannot_be_kept, make_folder, remove_folder)
 {
     struct stat was;
     int saved, moved, files;
 
-    (void)state;
     if (geteuid() != 0) {
         print_message("not root: nobody else to be\n");
         skip();
@@ -267,11 +261,10 @@ static void owner_that_cannot_be_kept(void **state)
 
 /* The owner stays but is not in the file's group any more: it is another group's file, which gets
  * no more than everybody had. */
-static void group_that_cannot_be_kept(void **state)
+TEST_BETWEEN(group_that_cannot_be_kept, make_folder, remove_folder)
 {
     struct stat facts;
 
-    (void)state;
     if (geteuid() != 0) {
         print_message("not root: nobody else to be\n");
         skip();
@@ -293,12 +286,11 @@ static void group_that_cannot_be_kept(void **state)
 }
 
 /* A pipe is no file, and neither are folders, devices and links that go round in a circle. */
-static void only_files_are_replaced(void **state)
+TEST_BETWEEN(only_files_are_replaced, make_folder, remove_folder)
 {
     static const char *const names[] = {"pipe.ppm", "folder.ppm", "null.ppm", "circle.ppm"};
     int files;
 
-    (void)state;
     assert_int_equal(mkfifo("pipe.ppm", 0600), 0);
     assert_int_equal(mkdir("folder.ppm", 0700), 0);
     assert_int_equal(symlink("/dev/null", "null.ppm"), 0);
@@ -320,12 +312,11 @@ static void only_files_are_replaced(void **state)
 }
 
 /* The file that a link points at is replaced, there or not, and the link stays. */
-static void links_stay(void **state)
+TEST_BETWEEN(links_stay, make_folder, remove_folder)
 {
     struct stat facts;
     char *place;
 
-    (void)state;
     assert_int_equal(mkdir("sub", 0700), 0);
     assert_int_equal(symlink("sub/a.ppm", "b.ppm"), 0);
     assert_int_equal(symlink("b.ppm", "link.ppm"), 0);
@@ -358,12 +349,11 @@ static void links_stay(void **state)
 
 /* Temporary files for others to write: each is new, lies where a link points, is as open as the
  * file that it replaces, and never one that was there. */
-static void temporary_files(void **state)
+TEST_BETWEEN(temporary_files, make_folder, remove_folder)
 {
     char *first, *second, text[4];
     struct stat facts;
 
-    (void)state;
     assert_int_equal(refocus_file_temporary("a.tar.apng", &first, NULL), REFOCUS_OK);
     assert_int_equal(refocus_file_temporary("a.tar.apng", &second, NULL), REFOCUS_OK);
     assert_string_not_equal(first, second);
@@ -393,26 +383,4 @@ static void temporary_files(void **state)
     assert_int_equal(rmdir("there"), 0);
     assert_int_equal(refocus_file_temporary("none/b.mp4", &first, NULL), REFOCUS_ERR_IO);
     assert_null(first);
-}
-
-#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        TEST(all_writers_wait_for_the_disk),
-#if defined(RF_HAVE_JPEG) && defined(RF_HAVE_PNG)
-        TEST(depth_in_a_photo_waits_too),
-#endif
-        TEST(errors_of_the_disk),
-        TEST(mode_is_kept),
-        TEST(owner_is_kept),
-        TEST(owner_that_cannot_be_kept),
-        TEST(group_that_cannot_be_kept),
-        TEST(only_files_are_replaced),
-        TEST(links_stay),
-        TEST(temporary_files),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -78,7 +78,7 @@ static void *run(void *argument)
     return NULL;
 }
 
-static void many_threads(void **state)
+TEST(many_threads)
 {
     static const char *const endings[] = {".ppm", ".png", ".jpg"};
     struct sample samples[SAMPLES_MAX];
@@ -86,7 +86,6 @@ static void many_threads(void **state)
     struct work work[THREADS];
     pthread_t threads[THREADS];
 
-    (void)state;
     for (int i = 0; i < count; i++)
         samples[i].whole_at = read_sample(&samples[i]); /* the sum expected */
     for (int i = 0; i < THREADS; i++) {
@@ -103,13 +102,4 @@ static void many_threads(void **state)
         unlink(path);
     }
     free_samples(samples, count);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(many_threads),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -115,9 +115,8 @@ static void fill(void)
     }
 }
 
-static void tones_are_of_their_place(void **state)
+TEST(tones_are_of_their_place)
 {
-    (void)state;
     fill();
     for (int by_brightest = 0; by_brightest < 2; by_brightest++) {
         struct rf_tone *tone = fit(by_brightest);
@@ -136,11 +135,10 @@ static void tones_are_of_their_place(void **state)
 
 /* A cell that has no pixel of a light shows it as the photo does elsewhere; what is brighter than
  * all is as bright as the brightest. */
-static void few_pixels_take_the_photo_s(void **state)
+TEST(few_pixels_take_the_photo_s)
 {
     struct rf_tone *tone;
 
-    (void)state;
     for (int y = 0; y < SIDE; y++) {
         for (int x = 0; x < SIDE; x++) {
             const bool bright = x >= SIDE / 2;
@@ -163,11 +161,10 @@ static void few_pixels_take_the_photo_s(void **state)
 
 /* Where the photo clips, its curve comes up to white and bends there, as light between the knots
  * does: noise and JPEG leave white a code or two short. */
-static void clipped_light_is_white(void **state)
+TEST(clipped_light_is_white)
 {
     struct rf_tone *tone;
 
-    (void)state;
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++) {
             const int i = (7 * x + 11 * y) % 97;
@@ -187,11 +184,10 @@ static void clipped_light_is_white(void **state)
 }
 
 /* More light is never shown darker. */
-static void tones_do_not_fall(void **state)
+TEST(tones_do_not_fall)
 {
     struct rf_tone *tone;
 
-    (void)state;
     for (int y = 0; y < SIDE; y++) {
         for (int x = 0; x < SIDE; x++) {
             const int i = (3 * x + 5 * y) % 3;
@@ -212,12 +208,11 @@ static void tones_do_not_fall(void **state)
 
 /* Channels have curves of their own; by the brightest channel the others do not count, whichever it
  * is, and keep their ratio to it. */
-static void by_the_brightest(void **state)
+TEST(by_the_brightest)
 {
     const uint16_t own[3] = {0, 0, 0};
     const uint8_t base[3] = {0, 0, 0};
 
-    (void)state;
     for (int c = 0; c < 3; c++) {
         struct rf_tone *tone;
         uint16_t light[3] = {QUARTER, QUARTER, QUARTER};
@@ -245,7 +240,7 @@ static void by_the_brightest(void **state)
 
 /* Light that is the pixel's own keeps its code, whatever the tones say; light that is all new has
  * the code of its tone, and between them the code's distance from the tone fades. */
-static void shown_as_the_photo_shows_it(void **state)
+TEST(shown_as_the_photo_shows_it)
 {
     const uint16_t own[3] = {HALF, HALF, HALF};
     const uint16_t near_by[3] = {HALF + 1, HALF, HALF}, other[3] = {ONE, 0xffff, ONE};
@@ -253,7 +248,6 @@ static void shown_as_the_photo_shows_it(void **state)
     struct rf_tone *tone;
     uint8_t out[3];
 
-    (void)state;
     tone = fit_two();
     encode(tone, 48, 48, own, base, own, out);
     assert_memory_equal(out, base, 3);
@@ -268,7 +262,7 @@ static void shown_as_the_photo_shows_it(void **state)
 
 /* Where blurred light is that of a pixel by chance, between others that it is not that of, nothing
  * of the pixel's own tone shows. */
-static void light_by_chance(void **state)
+TEST(light_by_chance)
 {
     static const uint16_t light[9] = {ONE, ONE, ONE, HALF, HALF, HALF, ONE, ONE, ONE};
     static const uint8_t base[9] = {90, 90, 90, 90, 90, 90, 90, 90, 90};
@@ -276,7 +270,6 @@ static void light_by_chance(void **state)
     struct rf_tone *tone;
     uint8_t out[9];
 
-    (void)state;
     for (int i = 0; i < 9; i++)
         own[i] = HALF + 1;
     tone = fit_two();
@@ -289,7 +282,7 @@ static void light_by_chance(void **state)
 
 /* A part is shown as it is in the whole photo, and in nine pixels at its sides nearly so: what lies
  * beyond them is not known. The two at the sides have no bound. */
-static void parts_are_shown_as_the_whole(void **state)
+TEST(parts_are_shown_as_the_whole)
 {
     enum {
         X = 13,
@@ -318,7 +311,6 @@ static void parts_are_shown_as_the_whole(void **state)
     struct rf_tone *tone;
     int kept = 0, worst = 0;
 
-    (void)state;
     for (int i = 0; i < 3 * SIDE * SIDE; i++) {
         const int noise = 7 * i % 61 + 5 * i % 17;
 
@@ -353,14 +345,13 @@ static void parts_are_shown_as_the_whole(void **state)
 
 /* Light that saturates at 4 times white is shown as the photo is around, if that is more, whatever
  * the pixel's own is, and light below that leads there without a step. */
-static void saturated_light_is_that_around(void **state)
+TEST(saturated_light_is_that_around)
 {
     static const uint16_t bright[3] = {0x4800, 0x4800, 0x4800}, dim[3] = {0x4200, 0x4200, 0x4200};
     static const uint8_t base[3] = {250, 250, 250}, dim_base[3] = {220, 220, 220};
     struct rf_tone *tone;
     uint8_t out[3], other[3], last = 0;
 
-    (void)state;
     for (int i = 0; i < 3 * SIDE * SIDE; i++) {
         const bool left = i / 3 % SIDE < SIDE / 2;
 
@@ -381,20 +372,4 @@ static void saturated_light_is_that_around(void **state)
     encode(tone, 80, 48, bright, base, (const uint16_t[3]){0x4400, 0x4400, 0x4400}, out);
     assert_in_range(out[0], 181, 240); /* less than that around */
     free(tone);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(tones_are_of_their_place),
-        cmocka_unit_test(few_pixels_take_the_photo_s),
-        cmocka_unit_test(clipped_light_is_white),
-        cmocka_unit_test(tones_do_not_fall),
-        cmocka_unit_test(by_the_brightest),
-        cmocka_unit_test(shown_as_the_photo_shows_it),
-        cmocka_unit_test(light_by_chance),
-        cmocka_unit_test(parts_are_shown_as_the_whole),
-        cmocka_unit_test(saturated_light_is_that_around),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

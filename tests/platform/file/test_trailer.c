@@ -19,9 +19,8 @@ static void check_map(struct bytes file, bool original)
     refocus_photo_free(&photo);
 }
 
-static void whole(void **state)
+TEST(whole)
 {
-    (void)state;
     for (int original = 0; original < 2; original++) {
         check_map(make_samsung(32, 6, 4, original, false), original);
         check_map(make_samsung(68, 6, 4, original, true), original);
@@ -30,12 +29,11 @@ static void whole(void **state)
 }
 
 /* The map is turned with its photo. */
-static void turned(void **state)
+TEST(turned)
 {
     struct bytes file = make_huawei(6, 4, false);
     struct refocus_photo *photo;
 
-    (void)state;
     jpeg_insert_exif(&file, make_exif(true, 6));
     photo = read_photo(file, REFOCUS_OK);
     assert_int_equal(photo->depth->width, 4);
@@ -54,12 +52,11 @@ static void expect_none(struct bytes file)
 }
 
 /* Sides that do not fit, and numbers of any size anywhere in the directory, are passed over. */
-static void wrong(void **state)
+TEST(wrong)
 {
     struct bytes file = make_samsung(32, 6, 4, false, false);
     const size_t entries = file.size - 8 - 24;
 
-    (void)state;
     expect_none(make_samsung(32, 6, 5, false, false));
     expect_none(make_samsung(32, 0, 4, false, false));
     expect_none(make_samsung(32, 1 << 16, 1 << 16, false, false));
@@ -83,11 +80,10 @@ static void wrong(void **state)
 }
 
 /* Cut anywhere behind the main picture, a file is a photo without depth. */
-static void cut(void **state)
+TEST(cut)
 {
     struct bytes main_picture = make_jpeg(64, 32, false, false);
 
-    (void)state;
     for (int maker = 0; maker < 2; maker++) {
         struct bytes file = maker ? make_huawei(6, 4, false) : make_samsung(32, 6, 4, false, false);
 
@@ -96,16 +92,4 @@ static void cut(void **state)
         bytes_free(&file);
     }
     bytes_free(&main_picture);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(whole),
-        cmocka_unit_test(turned),
-        cmocka_unit_test(wrong),
-        cmocka_unit_test(cut),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

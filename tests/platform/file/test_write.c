@@ -111,13 +111,12 @@ static void lossless(const char *name)
     }
 }
 
-static void ppm_round_trip(void **state)
+TEST(ppm_round_trip)
 {
-    (void)state;
     lossless("a.ppm");
 }
 
-static void grey_round_trip(void **state)
+TEST(grey_round_trip)
 {
     static const char *const names[] = {"d.pgm", "d.pfm",
 #ifdef RF_HAVE_PNG
@@ -128,7 +127,6 @@ static void grey_round_trip(void **state)
     struct refocus_reason reason;
     struct refocus_photo *depth;
 
-    (void)state;
     for (int i = 0; i < 12; i++)
         samples[i] = (uint16_t)pattern(i % 3, i / 3, 0, 65535);
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
@@ -173,9 +171,8 @@ static struct bytes make_icc(size_t size)
 #endif
 
 #ifdef RF_HAVE_PNG
-static void png_round_trip(void **state)
+TEST(png_round_trip)
 {
-    (void)state;
     lossless("a.png");
 }
 #endif
@@ -236,9 +233,8 @@ static void jfif_is_first(const char *name)
 }
 #endif
 
-static void exif_and_icc(void **state)
+TEST(exif_and_icc)
 {
-    (void)state;
 #ifdef RF_HAVE_PNG
     keeps_exif_and_icc("e.png", 1000);
 #endif
@@ -267,12 +263,11 @@ static void left_out(const char *name, const struct refocus_write_options *optio
     free(picture.memory);
 }
 
-static void too_large_or_damaged_extras(void **state)
+TEST(too_large_or_damaged_extras)
 {
     struct bytes large = {calloc(1, 70000), 70000};
     const struct refocus_blob blob = {large.data, large.size};
 
-    (void)state;
 #ifdef RF_HAVE_JPEG
     left_out("l.jpg", &(struct refocus_write_options){
                           .struct_size = sizeof(struct refocus_write_options), .exif = &blob});
@@ -286,11 +281,10 @@ static void too_large_or_damaged_extras(void **state)
 #endif
 
 #ifdef RF_HAVE_JPEG
-static void jpeg_formats_and_quality(void **state)
+TEST(jpeg_formats_and_quality)
 {
     long size[2] = {0, 0};
 
-    (void)state;
     for (uint32_t format = REFOCUS_FORMAT_RGB8; format <= REFOCUS_FORMAT_BGRA8; format++) {
         uint8_t pixels[32 * 32 * 4];
         const int bytes = format >= REFOCUS_FORMAT_RGBA8 ? 4 : 3;
@@ -340,13 +334,12 @@ static void refused(const char *name, const struct refocus_image *image,
     assert_int_equal(count_files(), before);
 }
 
-static void refusals(void **state)
+TEST(refusals)
 {
     struct picture picture = make_picture(REFOCUS_FORMAT_RGB8, 4, 3, false);
     struct refocus_image bad = picture.image;
     const uint16_t samples[6] = {0};
 
-    (void)state;
     refused(in_folder("x.gif"), &picture.image, NULL, REFOCUS_ERR_UNSUPPORTED);
     refused(in_folder("x.pgm"), &picture.image, NULL, REFOCUS_ERR_UNSUPPORTED);
     refused(in_folder("png"), &picture.image, NULL, REFOCUS_ERR_UNSUPPORTED);
@@ -407,9 +400,8 @@ static void full_disk(const char *name)
     free(picture.memory);
 }
 
-static void full_disk_leaves_the_old_file(void **state)
+TEST(full_disk_leaves_the_old_file)
 {
-    (void)state;
     full_disk("f.ppm");
 #ifdef RF_HAVE_PNG
     full_disk("f.png");
@@ -433,7 +425,7 @@ static int is_cancelled(void *user)
 
 /* A picture of 200 rows that is cancelled: nobody is asked again, the old file stays, and nothing
  * is beside it. */
-static void a_cancelled_picture_is_left_out(void **state)
+TEST(a_cancelled_picture_is_left_out)
 {
     static const struct {
         const char *name;
@@ -449,7 +441,6 @@ static void a_cancelled_picture_is_left_out(void **state)
     struct picture picture = make_picture(REFOCUS_FORMAT_RGB8, 150, 200, false);
     const int before = count_files();
 
-    (void)state;
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
         struct asked asked = {0, 0};
         struct refocus_write_options options = refocus_write_options_default();
@@ -486,24 +477,22 @@ static void a_cancelled_picture_is_left_out(void **state)
     free(picture.memory);
 }
 
-static void a_folder_is_in_the_way(void **state)
+TEST(a_folder_is_in_the_way)
 {
     struct picture picture = make_picture(REFOCUS_FORMAT_RGB8, 4, 3, false);
 
-    (void)state;
     assert_int_equal(mkdir(in_folder("taken.ppm"), 0700), 0);
     refused(in_folder("taken.ppm"), &picture.image, NULL, REFOCUS_ERR_IO);
     rmdir(in_folder("taken.ppm"));
     free(picture.memory);
 }
 
-static void umask_is_honoured(void **state)
+TEST(umask_is_honoured)
 {
     struct picture picture = make_picture(REFOCUS_FORMAT_RGB8, 4, 3, false);
     const mode_t before = umask(027);
     struct stat facts;
 
-    (void)state;
     unlink(in_folder("u.ppm"));
     assert_int_equal(refocus_image_write(in_folder("u.ppm"), &picture.image, NULL, NULL),
                      REFOCUS_OK);
@@ -513,12 +502,11 @@ static void umask_is_honoured(void **state)
     free(picture.memory);
 }
 
-static void a_name_without_folder(void **state)
+TEST(a_name_without_folder)
 {
     struct picture picture = make_picture(REFOCUS_FORMAT_RGB8, 4, 3, false);
     char before[4096];
 
-    (void)state;
     assert_non_null(getcwd(before, sizeof before));
     assert_int_equal(chdir(folder), 0);
     assert_int_equal(refocus_image_write("bare.ppm", &picture.image, NULL, NULL), REFOCUS_OK);
@@ -528,14 +516,13 @@ static void a_name_without_folder(void **state)
 }
 
 /* Deep pictures come back as they are from the formats that hold them; others refuse them. */
-static void deep_pictures(void **state)
+TEST(deep_pictures)
 {
     static uint16_t codes[5 * 4 * 3];
     static float light[5 * 4 * 3];
     struct refocus_image deep[2];
     struct refocus_reason reason;
 
-    (void)state;
     for (int i = 0; i < 5 * 4 * 3; i++) {
         codes[i] = (uint16_t)(i * 1111);
         light[i] = (float)(i - 7) * 0.77f;
@@ -571,27 +558,5 @@ static void deep_pictures(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(deep_pictures),
-        cmocka_unit_test(ppm_round_trip),
-        cmocka_unit_test(grey_round_trip),
-#ifdef RF_HAVE_PNG
-        cmocka_unit_test(png_round_trip),
-#endif
-#if defined(RF_HAVE_PNG) || defined(RF_HAVE_JPEG)
-        cmocka_unit_test(exif_and_icc),
-        cmocka_unit_test(too_large_or_damaged_extras),
-#endif
-#ifdef RF_HAVE_JPEG
-        cmocka_unit_test(jpeg_formats_and_quality),
-#endif
-        cmocka_unit_test(refusals),
-        cmocka_unit_test(full_disk_leaves_the_old_file),
-        cmocka_unit_test(a_cancelled_picture_is_left_out),
-        cmocka_unit_test(a_folder_is_in_the_way),
-        cmocka_unit_test(umask_is_honoured),
-        cmocka_unit_test(a_name_without_folder),
-    };
-
-    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+    return unit_test_run(make_folder, remove_folder);
 }

@@ -1,14 +1,11 @@
 /* test_opencv.c: depth of pictures by OpenCV and networks that the test makes itself. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/platform/opencv.h>
 
 enum { W = 320, H = 200 };
@@ -125,7 +122,7 @@ static struct refocus_network network_of(float mean_red, float scale)
     return network;
 }
 
-static void estimate(void **state)
+TEST(estimate)
 {
     static const struct {
         const char *name;
@@ -142,7 +139,6 @@ static void estimate(void **state)
     char path[] = "/tmp/refocus-onnx-XXXXXX";
     const int file = mkstemp(path);
 
-    (void)state;
     assert_true(file >= 0);
     for (int i = 0; i < W * H; i++) {
         pixels[3 * i] = (uint8_t)(i % W < W / 2 ? 200 : 40);
@@ -193,7 +189,7 @@ static void estimate(void **state)
 }
 
 /* Read once, run often, on pictures of any size. */
-static void estimator(void **state)
+TEST(estimator)
 {
     static uint8_t pixels[3 * W * H];
     struct refocus_image photo = picture(pixels);
@@ -204,7 +200,6 @@ static void estimator(void **state)
     char path[] = "/tmp/refocus-onnx-XXXXXX";
     const int file = mkstemp(path);
 
-    (void)state;
     assert_true(file >= 0);
     write_network(path);
     assert_int_equal(refocus_cv_estimator_create(&net, path, &network, &reason), REFOCUS_OK);
@@ -237,7 +232,7 @@ static void estimator(void **state)
 static const uint32_t no_sizes[] = {0, 4, REFOCUS_MAX_STRUCT_SIZE + 1, UINT32_MAX};
 enum { NO_SIZES = sizeof no_sizes / sizeof *no_sizes };
 
-static void networks_of_any_size(void **state)
+TEST(networks_of_any_size)
 {
     struct newer {
         struct refocus_network known;
@@ -247,7 +242,6 @@ static void networks_of_any_size(void **state)
     char path[] = "/tmp/refocus-onnx-XXXXXX";
     const int file = mkstemp(path);
 
-    (void)state;
     assert_true(file >= 0);
     close(file);
     write_network(path);
@@ -286,7 +280,7 @@ static void networks_of_any_size(void **state)
     unlink(path);
 }
 
-static void estimates_of_any_size(void **state)
+TEST(estimates_of_any_size)
 {
     static uint8_t pixels[3 * W * H];
     struct newer {
@@ -299,7 +293,6 @@ static void estimates_of_any_size(void **state)
     char path[] = "/tmp/refocus-onnx-XXXXXX";
     const int file = mkstemp(path);
 
-    (void)state;
     assert_true(file >= 0);
     close(file);
     write_network(path);
@@ -335,15 +328,4 @@ static void estimates_of_any_size(void **state)
     }
     refocus_cv_estimator_destroy(&net);
     unlink(path);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-
-        cmocka_unit_test(estimate), cmocka_unit_test(estimator),
-
-        cmocka_unit_test(networks_of_any_size), cmocka_unit_test(estimates_of_any_size)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,11 @@
 /* test_stereo.c: depth of stereo pairs by OpenCV, which the test makes itself. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/platform/opencv.h>
 
 enum { W = 320, H = 200, FAR = 8, NEAR = 26 };
@@ -77,7 +74,7 @@ static void check_disparities(const float *d, int percent)
     assert_in_range(good, known * percent / 100, known);
 }
 
-static void stereo(void **state)
+TEST(stereo)
 {
     static uint8_t left[3 * W * H], right[3 * W * H];
     static float d[W * H];
@@ -86,7 +83,6 @@ static void stereo(void **state)
     struct refocus_stereo_report report = refocus_stereo_report_default();
     struct refocus_cv_reason reason;
 
-    (void)state;
     for (int lower = -3; lower <= 3; lower += 3) {
         make_pair(left, right, lower);
         assert_int_equal(refocus_cv_stereo(&a, &b, &params, d, &report, &reason), REFOCUS_OK);
@@ -96,7 +92,7 @@ static void stereo(void **state)
 }
 
 /* Pictures are apart by a seventh of their width to either side, or what is near by a third. */
-static void stereo_spans(void **state)
+TEST(stereo_spans)
 {
     static const int disparities[][2] = {{FAR - 48, NEAR - 48}, {FAR + 48, NEAR + 48}, {FAR, 105}};
     static uint8_t left[3 * W * H], right[3 * W * H];
@@ -104,7 +100,6 @@ static void stereo_spans(void **state)
     const struct refocus_image a = picture(left), b = picture(right);
     struct refocus_stereo_params params = refocus_stereo_params_default();
 
-    (void)state;
     params.order = REFOCUS_STEREO_LEFT_FIRST;
     for (int i = 0; i < 3; i++) {
         wall = disparities[i][0];
@@ -144,11 +139,10 @@ static int patched(int x, int width, int height, int disparity,
 
 /* A patch behind all else, a quarter of which matches, is chance if that is less than 1 of 500 of
  * all matches. */
-static void stereo_far_chance(void **state)
+TEST(stereo_far_chance)
 {
     struct refocus_stereo_report report;
 
-    (void)state;
     assert_int_equal(patched(40, 24, 12, -10, &report), 0);
     assert_true(report.least > -1); /* the noise at the right border is the same in both */
     assert_in_range(patched(40, 26, 20, -10, &report), 130, 260);
@@ -156,11 +150,10 @@ static void stereo_far_chance(void **state)
 }
 
 /* So is one before all else which takes half of the range; a post is longer. */
-static void stereo_near_chance(void **state)
+TEST(stereo_near_chance)
 {
     struct refocus_stereo_report report;
 
-    (void)state;
     assert_int_equal(patched(240, 17, 8, 56, &report), 0);
     assert_true(report.greatest < NEAR + 1);
     assert_int_equal(patched(240, 8, 14, 56, &report), 0);
@@ -186,7 +179,7 @@ static void two_disparities(const float *d, int square_left, float *near, float 
     assert_in_range(more + below, 0, 72); /* 1 of 100 */
 }
 
-static void stereo_order(void **state)
+TEST(stereo_order)
 {
     static uint8_t left[3 * W * H], right[3 * W * H];
     static float d[W * H];
@@ -196,7 +189,6 @@ static void stereo_order(void **state)
     struct refocus_cv_reason reason;
     float near, far;
 
-    (void)state;
     make_colours(left, right);
     for (params.order = 0; params.order <= REFOCUS_STEREO_ORDER_SEEN; params.order++) {
         const int turned = params.order == REFOCUS_STEREO_RIGHT_FIRST;
@@ -259,7 +251,7 @@ static void make_sines(uint8_t *left, uint8_t *right, const double apart[3])
 }
 
 /* Cameras that are turned about their axes and of other focal lengths. */
-static void stereo_unrectified(void **state)
+TEST(stereo_unrectified)
 {
     static const double apart[][3] = {{0, 0, 0}, {2, 0.012, 0}, {-1, 0, -0.01}, {1, -0.01, 0.008}};
     static uint8_t left[3 * W * H], right[3 * W * H];
@@ -269,7 +261,6 @@ static void stereo_unrectified(void **state)
     struct refocus_stereo_report report = refocus_stereo_report_default();
     struct refocus_cv_reason reason;
 
-    (void)state;
     for (size_t n = 0; n < sizeof apart / sizeof *apart; n++) {
         const double down = apart[n][0], turn = apart[n][1], grow = apart[n][2];
         make_sines(left, right, apart[n]);
@@ -289,7 +280,7 @@ static void stereo_unrectified(void **state)
 }
 
 /* The second picture has so much of the codes of the first one. */
-static void stereo_exposures(void **state)
+TEST(stereo_exposures)
 {
     static const double gain[] = {0.4, 0.7, 1.4}, apart[3] = {0, 0, 0};
     static uint8_t left[3 * W * H], right[3 * W * H];
@@ -297,7 +288,6 @@ static void stereo_exposures(void **state)
     const struct refocus_image a = picture(left), b = picture(right);
     const struct refocus_stereo_params params = refocus_stereo_params_default();
 
-    (void)state;
     for (size_t n = 0; n < sizeof gain / sizeof *gain; n++) {
         make_sines(left, right, apart);
         for (int i = 0; i < 3 * W * H; i++)
@@ -309,7 +299,7 @@ static void stereo_exposures(void **state)
 
 /* A pair that is taller than wide, four of them one below the other, is matched at half its size
  * where its height is twice the largest side: two rows have the same disparities. */
-static void stereo_tall(void **state)
+TEST(stereo_tall)
 {
     enum { TALL = 4 * H };
     static uint8_t left[3 * W * TALL], right[3 * W * TALL], one[3 * W * H], other[3 * W * H];
@@ -318,7 +308,6 @@ static void stereo_tall(void **state)
     const struct refocus_image b = refocus_image_packed(REFOCUS_FORMAT_RGB8, right, W, TALL, 3 * W);
     struct refocus_stereo_params params = refocus_stereo_params_default();
 
-    (void)state;
     make_pair(one, other, 0);
     for (int y = 0; y < TALL; y++) {
         memcpy(left + 3 * y * W, one + 3 * (y % H) * W, 3 * W);
@@ -330,7 +319,7 @@ static void stereo_tall(void **state)
         assert_memory_equal(d + y * W, d + (y + 1) * W, W * sizeof *d);
 }
 
-static void stereo_refuses(void **state)
+TEST(stereo_refuses)
 {
     static uint8_t left[3 * W * H], right[3 * W * H];
     static float d[W * H];
@@ -339,7 +328,6 @@ static void stereo_refuses(void **state)
     const struct refocus_stereo_params params = refocus_stereo_params_default();
     struct refocus_cv_reason reason;
 
-    (void)state;
     for (int i = 0; i < 3 * W * H; i++) {
         left[i] = noise();
         right[i] = noise();
@@ -363,7 +351,7 @@ static void stereo_refuses(void **state)
 static const uint32_t no_sizes[] = {0, 4, REFOCUS_MAX_STRUCT_SIZE + 1, UINT32_MAX};
 enum { NO_SIZES = sizeof no_sizes / sizeof *no_sizes };
 
-static void reports_of_any_size(void **state)
+TEST(reports_of_any_size)
 {
     static uint8_t left[3 * W * H], right[3 * W * H];
     static float d[W * H];
@@ -374,7 +362,6 @@ static void reports_of_any_size(void **state)
     const struct refocus_image a = picture(left), b = picture(right);
     const struct refocus_stereo_params params = refocus_stereo_params_default();
 
-    (void)state;
     memset(&older, 0xa5, sizeof older);
     newer = older;
     older.known.struct_size = REFOCUS_SIZE_TO(struct refocus_stereo_report, matched);
@@ -395,22 +382,4 @@ static void reports_of_any_size(void **state)
                          REFOCUS_ERR_ARGUMENT);
         assert_memory_equal(&newer, &untouched, sizeof newer);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stereo),
-        cmocka_unit_test(stereo_exposures),
-        cmocka_unit_test(stereo_spans),
-        cmocka_unit_test(stereo_far_chance),
-        cmocka_unit_test(stereo_near_chance),
-        cmocka_unit_test(stereo_order),
-        cmocka_unit_test(stereo_unrectified),
-        cmocka_unit_test(stereo_tall),
-        cmocka_unit_test(stereo_refuses),
-        cmocka_unit_test(reports_of_any_size),
-    };
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

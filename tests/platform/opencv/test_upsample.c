@@ -2,13 +2,10 @@
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/platform/opencv.h>
 
 enum { W = 320, H = 200 };
@@ -38,14 +35,13 @@ int posix_memalign(void **memory, size_t alignment, size_t size)
     return *memory ? 0 : ENOMEM;
 }
 
-static void upsample(void **state)
+TEST(upsample)
 {
     static uint8_t pixels[3 * W * H];
     static uint16_t map[40 * 25], out[W * H];
     const struct refocus_image photo = picture(pixels);
     const struct refocus_disparity coarse = refocus_disparity16(map, 40, 25, 80);
 
-    (void)state;
     for (int i = 0; i < W * H; i++) /* sample k is at pixel 8 k + 3.5 */
         memset(pixels + 3 * i, i % W < 150 ? 220 : 30, 3);
     for (int i = 0; i < 40 * 25; i++)
@@ -89,7 +85,7 @@ static double mean_of_samples(const struct refocus_image *photo,
 }
 
 /* Photos and maps of any size, of noise in blocks with rows farther apart than needed. */
-static void upsample_is_the_mean(void **state)
+TEST(upsample_is_the_mean)
 {
     static const struct {
         int width, height, map_width, map_height, bits;
@@ -102,7 +98,6 @@ static void upsample_is_the_mean(void **state)
     static uint8_t pixels[130 * 3 * 100], samples[130 * 2 * 100];
     static uint16_t out[130 * 100 + 1];
 
-    (void)state;
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         const int w = cases[n].width, h = cases[n].height, stride = 3 * w + 5;
         const struct refocus_image photo =
@@ -130,7 +125,7 @@ static void upsample_is_the_mean(void **state)
 }
 
 /* Each piece of memory that OpenCV asks for fails once: that is the answer, and no exception. */
-static void upsample_without_memory(void **state)
+TEST(upsample_without_memory)
 {
     static uint8_t pixels[3 * W * H];
     static uint16_t map[40 * 25], out[W * H];
@@ -138,7 +133,6 @@ static void upsample_without_memory(void **state)
     const struct refocus_disparity coarse = refocus_disparity16(map, 40, 25, 80);
     int status, failed = 0;
 
-    (void)state;
     if (!getenv("OPENCV_ENABLE_MEMALIGN"))
         skip();
     for (;; failed++) {
@@ -158,7 +152,7 @@ static void upsample_without_memory(void **state)
 }
 
 /* Every filter keeps a plane; those of contrib are there, or say what is missing. */
-static void upsample_by(void **state)
+TEST(upsample_by)
 {
     static uint8_t pixels[3 * W * H];
     static uint16_t map[40 * 25], out[W * H];
@@ -167,7 +161,6 @@ static void upsample_by(void **state)
     struct refocus_cv_reason reason;
     uint32_t filter;
 
-    (void)state;
     for (int i = 0; i < 40 * 25; i++)
         map[i] = 30000;
     for (filter = 0; refocus_cv_filter_name(filter); filter++) {
@@ -189,13 +182,4 @@ static void upsample_by(void **state)
     coarse.bits = 12;
     assert_int_equal(refocus_cv_upsample_by(0, &photo, &coarse, out, &reason),
                      REFOCUS_ERR_ARGUMENT);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(upsample), cmocka_unit_test(upsample_is_the_mean),
-        cmocka_unit_test(upsample_without_memory), cmocka_unit_test(upsample_by)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

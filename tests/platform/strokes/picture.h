@@ -2,12 +2,9 @@
 #ifndef RF_TEST_STROKES_PICTURE_H
 #define RF_TEST_STROKES_PICTURE_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <refocus/platform/strokes.h>
 
 static inline int in_disc(int x, int y, int width, int height)

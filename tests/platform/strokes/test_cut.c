@@ -1,10 +1,7 @@
 /* test_cut.c: the least cut against all cuts there are. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include "cut.h"
 
 enum { W = 4, H = 3, PIXELS = W * H };
@@ -55,11 +52,10 @@ static int32_t cost(const struct rf_cut *cut, unsigned object)
     return sum;
 }
 
-static void test_least(void **unused)
+TEST(test_least)
 {
     struct rf_cut cut = {0}, kept = {0};
 
-    (void)unused;
     for (int round = 0; round < 300; round++) {
         unsigned found = 0, smallest = ~0u;
         int32_t least = INT32_MAX;
@@ -88,11 +84,10 @@ static void test_least(void **unused)
 }
 
 /* No single pixel makes it better, and it is no worse than the guess. */
-static void test_settled(void **unused)
+TEST(test_settled)
 {
     struct rf_cut cut = {0}, kept = {0};
 
-    (void)unused;
     for (int round = 0; round < 300; round++) {
         const unsigned guess = (unsigned)draw(1 << PIXELS);
         unsigned found = 0;
@@ -115,12 +110,4 @@ static void test_settled(void **unused)
     }
     rf_cut_free(&cut);
     rf_cut_free(&kept);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_least),
-                                       cmocka_unit_test(test_settled)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

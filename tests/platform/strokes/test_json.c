@@ -14,7 +14,7 @@ static struct refocus_strokes *begin(void)
     return strokes;
 }
 
-static void test_round_trip(void **unused)
+TEST(test_round_trip)
 {
     const float points[] = {120, 120, 160.123456f, 90, 200, 120, 159.9f, 150, 0.1f, -0.5f};
     struct refocus_strokes *strokes = begin(), *again = begin();
@@ -22,7 +22,6 @@ static void test_round_trip(void **unused)
     char *text, *second;
     size_t size, second_size;
 
-    (void)unused;
     ground.fill = (struct refocus_fill){REFOCUS_FILL_GRADIENT, 1, 0.1f, 160, 239, 160.7f, 3.3f};
     assert_int_equal(refocus_strokes_begin(strokes, &ground, NULL), REFOCUS_OK);
     paint(strokes, REFOCUS_STROKE_OBJECT, 10.7f, 0.3f, points, 4);
@@ -63,7 +62,7 @@ static void test_round_trip(void **unused)
     "{\"kind\": \"object\", \"radius\": 9, \"points\": [[160, 120]], \"disparity\": "              \
     "1}"
 
-static void test_refusals(void **unused)
+TEST(test_refusals)
 {
     static const struct {
         const char *text;
@@ -121,7 +120,6 @@ static void test_refusals(void **unused)
     static uint16_t before[W * H];
     struct refocus_strokes *strokes = begin();
 
-    (void)unused;
     memcpy(before, refocus_strokes_disparity(strokes), sizeof before);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct refocus_strokes_reason reason;
@@ -141,7 +139,7 @@ static void test_refusals(void **unused)
 
 /* Strokes after those that there are; and when it fails in the middle, they are as
  * before. */
-static void test_appended(void **unused)
+TEST(test_appended)
 {
     static const char good[] = HEAD "{\"kind\": \"more\", \"radius\": 9, \"points\": "
                                     "[[10, 10]]}, {\"kind\": \"fill\", \"disparity\": 0.1}]}";
@@ -151,7 +149,6 @@ static void test_appended(void **unused)
     struct refocus_strokes *strokes = begin();
     const float over[] = {120, 120, 200, 120};
 
-    (void)unused;
     paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, 2);
     memcpy(before, refocus_strokes_disparity(strokes), sizeof before);
     assert_int_equal(refocus_strokes_load(strokes, bad, strlen(bad), NULL), REFOCUS_ERR_FORMAT);
@@ -163,7 +160,7 @@ static void test_appended(void **unused)
     refocus_strokes_destroy(&strokes);
 }
 
-static void test_too_many(void **unused)
+TEST(test_too_many)
 {
     enum { ROOM = 1 << 20 };
     struct refocus_strokes *strokes = begin();
@@ -171,7 +168,6 @@ static void test_too_many(void **unused)
     char *const text = malloc(ROOM);
     size_t size;
 
-    (void)unused;
     assert_non_null(text);
     size = (size_t)snprintf(text, ROOM, HEAD);
     for (int i = 0; i <= REFOCUS_MAX_STROKES; i++)
@@ -205,7 +201,7 @@ static int load_copies(struct refocus_strokes *strokes, const char *beginning, c
 }
 
 /* Files of some kilobytes that would take minutes are refused, and nothing has changed. */
-static void test_too_much_work(void **unused)
+TEST(test_too_much_work)
 {
     static const char object[] = "{\"kind\": \"object\", \"radius\": 99, \"points\": [[9, 9]]}";
     static const char brush[] = HEAD "{\"kind\": \"brush\", \"radius\": 4096, \"points\": [";
@@ -216,7 +212,6 @@ static void test_too_much_work(void **unused)
     const float over[] = {120, 120, 200, 120};
     struct refocus_strokes *strokes = begin();
 
-    (void)unused;
     paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, 2);
     memcpy(before, refocus_strokes_disparity(strokes), sizeof before);
     assert_int_equal(load_copies(strokes, HEAD, object, objects + 1, "]}"), REFOCUS_ERR_SIZE);
@@ -230,14 +225,10 @@ static void test_too_much_work(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_appended), cmocka_unit_test(test_too_many),
-        cmocka_unit_test(test_too_much_work)};
     int failed;
 
     photo = make_picture(W, H);
-    failed = cmocka_run_group_tests(tests, NULL, NULL);
+    failed = unit_test_run(NULL, NULL);
     free(photo.plane[0]);
     return failed;
 }

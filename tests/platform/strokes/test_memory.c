@@ -53,13 +53,12 @@ static int paint_all(struct refocus_strokes *strokes, int *count)
     return REFOCUS_OK;
 }
 
-static void test_every_allocation(void **unused)
+TEST(test_every_allocation)
 {
     const struct refocus_disparity map = refocus_disparity16(base, W, H, 2 * W);
     long fails = 0, before_live = failing.live;
     int status = REFOCUS_ERR_MEMORY;
 
-    (void)unused;
     for (failing.fail_at = 1; status != REFOCUS_OK; failing.fail_at++) {
         struct refocus_strokes *strokes;
         int count = 0;
@@ -85,14 +84,13 @@ static void test_every_allocation(void **unused)
 }
 
 /* The file written: NULL or whole. */
-static void test_save(void **unused)
+TEST(test_save)
 {
     struct refocus_strokes *strokes;
     int status = REFOCUS_ERR_MEMORY, count;
     char *text;
     size_t size;
 
-    (void)unused;
     failing.fail_at = 0;
     assert_int_equal(refocus_strokes_create(&strokes, &photo, NULL), REFOCUS_OK);
     assert_int_equal(paint_all(strokes, &count), REFOCUS_OK);
@@ -109,15 +107,13 @@ static void test_save(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_allocation),
-                                       cmocka_unit_test(test_save)};
     int failed;
 
     photo = make_picture(W, H);
 #ifdef RF_HAVE_JANSSON
     json_set_alloc_funcs(malloc, free);
 #endif
-    failed = cmocka_run_group_tests(tests, NULL, NULL);
+    failed = unit_test_run(NULL, NULL);
     free(photo.plane[0]);
     return failed;
 }

@@ -1,20 +1,16 @@
 /* test_pyramid.c: the photo at half its size, and half of that, down to one pixel, whatever its
  * sides. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include "pyramid.h"
 
 /* Each level has half of each side of the one before, up; the last one is a pixel. */
-static void test_sides(void **state)
+TEST(test_sides)
 {
     static const int32_t sides[] = {1, 2, 3, 4, 5, 16, 17, 100};
     enum { SIDES = sizeof sides / sizeof *sides };
     static uint8_t pixels[3 * 100 * 100];
 
-    (void)state;
     for (int i = 0; i < SIDES * SIDES; i++) {
         int32_t w = sides[i % SIDES], h = sides[i / SIDES];
         const struct refocus_image photo =
@@ -39,7 +35,7 @@ static void test_sides(void **state)
 }
 
 /* Means of squares of grey pixels, of those at the border of what there is. */
-static void test_means(void **state)
+TEST(test_means)
 {
     enum { W = 5, H = 3 };
     uint8_t pixels[3 * W * H];
@@ -48,7 +44,6 @@ static void test_means(void **state)
     struct rf_pyramid pyramid;
     struct rf_colour row[3];
 
-    (void)state;
     for (int i = 0; i < 3 * W * H; i++)
         pixels[i] = (uint8_t)(i / 3 % W * 40 + i / 3 / W * 20);
     assert_int_equal(rf_pyramid_create(&pyramid, &photo), REFOCUS_OK);
@@ -62,11 +57,4 @@ static void test_means(void **state)
         }
     }
     rf_pyramid_free(&pyramid);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sides), cmocka_unit_test(test_means)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

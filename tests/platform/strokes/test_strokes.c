@@ -22,13 +22,12 @@ static struct refocus_strokes *begin(void)
 static const float over[] = {120, 120, 160, 90, 200, 120, 160, 150, 140, 120};
 enum { OVER = sizeof over / sizeof *over / 2 };
 
-static void test_selects_to_the_edge(void **unused)
+TEST(test_selects_to_the_edge)
 {
     struct refocus_strokes *strokes = begin();
     const uint16_t *d;
     int wrong = 0;
 
-    (void)unused;
     paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, OVER);
     d = refocus_strokes_disparity(strokes);
     for (int i = 0; i < W * H; i++)
@@ -40,14 +39,13 @@ static void test_selects_to_the_edge(void **unused)
 /* Strokes along the very sides of the picture select what lies there, and nothing at the other
  * side.
  */
-static void test_along_sides(void **unused)
+TEST(test_along_sides)
 {
     static const float paths[4][4] = {{W - 0.5f, 20, W - 0.5f, 60},
                                       {-0.5f, 20, -0.5f, 60},
                                       {20, H - 0.5f, 60, H - 0.5f},
                                       {20, -0.5f, 60, -0.5f}};
 
-    (void)unused;
     for (int i = 0; i < 4; i++) {
         struct refocus_strokes *strokes = begin();
         const uint16_t *d = refocus_strokes_disparity(strokes);
@@ -68,7 +66,7 @@ static void test_along_sides(void **unused)
 }
 
 /* Cut into segments or not, and with strokes dropped again between. */
-static void test_segments_and_undo(void **unused)
+TEST(test_segments_and_undo)
 {
     static uint16_t expected[W * H], before[W * H];
     struct refocus_strokes *strokes = begin();
@@ -76,7 +74,6 @@ static void test_segments_and_undo(void **unused)
     const float elsewhere[] = {20, 20, 60, 200}, edge[] = {160, 60};
     struct refocus_changed changed;
 
-    (void)unused;
     paint(strokes, REFOCUS_STROKE_ALL, 1, 0.1f, NULL, 0);
     memcpy(before, refocus_strokes_disparity(strokes), sizeof before);
     paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, OVER);
@@ -106,13 +103,12 @@ static void test_segments_and_undo(void **unused)
 }
 
 /* All that differs from before lies in what was told to have changed. */
-static void test_changed(void **unused)
+TEST(test_changed)
 {
     static uint16_t before[W * H];
     struct refocus_strokes *strokes = begin();
     const struct refocus_stroke object = make_stroke(REFOCUS_STROKE_OBJECT, 16, 0.5f);
 
-    (void)unused;
     assert_int_equal(refocus_strokes_begin(strokes, &object, NULL), REFOCUS_OK);
     for (int i = 0; i < OVER; i++) {
         struct refocus_changed c;
@@ -129,7 +125,7 @@ static void test_changed(void **unused)
     refocus_strokes_destroy(&strokes);
 }
 
-static void test_gradient(void **unused)
+TEST(test_gradient)
 {
     struct refocus_strokes *strokes = begin();
     struct refocus_stroke ground = make_stroke(REFOCUS_STROKE_ALL, 1, 0);
@@ -140,7 +136,6 @@ static void test_gradient(void **unused)
         {REFOCUS_FILL_GRADIENT, 1, 0.5f, 1048576, -1048576, -1048576, 1048576},
     };
 
-    (void)unused;
     for (size_t i = 0; i < sizeof fills / sizeof *fills; i++) {
         const struct refocus_fill *const f = &fills[i];
         const double dx = (double)f->x1 - (double)f->x0, dy = (double)f->y1 - (double)f->y0;
@@ -169,12 +164,11 @@ static double to_segment(double x, double y, const float *a, const float *b)
     return hypot(px - t * dx, py - t * dy);
 }
 
-static void test_brush(void **unused)
+TEST(test_brush)
 {
     const float path[] = {10.25f, 20, 200, 31.5f, 200, 150, 319.5f, -0.5f, 30, 239, 30, 239};
     const float radii[] = {0.5f, 7.3f, 40};
 
-    (void)unused;
     for (size_t i = 0; i < 3; i++) {
         struct refocus_strokes *strokes = begin();
         int wrong = 0;
@@ -193,7 +187,7 @@ static void test_brush(void **unused)
     }
 }
 
-static void test_base_and_selection(void **unused)
+TEST(test_base_and_selection)
 {
     static uint16_t base[W * H];
     static uint8_t mask[64 * 48];
@@ -201,7 +195,6 @@ static void test_base_and_selection(void **unused)
     const struct refocus_disparity map = refocus_disparity16(base, W, H, 2 * W);
     int wrong = 0;
 
-    (void)unused;
     for (int i = 0; i < W * H; i++)
         base[i] = (uint16_t)i;
     assert_int_equal(refocus_strokes_create(&strokes, &photo, &map), REFOCUS_OK);
@@ -223,13 +216,12 @@ static void test_base_and_selection(void **unused)
 }
 
 /* A photo gives equal depth in all formats and with its rows upside down in memory. */
-static void test_formats(void **unused)
+TEST(test_formats)
 {
     static uint8_t pixels[4 * W * H];
     struct refocus_strokes *strokes = begin();
     static uint16_t expected[W * H];
 
-    (void)unused;
     paint(strokes, REFOCUS_STROKE_OBJECT, 16, 0.5f, over, OVER);
     memcpy(expected, refocus_strokes_disparity(strokes), sizeof expected);
     refocus_strokes_destroy(&strokes);
@@ -250,14 +242,13 @@ static void test_formats(void **unused)
     }
 }
 
-static void test_refusals(void **unused)
+TEST(test_refusals)
 {
     struct refocus_strokes *strokes = begin();
     const float nan_point[] = {NAN, 3}, out[] = {(float)W, 3}, in[] = {3, 3};
     struct refocus_stroke stroke = make_stroke(REFOCUS_STROKE_MORE, 3, 0);
     struct refocus_image bad = photo;
 
-    (void)unused;
     assert_int_equal(refocus_strokes_begin(strokes, &stroke, NULL), REFOCUS_ERR_STATE);
     stroke.kind = REFOCUS_STROKE_FILL;
     assert_int_equal(refocus_strokes_begin(strokes, &stroke, NULL), REFOCUS_ERR_STATE);
@@ -307,7 +298,7 @@ static void test_refusals(void **unused)
 }
 
 /* A stroke is given out as far as the caller's struct goes. */
-static void test_struct_sizes(void **unused)
+TEST(test_struct_sizes)
 {
     struct newer {
         struct refocus_stroke known;
@@ -317,7 +308,6 @@ static void test_struct_sizes(void **unused)
     struct refocus_strokes *strokes = begin();
     struct newer first = newer, untouched;
 
-    (void)unused;
     assert_int_equal(refocus_strokes_begin(strokes, &given, NULL), REFOCUS_OK);
     assert_int_equal(refocus_strokes_get(strokes, 0, &first.known, NULL, NULL), REFOCUS_OK);
     assert_memory_equal(&first.known, &given, sizeof given);
@@ -343,7 +333,7 @@ static void test_struct_sizes(void **unused)
 
 /* In places where colours mix a selection is a matter of every bit: the same one on every
  * processor. */
-static void test_same_everywhere(void **unused)
+TEST(test_same_everywhere)
 {
     const float path[] = {60.3f, 170, 100.7f, 70.25f, 240, 60, 250.5f, 180};
     struct refocus_image noise = make_picture(W, H);
@@ -353,7 +343,6 @@ static void test_same_everywhere(void **unused)
     uint32_t state = 3;
     int inside = 0;
 
-    (void)unused;
     for (int i = 0; i < 3 * W * H; i++) {
         state = state * 1664525 + 1013904223;
         noise.plane[0][i] =
@@ -376,12 +365,11 @@ static void test_same_everywhere(void **unused)
 }
 
 /* Pictures of a pixel, a row, a column. */
-static void test_small(void **unused)
+TEST(test_small)
 {
     const int sizes[][2] = {{1, 1}, {1, 300}, {300, 1}, {2, 2}, {3, 7}};
     const float point[] = {0, 0};
 
-    (void)unused;
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         struct refocus_image small = make_picture(sizes[i][0], sizes[i][1]);
         struct refocus_strokes *strokes;
@@ -417,7 +405,7 @@ static int figure_around(const struct refocus_depth_map *map, int x, int y)
 }
 
 /* The shipped scene: two strokes over the figure, against its exact disparities. */
-static void test_scene(void **unused)
+TEST(test_scene)
 {
     const char *const root = getenv("REFOCUS_SOURCE_ROOT");
     const float head[] = {262, 215, 320, 190, 380, 170, 460, 180, 480, 225, 400,
@@ -430,7 +418,6 @@ static void test_scene(void **unused)
     char path[4096];
     int both = 0, either = 0;
 
-    (void)unused;
     snprintf(path, sizeof path, "%s/examples/data/portrait/allfocus.png", root ? root : ".");
     if (refocus_photo_read(&scene, path, NULL, NULL) == REFOCUS_ERR_UNSUPPORTED) {
         printf("SKIPPED: no PNG in this build\n");
@@ -464,25 +451,10 @@ static void test_scene(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_selects_to_the_edge),
-        cmocka_unit_test(test_segments_and_undo),
-        cmocka_unit_test(test_changed),
-        cmocka_unit_test(test_gradient),
-        cmocka_unit_test(test_brush),
-        cmocka_unit_test(test_base_and_selection),
-        cmocka_unit_test(test_formats),
-        cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_struct_sizes),
-        cmocka_unit_test(test_same_everywhere),
-        cmocka_unit_test(test_small),
-        cmocka_unit_test(test_along_sides),
-        cmocka_unit_test(test_scene),
-    };
     int failed;
 
     photo = make_picture(W, H);
-    failed = cmocka_run_group_tests(tests, NULL, NULL);
+    failed = unit_test_run(NULL, NULL);
     free(photo.plane[0]);
     return failed;
 }

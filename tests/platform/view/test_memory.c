@@ -1,10 +1,7 @@
 /* test_memory.c: every allocation of the session fails once, and each call that makes its lock, its
  * condition and its thread: a status, and nothing is kept. */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <errno.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -75,12 +72,11 @@ static struct rf_session_setup small_setup(void)
     return setup;
 }
 
-static void test_every_allocation(void **unused)
+TEST(test_every_allocation)
 {
     const struct rf_session_setup setup = small_setup();
     int status = REFOCUS_ERR_MEMORY;
 
-    (void)unused;
     for (failing.fail_at = 1; status != REFOCUS_OK; failing.fail_at++) {
         const long before = failing.live;
         struct rf_session *session;
@@ -108,14 +104,13 @@ static void test_every_allocation(void **unused)
     assert_true(failing.fail_at > 9);
 }
 
-static void test_every_lock(void **unused)
+TEST(test_every_lock)
 {
     const struct rf_session_setup setup = small_setup();
     const long before = failing.live;
     struct rf_session *session;
     int made;
 
-    (void)unused;
     failing.fail_at = 0;
     for (fail_at = calls = 0, made = 1; fail_at <= made; fail_at++, calls = 0) {
         const int status = rf_session_create(&session, &setup);
@@ -132,12 +127,4 @@ static void test_every_lock(void **unused)
         assert_int_equal(kept, 0);
         assert_int_equal(failing.live, before);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_allocation),
-                                       cmocka_unit_test(test_every_lock)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

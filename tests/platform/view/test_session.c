@@ -1,10 +1,7 @@
 /* test_session.c: the viewer's session: first a quick picture, then the full one, and nobody
  * waits. */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -148,13 +145,12 @@ static void expect_render(const struct rf_view_frame *frame, uint32_t method, fl
     free(out.plane[0]);
 }
 
-static void test_full_is_render(void **unused)
+TEST(test_full_is_render)
 {
     struct rf_session *session = begin();
     struct rf_view_state state = whole(0.2f, 9);
     const struct rf_view_frame *frame;
 
-    (void)unused;
     assert_true(rf_session_reduction(session) > 1);
     frame = wait_for(session, rf_session_show(session, &state), true);
     expect_render(frame, REFOCUS_METHOD_SWEEP, 0.2f, 9);
@@ -173,7 +169,7 @@ static void test_full_is_render(void **unused)
 
 /* Raytracing all of it takes many seconds: no call waits for that, nor does what
  * follows. */
-static void test_nobody_waits(void **unused)
+TEST(test_nobody_waits)
 {
     struct rf_session *session = begin();
     struct rf_view_state state = whole(0.2f, 30);
@@ -181,7 +177,6 @@ static void test_nobody_waits(void **unused)
     double start, longest = 0;
     uint64_t request;
 
-    (void)unused;
     frame = wait_for(session, rf_session_show(session, &state), true);
     state.method = REFOCUS_METHOD_RAYTRACE;
     setup.params.render.rays = 64;
@@ -209,14 +204,13 @@ static void test_nobody_waits(void **unused)
 }
 
 /* While something is held no full picture is begun. */
-static void test_hold(void **unused)
+TEST(test_hold)
 {
     struct rf_session *session = begin();
     struct rf_view_state state = whole(0.2f, 9);
     const struct rf_view_frame *frame;
     uint64_t request;
 
-    (void)unused;
     wait_for(session, rf_session_show(session, &state), true);
     state.hold = true;
     for (int i = 0; i < 5; i++) {
@@ -233,14 +227,13 @@ static void test_hold(void **unused)
     rf_session_destroy(&session);
 }
 
-static void test_modes(void **unused)
+TEST(test_modes)
 {
     struct rf_session *session = begin();
     struct rf_view_state state = whole(0.2f, 9);
     const struct rf_view_frame *frame;
     int wrong = 0;
 
-    (void)unused;
     state.mode = RF_VIEW_BEFORE;
     frame = wait_for(session, rf_session_show(session, &state), true);
     for (int i = 0; i < PIXELS; i++)
@@ -276,13 +269,12 @@ static void wait_for_saved(uint32_t what)
     pthread_mutex_unlock(&lock);
 }
 
-static void test_saving(void **unused)
+TEST(test_saving)
 {
     struct rf_session *session = begin();
     struct rf_view_state state = whole(0.2f, 3);
     char words[RF_VIEW_WORDS] = "";
 
-    (void)unused;
     wait_for(session, rf_session_show(session, &state), true);
     assert_false(rf_session_words(session, words));
     saved_what = 0;
@@ -299,7 +291,7 @@ static void test_saving(void **unused)
 }
 
 /* Where rays go by the blur, the sweep has them in what is saved, and not in what is shown. */
-static void test_still_rays(void **unused)
+TEST(test_still_rays)
 {
     static const struct {
         float blur;
@@ -311,7 +303,6 @@ static void test_still_rays(void **unused)
     struct rf_view_state state = whole(0.2f, 0);
     struct rf_session *session;
 
-    (void)unused;
     setup.still_rays = true;
     session = begin();
     for (size_t i = 0; i < sizeof saved / sizeof *saved; i++) {
@@ -329,14 +320,13 @@ static void test_still_rays(void **unused)
 }
 
 /* A matte, of a size of its own, is part of the scene. */
-static void test_matte(void **state)
+TEST(test_matte)
 {
     static const uint8_t samples[6] = {0, 0, 255, 255, 0, 0};
     const struct refocus_disparity matte = refocus_disparity8(samples, 6, 1, 6);
     struct rf_view_state view = whole(0.1f, 9);
     struct rf_session *session;
 
-    (void)state;
     setup.matte = &matte;
     session = begin();
     expect_render(wait_for(session, rf_session_show(session, &view), true), 0, 0.1f, 9);
@@ -346,15 +336,10 @@ static void test_matte(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_full_is_render), cmocka_unit_test(test_nobody_waits),
-        cmocka_unit_test(test_hold),           cmocka_unit_test(test_modes),
-        cmocka_unit_test(test_saving),         cmocka_unit_test(test_still_rays),
-        cmocka_unit_test(test_matte)};
     int failed;
 
     make_scene();
-    failed = cmocka_run_group_tests(tests, NULL, NULL);
+    failed = unit_test_run(NULL, NULL);
     free(pixels);
     free(depth);
     return failed;

@@ -1,9 +1,6 @@
 /* test_touch.c: the window without a screen (SDL's dummy driver), worked by events of a touch
  * screen: SDL makes a mouse of the first finger, and tells of two as gestures. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
+#include "unit_test.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -124,7 +121,7 @@ static void no_save(void *user, const struct rf_view_result *result, char words[
     fail();
 }
 
-static void test_two_fingers(void **unused)
+TEST(test_two_fingers)
 {
     static uint8_t pixels[3 * W * H];
     static uint16_t depth[W * H];
@@ -134,7 +131,6 @@ static void test_two_fingers(void **unused)
     struct fingers fingers = {report, 0};
     char reason[256] = "";
 
-    (void)unused;
     assert_non_null(report);
     for (int i = 0; i < W * H; i++) {
         depth[i] = i % W < W / 2 ? 40000 : 3000;
@@ -165,7 +161,7 @@ static void test_two_fingers(void **unused)
     free(report);
 }
 
-static void test_no_display(void **unused)
+TEST(test_no_display)
 {
     static uint8_t pixel[3];
     struct refocus_image photo = refocus_image_packed(REFOCUS_FORMAT_RGB8, pixel, 1, 1, 3);
@@ -173,7 +169,6 @@ static void test_no_display(void **unused)
     struct rf_view_report *const report = calloc(1, sizeof *report);
     char reason[256] = "";
 
-    (void)unused;
     assert_non_null(report);
     memset(&setup, 0, sizeof setup);
     setup.session.photo = &photo;
@@ -182,12 +177,4 @@ static void test_no_display(void **unused)
     assert_true(rf_view_run(&setup, report, reason) < 0);
     assert_memory_equal(reason, "no display can be opened: ", 26);
     free(report);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_two_fingers),
-                                       cmocka_unit_test(test_no_display)};
-
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }
