@@ -244,7 +244,7 @@ static void sweep_for(const struct twin *t, const struct twin_cells *cells,
 static double corner_blur(const struct twin *t, int x, int y)
 {
     const int last_x = (t->width - 1) / TWIN_TILE, last_y = (t->height - 1) / TWIN_TILE;
-    double blur[4], deepest = -INFINITY, sum = 0;
+    double blur[4], deepest, sum = 0;
     int count = 0;
 
     for (int k = 0; k < 4; k++) {
@@ -253,8 +253,9 @@ static double corner_blur(const struct twin *t, int x, int y)
 
         blur[k] = t->background_blur[twin_at(t, tx * TWIN_TILE + TWIN_TILE / 2,
                                              ty * TWIN_TILE + TWIN_TILE / 2)];
-        deepest = fmax(deepest, blur[k]);
     }
+    /* GCC 12 for AArch64 fails to compile this as a loop. */
+    deepest = fmax(fmax(blur[0], blur[1]), fmax(blur[2], blur[3]));
     for (int k = 0; k < 4; k++)
         if (deepest - blur[k] <= t->K / 4) {
             sum += blur[k];
