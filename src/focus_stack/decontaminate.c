@@ -290,11 +290,16 @@ static int taps_of(const struct lifting *l, int nearer)
     return (int)((int64_t)l->most * nearer >> 20) / l->disc.apart;
 }
 
-/* K is known to a quarter: no disc of what is clipped is to remain. */
+/* The radius of what is clipped: K is known to a quarter, and no disc of that is to remain. */
+static int clipped_taps_of(const struct lifting *l, int nearer)
+{
+    return taps_of(l, nearer) * 5 / 4;
+}
+
 static void add_clipped(const struct lifting *l, int disparity, uint32_t part, int focus, int i,
                         int j, struct spill *spill)
 {
-    const uint32_t wide = share_of(&l->disc, taps_of(l, disparity - focus) * 5 / 4, i, j);
+    const uint32_t wide = share_of(&l->disc, clipped_taps_of(l, disparity - focus), i, j);
 
     spill->bright += (uint32_t)((uint64_t)wide * part / RF_STACK_CLIPPED);
     if (wide && disparity > spill->clipped)
@@ -312,7 +317,8 @@ static void spill_of(const struct lifting *l, int focus, int nearer, int x, int 
     /* Exact for columns below 2^16, as no sample is as wide as 2^8 pixels. */
     const uint64_t by = (1 << 24) / (uint32_t)s->reduced + 1;
     const int least = focus + (int)(((int64_t)LEAST << 16) / l->most);
-    const int widest = (taps_of(l, nearer) * 5 / 4 + 8 + 15) / 16; /* as add_clipped() has it */
+    /* A disc has a share half a tap beyond its radius, 8 in Q4. */
+    const int widest = (clipped_taps_of(l, nearer) + 8 + 15) / 16;
     const int taps = widest < disc->taps ? widest : disc->taps;
 
     memset(spill, 0, sizeof *spill);

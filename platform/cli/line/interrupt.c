@@ -17,7 +17,7 @@
 #include "line/interrupt.h"
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-static struct refocus_renderer *watched; /* these nine under the lock */
+static struct refocus_renderer *watched; /* this and all to clean_up_count under the lock */
 static bool came, held;
 static const char *cut;
 static void (*end_work)(void *);
@@ -153,12 +153,13 @@ static void remove_all(void)
         clean_ups[i].function(clean_ups[i].of);
 }
 
-/* With the status that the work would end with where work is cut, else by the signal. Does nothing
- * while signals are held back. */
+/* Ends the process with the status that the work would end with where work is cut, else by the
+ * signal. Does nothing while signals are held back, or where work is cut whose temporary files
+ * cannot be found. */
 static void end_process(int number, bool by_signal)
 {
     pthread_mutex_lock(&lock);
-    if (!held && remove_temporaries()) {
+    if (!held && (remove_temporaries() || !cut)) {
         remove_all();
         if (cut && !by_signal)
             print_cut();
@@ -169,22 +170,18 @@ static void end_process(int number, bool by_signal)
     pthread_mutex_unlock(&lock);
 }
 
-static bool is_cut(void)
+/* Whether the first signal ends the process by now, so many milliseconds after it came: by cutting
+ * the work, or by the signal. */
+static bool is_due(double waited, bool by_signal)
 {
+    enum { PATIENCE_MS = 2000 };
     bool result;
 
     pthread_mutex_lock(&lock);
-    result = cut != NULL;
-    pthread_mutex_unlock(&lock);
-    return result;
-}
-
-static bool ends_its_own_work(void)
-{
-    bool result;
-
-    pthread_mutex_lock(&lock);
-    result = end_work != NULL;
+    if (by_signal)
+        result = waited >= PATIENCE_MS && (atomic_load(&ending) != 0 || end_work != NULL);
+    else
+        result = waited >= INTERRUPT_SOON_MS && cut != NULL;
     pthread_mutex_unlock(&lock);
     return result;
 }
@@ -199,7 +196,6 @@ static double clock_ms(void)
 
 static void *wait_for_signals(void *argument)
 {
-    enum { PATIENCE_MS = 2000 };
     const struct timespec pause = {0, 10000000};
     sigset_t set;
     int first, second = 0;
@@ -227,9 +223,9 @@ static void *wait_for_signals(void *argument)
         atomic_store(&late, waited >= INTERRUPT_SOON_MS);
         if (second > 0)
             end_process(second, true);
-        else if (waited >= INTERRUPT_SOON_MS && is_cut())
+        else if (is_due(waited, false))
             end_process(first, false);
-        else if (waited >= PATIENCE_MS && (atomic_load(&ending) != 0 || ends_its_own_work()))
+        else if (is_due(waited, true))
             end_process(first, true);
     }
 }
