@@ -25,7 +25,7 @@ struct rf_view_setup {
     uint32_t methods;  /* REFOCUS_METHOD_BIT() of those to choose from, or-ed; 0 = all */
     int width, height; /* size of the window; 0 = as large as the photo asks for */
     bool fullscreen;
-    bool (*stop)(void *user); /* polled: whether to end; may be NULL */
+    int (*stop)(void *user); /* polled: not 0 = end; may be NULL */
     void *stop_user;
     int quit_after_ms; /* 0 = never */
 };

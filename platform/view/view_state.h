@@ -44,7 +44,17 @@ struct rf_view_result {
 enum { RF_VIEW_WORDS = 256 };
 struct rf_session_setup {
     const struct refocus_image *photo; /* RGB8; the caller's, until the end */
-    const uint16_t *disparity;         /* disparities of its size, packed; the caller's, too */
+    /* All that the photo holds, of its size and in a deep format, or NULL; the caller's, too. Full
+     * pictures are made of it where takes_deep() says so, quick ones of `photo`. */
+    const struct refocus_image *deep;
+    /* Whether a picture of params is made of `deep`; what has to be otherwise then, it changes. */
+    bool (*takes_deep)(void *user, struct refocus_settings *params);
+    /* Bring a picture of linear light, REFOCUS_FORMAT_RGB_HALF, into the 8 bits of the photo's
+     * tones: a status. NULL: the renderer makes the 8 bits itself. */
+    int (*to_tones)(void *user, const struct refocus_image *light,
+                    const struct refocus_settings *params, const struct refocus_image *out);
+    void *deep_user;           /* the first argument of both; they run on the session's thread */
+    const uint16_t *disparity; /* disparities of its size, packed; the caller's, too */
     const struct refocus_disparity
         *matte;                     /* matte of any size, or NULL; the caller's, until the end */
     struct refocus_settings params; /* the settings that the state does not hold */

@@ -78,17 +78,19 @@ static bool same_lens(const struct refocus_settings *a, const struct refocus_set
            is_same(a->focus.tilt_down, b->focus.tilt_down);
 }
 
-static int make_renderer(struct rf_session *s, struct refocus_renderer **renderer, int width,
-                         int height, int reduction)
+static int make_renderer(struct rf_session *s, struct refocus_renderer **renderer, bool full)
 {
+    const struct refocus_image *const photo = s->setup.photo;
     struct refocus_renderer_params params = refocus_renderer_params_default(
-        width, height, (float)REFOCUS_PLAIN_BLUR_RADIUS / (float)reduction);
+        full ? photo->width : s->width, full ? photo->height : s->height,
+        (float)REFOCUS_PLAIN_BLUR_RADIUS / (full ? 1.0f : (float)s->reduction));
 
     params.threads = s->setup.threads;
     params.cpu = s->setup.cpu;
     params.thin = 1;
-    params.textured = reduction == 1 && s->setup.params.render.inpaint == REFOCUS_INPAINT_TEXTURED;
+    params.textured = full && s->setup.params.render.inpaint == REFOCUS_INPAINT_TEXTURED;
     params.papers = refocus_papers();
+    params.deep = full && s->setup.deep;
     return refocus_renderer_create(renderer, &params);
 }
 
@@ -187,23 +189,57 @@ static int render_small(struct rf_session *s, const struct rf_view_state *state)
     return status == REFOCUS_OK ? refocus_render_settings(s->small, &params, &out) : status;
 }
 
+/* Prepare the photo with all that it holds, or with its 8 bits, unless it is prepared so. */
+static int prepare_full(struct rf_session *s, bool deep)
+{
+    const struct refocus_image *const photo = s->setup.photo;
+    const struct refocus_disparity map = refocus_disparity16(
+        s->setup.disparity, photo->width, photo->height, 2 * (ptrdiff_t)photo->width);
+    int status;
+
+    if (s->full_prepared && s->full_deep == deep)
+        return REFOCUS_OK;
+    s->full_prepared = false;
+    status = prepare(s, s->full, deep ? s->setup.deep : photo, &map);
+    s->full_prepared = status == REFOCUS_OK;
+    s->full_deep = deep;
+    return status;
+}
+
+/* Render light, and bring it into the tones of the photo. */
+static int render_tones(struct rf_session *s, const struct refocus_settings *params,
+                        const struct refocus_image *out)
+{
+    const uint64_t stride = 6 * (uint64_t)out->width, bytes = stride * (uint64_t)out->height;
+    struct refocus_image light = refocus_image_packed(REFOCUS_FORMAT_RGB_HALF, NULL, out->width,
+                                                      out->height, (ptrdiff_t)stride);
+    int status = REFOCUS_ERR_MEMORY;
+
+    if (bytes <= SIZE_MAX)
+        light.plane[0] = malloc((size_t)bytes);
+    if (light.plane[0])
+        status = refocus_render_settings(s->full, params, &light);
+    if (status == REFOCUS_OK)
+        status = s->setup.to_tones(s->setup.deep_user, &light, params, out);
+    free(light.plane[0]);
+    return status;
+}
+
 /* REFOCUS_ERR_CANCELLED when something newer came. */
 static int render_full(struct rf_session *s, const struct refocus_settings *params)
 {
     const struct refocus_image *const photo = s->setup.photo;
     const struct refocus_image out = refocus_image_packed(
         REFOCUS_FORMAT_RGB8, s->full_out, photo->width, photo->height, 3 * (ptrdiff_t)photo->width);
-    const struct refocus_disparity map = refocus_disparity16(
-        s->setup.disparity, photo->width, photo->height, 2 * (ptrdiff_t)photo->width);
-    int status = REFOCUS_OK;
+    struct refocus_settings used = *params;
+    const bool deep = s->setup.deep && s->setup.takes_deep(s->setup.deep_user, &used);
+    int status;
 
     s->have_full = false;
-    if (!s->full_prepared)
-        status = prepare(s, s->full, photo, &map);
-    if (status != REFOCUS_OK)
-        return status;
-    s->full_prepared = true;
-    status = refocus_render_settings(s->full, params, &out);
+    status = prepare_full(s, deep);
+    if (status == REFOCUS_OK)
+        status = deep && s->setup.to_tones ? render_tones(s, &used, &out)
+                                           : refocus_render_settings(s->full, &used, &out);
     s->have_full = status == REFOCUS_OK;
     s->full_of = *params;
     return status;
@@ -331,9 +367,9 @@ void *rf_worker_run(void *argument)
         if (!s->small) {
             /* The photo at once; then the renderers, which take their time. */
             publish(s, &state, 0, false);
-            status = make_renderer(s, &s->small, s->width, s->height, s->reduction);
+            status = make_renderer(s, &s->small, false);
             if (status == REFOCUS_OK)
-                status = make_renderer(s, &s->full, photo->width, photo->height, 1);
+                status = make_renderer(s, &s->full, true);
             if (status != REFOCUS_OK) {
                 note_status(s, status);
                 s->setup.notify(s->setup.notify_user);

@@ -35,6 +35,7 @@ struct rf_session {
     uint32_t *scratch;
     int scratch_room;
     bool small_prepared, full_prepared;
+    bool full_deep; /* the full renderer is prepared with all that the photo holds */
     bool have_full; /* full_out is what full_of says */
     struct refocus_settings full_of;
 };

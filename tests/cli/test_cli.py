@@ -67,7 +67,8 @@ class Usage(Case):
                     '--config --preset --settings --save-settings -h --help --help-all',
             'view': self.PAPERS + self.CONTROLS +
                     '-o --output --depth --depth-unit --near --far --max-side --max-pixels --raw-preview --max-memory --invalid --speckle --estimate --network --input-size --input-mean --input-scale --far-is-large --stereo --stereo-file --match --pair-order --strokes '
-                    '--upsample --depth-edges --orient-depth --matte --focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
+                    '--upsample --depth-edges --orient-depth --matte --gain-map --no-dither --transfer --white '
+                    '--focus --focus-at --focus-rectangle --focus-distance --blur --f-number '
                     '--focal-length --sensor-width --method --rays --iterations --quality '
                     '--aperture --blend --sigma --highlights --mirror --background --no-thin --fill --threads '
                     '--cpu --json --config --preset --settings --size --fullscreen --seconds --page --font --dpi -h --help --help-all',

@@ -63,7 +63,8 @@ class Settings(Case):
         os.remove('b.json')
 
     def test_what_render_saves_other_commands_take(self):
-        for more in (), ('--bokeh', 'swirl', '--raw-preview'), ('--quality', 'best', '--fill', 'smooth'):
+        for more in ((), ('--bokeh', 'swirl', '--raw-preview'), ('--quality', 'best', '--fill', 'smooth'),
+                     ('--gain-map', 'ignore', '--no-dither')):
             self.picture('--depth', 'depth.pgm', *more, '--save-settings', 'a.json')
             with open('a.json') as file:
                 self.assertEqual(json.load(file).get('raw-preview'), True if '--raw-preview' in more

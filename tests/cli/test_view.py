@@ -116,6 +116,12 @@ def read_png8(path):
     return rows
 
 
+def read_ppm(path):
+    width, height, samples = pictures.read_pnm(path)
+    check((width, height, max(samples) < 256) == (W, H, True), path)
+    return [bytes(samples[3 * W * y:3 * W * (y + 1)]) for y in range(H)]
+
+
 def read_depth(path):
     width, height, bits, channels, rows = pictures.read_png(path)
     check((width, height, bits, channels) == (W, H, 16, 1), path)
@@ -252,6 +258,41 @@ def with_noise(refocus, folder, display):
         check((read_png8(saved) == read_png8(folder + '/r.png')) == (not more), ('noise', more))
 
 
+def with_light(refocus, folder, display):
+    """Photos of more than 8 bits and gain maps: what is shown and saved is what `render` makes."""
+    rows, saved = read_png8(SCENE + 'allfocus.png'), folder + '/light.png'
+    depth = '--depth', SCENE + 'disparity.png', '--depth-edges', 'as-given'
+    lens = '--focus', '0.9', '--blur', '14', '--quality', 'standard'
+    floats, deep, hdr = folder + '/f.pfm', folder + '/deep.png', folder + '/hdr.jpg'
+    pictures.pfm_colour(floats, W, H, lambda x, y: [
+        (8 if value > 220 else 1) * (value / 255) ** 2.2 for value in rows[y][3 * x:3 * x + 3]])
+    pictures.png(deep, W, H, [b''.join(b'%c%c' % (value, 77) for value in row) for row in rows], 16)
+    pictures.pgm(folder + '/gain.pgm', 60, 45, lambda x, y: 255 * (x > 30))
+    for name in 'base', 'gain':
+        run(refocus, 'render', SCENE + 'allfocus.png' if name == 'base' else folder + '/gain.pgm',
+            *depth[:2], '--blur', '0', '-o', '%s/%s.jpg' % (folder, name))
+    pictures.ultra_hdr(hdr, folder + '/base.jpg', folder + '/gain.jpg', 3)
+    linear = '--transfer', 'linear', '--white', '0.7'
+    made, sharp = folder + '/made.ppm', folder + '/sharp.ppm'  # of 8 bits, whatever the photo has
+    for photo, *options in (floats,), (deep, *linear), (hdr,), (hdr, '--gain-map', 'ignore'):
+        run(refocus, 'render', photo, *depth, *lens, *options, '-o', made)
+        run(refocus, 'render', photo, *depth, '--blur', '0', *options, '-o', sharp)
+        viewer = Viewer(refocus, folder, display, photo, *depth, *lens, *options, '-o', saved)
+        viewer.shows(read_ppm(made), 'light %s' % ' '.join(options))
+        viewer.key('s', 'b')
+        viewer.until(lambda: os.path.exists(saved), 'the picture of light')
+        before = b''.join(read_ppm(sharp)[:BOTTOM])  # dithered; what is shown may be rounded
+        viewer.until(lambda: max(abs(a - b) for a, b in zip(
+            before, b''.join(viewer.rows()[:BOTTOM]))) <= 2, 'before %s' % ' '.join(options))
+        viewer.end()
+        check(read_png8(saved) == read_ppm(made), ('light', photo, options))
+        os.remove(saved)
+    done = subprocess.run([refocus, 'view', deep, *depth, *linear, '--star', '6'], text=True,
+                          env=dict(os.environ, SDL_VIDEODRIVER='dummy'),
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    check(done.returncode == 1 and done.stderr.startswith('refocus: --transfer: '), done)
+
+
 def with_strokes(refocus, folder, display):
     """--strokes paint before the window opens."""
     photo, depth = SCENE + 'allfocus.png', SCENE + 'disparity.png'
@@ -359,6 +400,7 @@ def main():
             text(refocus, folder, display)
             with_settings(refocus, folder, display)
             with_noise(refocus, folder, display)
+            with_light(refocus, folder, display)
             with_strokes(refocus, folder, display)
         finally:
             server.terminate()

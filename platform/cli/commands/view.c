@@ -3,7 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include "commands/commands.h"
+#include "commands/view_light.h"
 #include "commands/view_save.h"
+#include "inputs/depth_options.h"
 #include "inputs/painted.h"
 #include "line/interrupt.h"
 #include "line/module.h"
@@ -32,6 +34,7 @@ static const struct option options[] = {
                   "names of it. Default: the photo's name with -refocused.jpg, here"),
     {.kind = OPTION_HEADING, .help = "Depth"},
     GROUP(shot_depth_options, struct settings, shot),
+    GROUP(light_options, struct settings, shot.depth),
     GROUP(shot_lens_options, struct settings, shot),
     GROUP(shot_method_options, struct settings, shot),
     {.kind = OPTION_HEADING, .help = "Running"},
@@ -62,12 +65,6 @@ static const struct option options[] = {
     GROUP(paper_options, struct settings, shot.engine),
     {.help = NULL},
 };
-
-static bool interrupted(void *unused)
-{
-    (void)unused;
-    return interrupt_came();
-}
 
 static json_t *time_json(const struct rf_view_time *time)
 {
@@ -101,6 +98,7 @@ struct viewing {
     struct settings settings;
     struct engine engine;
     struct input input;
+    struct view_light light;
     double f_number; /* the one that a blur of 1 pixel has; NAN: it is not known */
 };
 
@@ -243,7 +241,7 @@ static int show(struct viewing *v, view_run_fn *run_window)
                                   .dpi = isnan(settings->dpi) ? 0 : settings->dpi,
                                   .describe = describe,
                                   .describe_user = v,
-                                  .stop = interrupted,
+                                  .stop = interrupt_cancels,
                                   .fullscreen = settings->fullscreen};
     struct rf_view_report *const report = calloc(1, sizeof *report);
     char reason[256] = "";
@@ -258,6 +256,7 @@ static int show(struct viewing *v, view_run_fn *run_window)
     setup.session.disparity = v->input.disparity;
     setup.session.matte = v->input.matte.samples ? &v->input.matte : NULL;
     setup.session.params = v->engine.params;
+    view_light_join(&v->light, &v->input, &setup.session);
     setup.session.still_rays = v->engine.still_rays;
     setup.session.aim = aim;
     setup.session.aim_user = v;
@@ -325,11 +324,13 @@ static int open_photo(struct viewing *v, const char *photo)
     if (!module_load(&window, &run_window, why))
         return report_failure(EXIT_FAILED, photo, "%s", why);
     status = engine_begin(&v->engine, &v->settings.shot.engine);
-    engine_add_grain(&v->engine, &v->settings.shot.engine);
     v->engine.name = photo;
     if (status == EXIT_DONE) {
         report_progress("reading", 0);
+        view_light_begin(&v->light, &v->engine, &v->settings.shot);
         status = read_input(v, photo);
+        if (status == EXIT_DONE)
+            status = view_light_settle(&v->engine, &v->settings.shot, &v->input);
         if (status == EXIT_DONE)
             status = show(v, run_window);
         report_progress_end();

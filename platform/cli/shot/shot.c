@@ -169,18 +169,21 @@ static struct refocus_scene scene_of(const struct shot *shot)
     return scene;
 }
 
-/* Choose what of the photo the engine's settings take. The grain of 8-bit pictures follows it. */
-static bool choose_bits(struct shot *shot)
+bool shot_choose_bits(const struct input *input, bool adds_grain, struct refocus_settings *params)
 {
-    struct refocus_settings *params = &shot->engine.params;
     bool deep;
 
-    if (shot->adds_grain)
+    if (adds_grain)
         params->look.grain = 0; /* so that deep photos are taken */
-    deep = shot_takes_deep(&shot->input, params);
-    if (shot->adds_grain && !deep)
+    deep = shot_takes_deep(input, params);
+    if (adds_grain && !deep)
         params->look.grain = 1;
     return deep;
+}
+
+static bool choose_bits(struct shot *shot)
+{
+    return shot_choose_bits(&shot->input, shot->adds_grain, &shot->engine.params);
 }
 
 static int prepare_bits(struct shot *shot, bool deep)

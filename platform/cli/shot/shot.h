@@ -74,6 +74,10 @@ void shot_suit_output(struct depth_settings *depth, const char *output);
 /* Whether a picture of these settings is made of all that the photo holds, or of its 8 bits. */
 bool shot_takes_deep(const struct input *input, const struct refocus_settings *params);
 
+/* The answer of shot_takes_deep(), where no option gives or refuses grain (adds_grain): pictures of
+ * 8 bits get it in `params`, and deep ones lose it. */
+bool shot_choose_bits(const struct input *input, bool adds_grain, struct refocus_settings *params);
+
 /* most_blur: what the renderer is made for, where that is more than the settings' blur;
  * 0: that. Ended by shot_close(), whatever it returned. */
 int shot_open(struct shot *shot, const char *photo, const struct shot_settings *settings,

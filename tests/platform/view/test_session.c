@@ -115,25 +115,36 @@ static const struct rf_view_frame *wait_for(struct rf_session *session, uint64_t
     return NULL;
 }
 
-static void expect_render(const struct rf_view_frame *frame, uint32_t method, float focus,
-                          float blur)
+static void expect_render_of(const struct refocus_image *picture, const struct rf_view_frame *frame,
+                             uint32_t method, float focus, float blur)
 {
     struct refocus_renderer_params limits = refocus_renderer_params_default(W, H, 127);
     struct refocus_settings lens = refocus_settings_default(focus, blur);
     struct refocus_disparity map = refocus_disparity16(depth, W, H, 2 * W);
-    struct refocus_scene scene = refocus_scene_default(&photo, &map);
+    struct refocus_scene scene = refocus_scene_default(picture, &map);
     struct refocus_image out = photo;
     struct refocus_renderer *renderer;
     int wrong = 0;
 
     limits.thin = 1;
+    limits.deep = picture != &photo;
     scene.matte = setup.matte;
     lens.render.method = method;
     out.plane[0] = malloc(3 * (size_t)PIXELS);
     assert_non_null(out.plane[0]);
     assert_int_equal(refocus_renderer_create(&renderer, &limits), REFOCUS_OK);
     assert_int_equal(refocus_prepare_scene(renderer, &scene), REFOCUS_OK);
-    assert_int_equal(refocus_render_settings(renderer, &lens, &out), REFOCUS_OK);
+    if (picture != &photo && setup.to_tones) {
+        struct refocus_image light =
+            refocus_image_packed(REFOCUS_FORMAT_RGB_HALF, malloc(6 * (size_t)PIXELS), W, H, 6 * W);
+
+        assert_non_null(light.plane[0]);
+        assert_int_equal(refocus_render_settings(renderer, &lens, &light), REFOCUS_OK);
+        setup.to_tones(&setup, &light, &lens, &out);
+        free(light.plane[0]);
+    } else {
+        assert_int_equal(refocus_render_settings(renderer, &lens, &out), REFOCUS_OK);
+    }
     for (int i = 0; i < PIXELS; i++) {
         const uint8_t *const p = out.plane[0] + 3 * i;
 
@@ -143,6 +154,12 @@ static void expect_render(const struct rf_view_frame *frame, uint32_t method, fl
     assert_int_equal(wrong, 0);
     refocus_renderer_destroy(&renderer);
     free(out.plane[0]);
+}
+
+static void expect_render(const struct rf_view_frame *frame, uint32_t method, float focus,
+                          float blur)
+{
+    expect_render_of(&photo, frame, method, focus, blur);
 }
 
 TEST(test_full_is_render)
@@ -332,6 +349,63 @@ TEST(test_matte)
     expect_render(wait_for(session, rf_session_show(session, &view), true), 0, 0.1f, 9);
     rf_session_destroy(&session);
     setup.matte = NULL;
+}
+
+/* Sweep renders all that the photo holds, other methods its 8 bits. */
+static bool is_swept(void *user, struct refocus_settings *params)
+{
+    assert_ptr_equal(user, &setup);
+    return params->render.method == REFOCUS_METHOD_SWEEP;
+}
+
+/* Tones that nothing else makes: the two bytes of red's half are red and green. */
+static int red_tones(void *user, const struct refocus_image *light,
+                     const struct refocus_settings *params, const struct refocus_image *out)
+{
+    assert_ptr_equal(user, &setup);
+    assert_int_equal(light->format, REFOCUS_FORMAT_RGB_HALF);
+    assert_int_equal(params->render.method, REFOCUS_METHOD_SWEEP);
+    memset(out->plane[0], 0, 3 * (size_t)PIXELS);
+    for (int i = 0; i < PIXELS; i++)
+        memcpy(out->plane[0] + 3 * (size_t)i, light->plane[0] + 6 * (size_t)i, 2);
+    return REFOCUS_OK;
+}
+
+/* Full pictures are of the deep photo, by methods that take it; a change of method changes what is
+ * prepared, both ways. What is light goes through the tones of the photo. */
+TEST(test_deep_photos)
+{
+    static const uint32_t methods[] = {REFOCUS_METHOD_SWEEP, REFOCUS_METHOD_SEARCH,
+                                       REFOCUS_METHOD_SWEEP};
+    uint16_t *const samples = malloc(6 * (size_t)PIXELS);
+    const struct refocus_image deep =
+        refocus_image_packed(REFOCUS_FORMAT_RGB16, samples, W, H, 6 * W);
+    struct rf_view_state state = whole(0.2f, 9);
+    struct rf_session *session;
+
+    assert_non_null(samples);
+    for (int i = 0; i < 3 * PIXELS; i++)
+        samples[i] = (uint16_t)(pixels[i] * 129); /* a half as bright as the 8 bits say */
+    setup.deep = &deep;
+    setup.takes_deep = is_swept;
+    setup.deep_user = &setup;
+    session = begin();
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        state.method = methods[i];
+        expect_render_of(methods[i] == REFOCUS_METHOD_SWEEP ? &deep : &photo,
+                         wait_for(session, rf_session_show(session, &state), true), methods[i],
+                         0.2f, 9);
+    }
+    rf_session_destroy(&session);
+    setup.to_tones = red_tones;
+    session = begin();
+    expect_render_of(&deep, wait_for(session, rf_session_show(session, &state), true),
+                     REFOCUS_METHOD_SWEEP, 0.2f, 9);
+    rf_session_destroy(&session);
+    setup.deep = NULL;
+    setup.takes_deep = NULL;
+    setup.to_tones = NULL;
+    free(samples);
 }
 
 int main(void)

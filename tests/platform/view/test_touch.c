@@ -76,12 +76,12 @@ static void push_finger_up(void)
 }
 
 /* Two fingers move, a step whenever the window is at rest: it is polled in its loop. */
-static bool move_fingers(void *user)
+static int move_fingers(void *user)
 {
     struct fingers *const fingers = user;
 
     if (!answered(fingers->report))
-        return false;
+        return 0;
     switch (fingers->step++) {
     case 0: /* a tap on the nearer half */
         push_mouse(SDL_MOUSEBUTTONDOWN, 100, 80);
@@ -110,7 +110,7 @@ static bool move_fingers(void *user)
     default:
         break;
     }
-    return false;
+    return 0;
 }
 
 static void no_save(void *user, const struct rf_view_result *result, char words[RF_VIEW_WORDS])
