@@ -206,6 +206,14 @@ reference), .00 on tabletop and .06 or -.06 in the mean of ten drawn scenes (+.7
 left out or counts as hidden; exact depth and photo gain .87, .04 and .39. The silhouettes that the stack finds are too
 far off for it: depth comes first, and no layer is made.
 
+Faint texture that counts as measured where no edge is near, and noise that is taken from sharpness first, were chosen by six
+scenes and five photos rendered as stacks with noise, the two path-traced ones, and 24 drawn ones of even texture (1.5 to 20
+codes), refocused with both of the stack. The drawn ones gain .7 dB in the mean and .07 in the median: in six of them nearly
+all depth was wrong, or turned round; the worst loses .12. The others gain .00 to .04, the worst loses .02. Depth of 11 %% of the
+pixels is off by more than an eighth of the range, 17 %% before. Ten stacks of other people's cameras stay as they are but for
+a few samples: with samples in place of blocks, at twice the gain, they had specks on paper and cloth. Blocks of half the size
+and a share of 1/8 have the best mean whichever stack is left out (.57 for .46), but lose up to .6.
+
 What makes depth smooth where it was not measured, and the bounds of noise, were chosen by looking at ten stacks of
 other people's cameras (2 to 32 frames: insects, books, balls, a keyboard, hedges), whose paper, walls and grain had combs
 and patches before. The scores here stay within .1 dB (portrait up to +.1; two frames of fence -.2, three +.3), those of

@@ -7,9 +7,11 @@ enum {
     BAND = 64, /* rows that a worker takes at a time */
     /* Squares of sharpness, in quarters of a squared code: */
     ERROR_NOISE = 64, /* 4 codes of what a blur is wrong by, which noise and rounding make */
+    BESIDE_EDGES = RF_STACK_NOISE / 4, /* 10 codes that the skirt of a blurred edge makes */
     /* The least sharp frame in parts of the sharpest, Q8, since noise is alike in all frames: */
     SURE = 64,    /* depth is sure down from here; */
     UNSURE = 128, /* depth is unknown up from here */
+    TELLING = 1,  /* the square whose means tell which it is */
 };
 
 static const int reach[RF_STACK_SQUARES] = {0, 4, 8};
@@ -125,20 +127,32 @@ static void add_error_costs(const struct refocus_stack *s, uint8_t *cost, const 
         cost[k] = (uint8_t)(cost[k] + ((mean[k] - least) * scale >> 24));
 }
 
-static uint8_t sure_of(const struct refocus_stack *s, const uint32_t *mean)
+static uint8_t sure_by(uint64_t least, uint64_t most, uint64_t noise)
 {
-    uint64_t least = mean[0], most = mean[0], noise = ERROR_NOISE;
+    const int ratio = (int)((least + noise) * 256 / (most + noise));
+
+    return (uint8_t)rf_stack_clamp(255 * (UNSURE - ratio) / (UNSURE - SURE), 255);
+}
+
+/* How sure the depth of a sample is; in focus stacks, what faint.c needs as well. */
+static void tell(const struct refocus_stack *s, size_t i, const uint32_t *mean)
+{
+    const uint32_t noise = 2 * s->noise;
+    uint32_t least = mean[0], most = mean[0];
 
     for (int k = 1; k < s->planes; k++) {
         least = mean[k] < least ? mean[k] : least;
         most = mean[k] > most ? mean[k] : most;
     }
-    if (s->kind == REFOCUS_STACK_FOCUS)
-        noise = 2 * s->noise > RF_STACK_NOISE / 4 ? 2 * s->noise : RF_STACK_NOISE / 4;
+    if (s->kind == REFOCUS_STACK_FOCUS) {
+        const struct rf_stack_faint faint = rf_stack_faint(s);
 
-    const int ratio = (int)((least + noise) * 256 / (most + noise));
-
-    return (uint8_t)rf_stack_clamp(255 * (UNSURE - ratio) / (UNSURE - SURE), 255);
+        faint.strongest[i] = most;
+        faint.sure[i] = sure_by(least, most, ERROR_NOISE + noise);
+        s->sure[i] = sure_by(least, most, noise > BESIDE_EDGES ? noise : BESIDE_EDGES);
+    } else {
+        s->sure[i] = sure_by(least, most, ERROR_NOISE);
+    }
 }
 
 /* A sum over a square as a mean; divisors are constants, by which compilers multiply. */
@@ -149,6 +163,7 @@ static uint32_t mean_of(uint64_t sum, int i)
 
 static void cost_row(struct refocus_stack *s, int worker, int y)
 {
+    const uint32_t noise = s->kind == REFOCUS_STACK_FOCUS ? s->noise : 0; /* alike in all frames */
     const int w = s->columns, n = s->labels;
     uint8_t *cost = s->cost + (size_t)y * (size_t)w * (size_t)n;
 
@@ -173,6 +188,7 @@ static void cost_row(struct refocus_stack *s, int worker, int y)
                 sum[k] += column[k][right];
                 sum[k] -= column[k][left];
                 mean[k] = mean_of(sum[k], i);
+                mean[k] -= mean[k] < noise ? mean[k] : noise;
             }
             if (s->kind != REFOCUS_STACK_FOCUS)
                 add_error_costs(s, cost + (size_t)x * (size_t)n, mean);
@@ -180,8 +196,8 @@ static void cost_row(struct refocus_stack *s, int worker, int y)
                 rf_stack_model_costs(s, cost + (size_t)x * (size_t)n, mean);
             else
                 add_costs(s, cost + (size_t)x * (size_t)n, mean);
-            if (i == 1)
-                s->sure[(size_t)y * (size_t)w + (size_t)x] = sure_of(s, mean);
+            if (i == TELLING)
+                tell(s, (size_t)y * (size_t)w + (size_t)x, mean);
         }
     }
 }
@@ -251,13 +267,16 @@ static void cost_band(void *context, int band, int worker)
     for (int y = begin; y < end; y++) {
         add_row(s, worker, y, y == begin);
         cost_row(s, worker, y);
-        if (s->kind == REFOCUS_STACK_FOCUS) {
-            rf_stack_leave_out(s, y);
-            guide_row(s, y);
-        } else {
+        if (s->kind != REFOCUS_STACK_FOCUS)
             guide_by_narrowest(s, y);
-        }
     }
+}
+
+static void guide_focus_row(void *context, int y, int worker)
+{
+    (void)worker;
+    rf_stack_leave_out(context, y);
+    guide_row(context, y);
 }
 
 void rf_stack_sharpness(struct refocus_stack *s)
@@ -272,4 +291,8 @@ void rf_stack_sharpness(struct refocus_stack *s)
 void rf_stack_costs(struct refocus_stack *s)
 {
     rf_pool_run(s->pool, cost_band, s, (s->rows + BAND - 1) / BAND);
+    if (s->kind == REFOCUS_STACK_FOCUS) {
+        rf_stack_take_faint(s);
+        rf_pool_run(s->pool, guide_focus_row, s, s->rows);
+    }
 }

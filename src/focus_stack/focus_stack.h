@@ -190,6 +190,23 @@ void rf_stack_model_costs(const struct refocus_stack *stack, uint8_t *cost, cons
 void rf_stack_find_noise(struct refocus_stack *stack);
 /* Sharpness of the frames as the reference sees it becomes what labels cost by. */
 void rf_stack_sharpness(struct refocus_stack *stack);
+/* The strongest texture in any frame at each sample, as its mean square of sharpness less noise,
+ * and how sure a depth is that has to stand out against noise alone. In the memory of `sum`. */
+struct rf_stack_faint {
+    uint32_t *strongest, *block; /* block: the strongest of each block of samples */
+    uint8_t *sure;
+};
+
+static inline struct rf_stack_faint rf_stack_faint(const struct refocus_stack *s)
+{
+    const size_t samples = (size_t)s->columns * (size_t)s->rows;
+    uint32_t *const first = (uint32_t *)(void *)s->sum;
+
+    return (struct rf_stack_faint){first, first + samples, (uint8_t *)(first + 2 * samples)};
+}
+
+/* Depth of faint texture counts as measured where no edge is near. */
+void rf_stack_take_faint(struct refocus_stack *stack);
 /* Costs, guide and confidence, from the planes. */
 void rf_stack_costs(struct refocus_stack *stack);
 /* Adds up the costs along eight directions. */

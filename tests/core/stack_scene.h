@@ -20,6 +20,7 @@ struct scene {
     int flat;                       /* a square without texture in the right one */
     int wall;                       /* a wall without texture between them, of all rows */
     int noise;                      /* codes of noise where there is no texture, either way */
+    double faint;                   /* the share of its height that texture on the right has */
     int lamp;                       /* a clipped disc on the left one */
     int walks;                      /* a grey disc crosses the photo, a frame after the other */
     double turn;                    /* frame k: by k turn, radians about the middle */
@@ -90,7 +91,8 @@ static inline double code_at(const struct scene *scene, double x, double y, doub
         const double *w = wave[side][i];
         const double f2 = w[0] * w[0] + w[1] * w[1];
 
-        sum += w[3] * exp(-s * s * f2 / 2) * sin(w[0] * x + w[1] * y + w[2]);
+        sum += w[3] * (side && scene->faint > 0 ? scene->faint : 1) * exp(-s * s * f2 / 2) *
+               sin(w[0] * x + w[1] * y + w[2]);
     }
     return sum < 0 ? 0 : sum > 240 ? 240 : sum;
 }

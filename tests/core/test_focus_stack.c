@@ -174,6 +174,23 @@ TEST(fills_what_is_flat)
     assert_int_equal(confidence[48 * W + 20], 255);
 }
 
+/* Waves of one code, in noise of one code, tell depth where no edge is near. */
+TEST(takes_faint_texture_for_what_it_is)
+{
+    static const struct scene scene = {.left = 1, .right = 3, .faint = 0.07};
+    int sure = 0, right = 0;
+
+    draw(&scene);
+    run(NULL, NULL, REFOCUS_STACK_ALIGN_NONE);
+    for (int y = 8; y < H - 8; y++)
+        for (int x = W - 40; x < W - 8; x++) {
+            sure += confidence[y * W + x] > 200;
+            right += fabs(disparity[y * W + x] / 65535.0 - 0.75) < 0.06;
+        }
+    assert_true(sure > 0.95 * 32 * (H - 16));
+    assert_true(right > 0.98 * 32 * (H - 16));
+}
+
 TEST(makes_no_blob_of_a_lamp)
 {
     static const struct scene scene = {.left = 1, .right = 3, .lamp = 1};
