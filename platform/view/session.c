@@ -5,6 +5,7 @@
 #include <time.h>
 #include <refocus/status.h>
 #include "session.h"
+#include "shared.h"
 #include "worker.h"
 
 static int take_memory(struct rf_session *s)

@@ -53,7 +53,10 @@ struct rf_session_setup {
      * tones: a status. NULL: the renderer makes the 8 bits itself. */
     int (*to_tones)(void *user, const struct refocus_image *light,
                     const struct refocus_settings *params, const struct refocus_image *out);
-    void *deep_user;           /* the first argument of both; they run on the session's thread */
+    void *deep_user; /* the first argument of both; they run on the session's thread */
+    /* The format, transfer and white of pictures that are saved of `deep`; REFOCUS_FORMAT_NONE:
+     * they are RGB8, as those that are shown. The rest of it does not count. */
+    struct refocus_image saved;
     const uint16_t *disparity; /* disparities of its size, packed; the caller's, too */
     const struct refocus_disparity
         *matte;                     /* matte of any size, or NULL; the caller's, until the end */

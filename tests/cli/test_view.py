@@ -285,7 +285,9 @@ def with_light(refocus, folder, display):
         viewer.until(lambda: max(abs(a - b) for a, b in zip(
             before, b''.join(viewer.rows()[:BOTTOM]))) <= 2, 'before %s' % ' '.join(options))
         viewer.end()
-        check(read_png8(saved) == read_ppm(made), ('light', photo, options))
+        run(refocus, 'render', photo, *depth, *lens, *options, '-o', folder + '/r.png')
+        check(pictures.read_png(saved) == pictures.read_png(folder + '/r.png'), (photo, options))
+        check(pictures.read_png(saved)[2] == (8 if photo == hdr else 16), 'bits of what is saved')
         os.remove(saved)
     done = subprocess.run([refocus, 'view', deep, *depth, *linear, '--star', '6'], text=True,
                           env=dict(os.environ, SDL_VIDEODRIVER='dummy'),

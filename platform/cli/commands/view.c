@@ -327,7 +327,7 @@ static int open_photo(struct viewing *v, const char *photo)
     v->engine.name = photo;
     if (status == EXIT_DONE) {
         report_progress("reading", 0);
-        view_light_begin(&v->light, &v->engine, &v->settings.shot);
+        view_light_begin(&v->light, &v->engine, &v->settings.shot, v->settings.output);
         status = read_input(v, photo);
         if (status == EXIT_DONE)
             status = view_light_settle(&v->engine, &v->settings.shot, &v->input);

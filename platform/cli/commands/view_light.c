@@ -9,11 +9,12 @@ static bool has_own_tones(const struct depth_settings *depth)
 }
 
 void view_light_begin(struct view_light *light, struct engine *engine,
-                      struct shot_settings *settings)
+                      struct shot_settings *settings, const char *output)
 {
     struct depth_settings *const depth = &settings->depth;
 
-    shot_suit_output(depth, NULL);
+    light->output = output;
+    shot_suit_output(depth, output);
     if (has_own_tones(depth) && !engine_takes_deep(&engine->params))
         depth->deep = DEEP_NONE;
     light->adds_grain = isnan(settings->engine.bokeh.grain);
@@ -73,4 +74,7 @@ void view_light_join(struct view_light *light, const struct input *input,
     session->takes_deep = takes_deep;
     session->to_tones = input->light ? to_tones : NULL;
     session->deep_user = light;
+    session->saved = shot_picture(input, true, light->output);
+    if (session->saved.format == REFOCUS_FORMAT_RGB8)
+        session->saved.format = REFOCUS_FORMAT_NONE;
 }

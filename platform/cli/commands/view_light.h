@@ -8,13 +8,15 @@
 
 struct view_light {
     const struct input *input;
-    bool adds_grain; /* pictures of 8 bits have grain, which no option gives or refuses */
+    const char *output; /* name of the picture that is saved, or NULL: a JPEG */
+    bool adds_grain;    /* pictures of 8 bits have grain, which no option gives or refuses */
 };
 
-/* Called between engine_begin() and the reading of the photo, of which is taken what a picture of 8
- * bits is made of: --transfer and --white are refused where the engine cannot render light. */
+/* Called between engine_begin() and the reading of the photo, of which is taken what a picture
+ * of that name is made of (NULL: of 8 bits): --transfer and --white are refused where the engine
+ * cannot render light. */
 void view_light_begin(struct view_light *light, struct engine *engine,
-                      struct shot_settings *settings);
+                      struct shot_settings *settings, const char *output);
 
 /* Called when it was read. By --transfer and --white the photo of 8 bits, which quick pictures are
  * made of, gets the tones of what is rendered. An exit code, and prints why it is not EXIT_DONE. */

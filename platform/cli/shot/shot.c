@@ -296,25 +296,29 @@ void shot_close(struct shot *shot)
     input_free(&shot->input);
 }
 
-/* With a gain map, a PNG has 8 bits as the photo has, and a PFM all the light. */
-static uint32_t format_of(const struct shot *shot, const char *output)
+/* With a gain map, a PNG has 8 bits as the photo has, and a PFM all the light. A PNG is of the
+ * photo's kind. */
+struct refocus_image shot_picture(const struct input *input, bool deep, const char *output)
 {
-    const uint32_t format = output ? output_deep_format(output) : REFOCUS_FORMAT_NONE;
+    const uint32_t format = output && deep ? output_deep_format(output) : REFOCUS_FORMAT_NONE;
+    const bool wide = format && (!input->light || format == REFOCUS_FORMAT_RGB_FLOAT);
+    const struct refocus_image *photo = input->photo->image;
+    struct refocus_image picture = refocus_image_packed(wide ? format : REFOCUS_FORMAT_RGB8, NULL,
+                                                        photo->width, photo->height, 0);
 
-    return format && shot->deep && (!shot->input.light || format == REFOCUS_FORMAT_RGB_FLOAT)
-               ? format
-               : REFOCUS_FORMAT_RGB8;
+    if (picture.format == REFOCUS_FORMAT_RGB16 && input->deep.format == picture.format) {
+        picture.transfer = input->deep.transfer;
+        picture.white = input->deep.white;
+    }
+    return picture;
 }
 
 int shot_output(struct shot *shot, const double region[4], const char *output,
                 struct refocus_image *out)
 {
-    const struct refocus_image *deep = &shot->input.deep;
-    const uint32_t format = format_of(shot, output);
-    const int bytes = refocus_format_bytes(format);
     const struct refocus_image *photo = shot->input.photo->image;
     struct refocus_settings *params = &shot->engine.params;
-    int width = photo->width, height = photo->height;
+    int width = photo->width, height = photo->height, bytes;
 
     if (!isnan(region[0])) {
         if (region[2] < 1 || region[3] < 1 || region[0] + region[2] > width ||
@@ -327,11 +331,11 @@ int shot_output(struct shot *shot, const double region[4], const char *output,
         params->render.region_width = width = (int32_t)region[2];
         params->render.region_height = height = (int32_t)region[3];
     }
-    *out = refocus_image_packed(format, NULL, width, height, (ptrdiff_t)width * bytes);
-    if (format == REFOCUS_FORMAT_RGB16 && deep->format == format) {
-        out->transfer = deep->transfer; /* a PNG is of the photo's kind */
-        out->white = deep->white;
-    }
+    *out = shot_picture(&shot->input, shot->deep, output);
+    bytes = refocus_format_bytes(out->format);
+    out->width = width;
+    out->height = height;
+    out->stride[0] = (ptrdiff_t)width * bytes;
     if ((uint64_t)width * (uint64_t)bytes * (uint64_t)height <= SIZE_MAX)
         out->plane[0] = malloc((size_t)width * (size_t)bytes * (size_t)height);
     if (!out->plane[0])

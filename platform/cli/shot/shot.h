@@ -94,6 +94,10 @@ int shot_prepare(struct shot *shot, const struct shot_settings *settings, double
  */
 int shot_suit(struct shot *shot);
 
+/* A picture of the whole photo, without memory and stride, as deep as a file of that name and,
+ * where all that the photo holds is rendered (deep), the photo are; NULL: of 8 bits. */
+struct refocus_image shot_picture(const struct input *input, bool deep, const char *output);
+
 /* A picture to render into, of the whole photo or, where region[0] is not NAN, of X, Y,
  * width and height in it; plane[0] is to be freed. It is as deep as the photo and a file of that
  * name are; NULL: of 8 bits. */

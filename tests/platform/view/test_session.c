@@ -22,6 +22,7 @@ static int frames;
 static uint32_t saved_what;
 static int saved_width, saved_rays;
 static uint16_t saved_depth;
+static uint32_t saved_format;
 
 static void on_frame(void *user)
 {
@@ -38,6 +39,7 @@ static void on_save(void *user, const struct rf_view_result *result, char words[
     pthread_mutex_lock(&lock);
     saved_what |= result->what;
     saved_width = result->picture->width;
+    saved_format = result->picture->format;
     saved_rays = result->params->render.rays;
     saved_depth = result->disparity[H / 2 * W + W / 2];
     strcpy(words, "saved");
@@ -372,7 +374,8 @@ static int red_tones(void *user, const struct refocus_image *light,
 }
 
 /* Full pictures are of the deep photo, by methods that take it; a change of method changes what is
- * prepared, both ways. What is light goes through the tones of the photo. */
+ * prepared, both ways. So are pictures that are saved, as deep as they are asked for. What is light
+ * goes through the tones of the photo. */
 TEST(test_deep_photos)
 {
     static const uint32_t methods[] = {REFOCUS_METHOD_SWEEP, REFOCUS_METHOD_SEARCH,
@@ -397,6 +400,19 @@ TEST(test_deep_photos)
                          0.2f, 9);
     }
     rf_session_destroy(&session);
+    setup.saved.format = REFOCUS_FORMAT_RGB16;
+    session = begin();
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        state.method = methods[i];
+        wait_for(session, rf_session_show(session, &state), true);
+        saved_what = 0;
+        rf_session_save(session, RF_SAVE_PICTURE);
+        wait_for_saved(RF_SAVE_PICTURE);
+        assert_int_equal(saved_format, methods[i] == REFOCUS_METHOD_SWEEP ? REFOCUS_FORMAT_RGB16
+                                                                          : REFOCUS_FORMAT_RGB8);
+    }
+    rf_session_destroy(&session);
+    setup.saved.format = REFOCUS_FORMAT_NONE;
     setup.to_tones = red_tones;
     session = begin();
     expect_render_of(&deep, wait_for(session, rf_session_show(session, &state), true),
