@@ -44,7 +44,7 @@ AREAS = [
     (r'src/kernels/.*\.c', r'check-kernels|digest|render-(yuv|deep|thin|texture)|depth_edges.*'),
     (r'src/(depth|edges|focus|focus_stack|optics)/.*\.c',
      r'aperture|depth.*|dequantise|focus.*|lens|mixed_pixels|noise|place_edges|strays|temporal|upsample|'
-     r'sized|misuse|digest|render-(focus|optics)|fuzz-core.*'),
+     r'sized|misuse|digest|render-(focus|optics)|stack.*|fuzz-core.*'),
     (r'src/(?!tables).*\.c',
      r'aperture|corners|depth|slabs|pool|thread-faults|sized|misuse|digest|render-(?!parallel|deep_yuv).*|'
      r'fuzz-core.*'),
