@@ -193,6 +193,33 @@ TEST(few_slabs)
     slabs_of_range(127, -127 * 256, -112 * 256, 0);
 }
 
+/* Rays test blurs against a slab modulo 2^16. Where a tile has blurs from -127 to 127 pixels none
+ * may come round to a slab at the other end, which a slab of 20 pixels would let it. */
+TEST(no_blur_comes_round)
+{
+    static const int noise[] = {0, 512, 2048, 32000};
+    const int most = 127 * 256;
+
+    for (size_t i = 0; i < sizeof noise / sizeof *noise; i++) {
+        struct rf_bins bins = {.least = INT16_MAX, .most = INT16_MIN};
+        struct rf_tile_plan plan;
+        int round = 0;
+
+        for (int blur = -most; blur <= most; blur++)
+            add_blur(&bins, 127, blur);
+        bins.noise = (int16_t)noise[i];
+        plan_bins(&bins, 127, &plan);
+        for (int k = 0; k < plan.slabs; k++)
+            for (int blur = -most; blur <= most; blur++) {
+                const int from = blur - plan.slab[k].low;
+
+                round +=
+                    (from < 0 || from > plan.slab[k].width) && (uint16_t)from <= plan.slab[k].width;
+            }
+        assert_int_equal(round, 0);
+    }
+}
+
 /* Noise of two pixels around 8 is one slab; what is clean has slabs of a pixel. */
 TEST(noise_is_merged)
 {
