@@ -137,7 +137,10 @@ static int render_tones(struct rf_session *s, const struct refocus_settings *par
         status = refocus_render_settings(s->full, params, &light);
     if (status == REFOCUS_OK)
         status = s->setup.to_tones(s->setup.deep_user, &light, params, out);
-    free(light.plane[0]);
+    if (status == REFOCUS_OK && s->setup.keeps_light)
+        s->light = light;
+    else
+        free(light.plane[0]);
     return status;
 }
 
@@ -151,6 +154,8 @@ int rf_view_render_full(struct rf_session *s, const struct refocus_settings *par
     int status;
 
     s->have_full = false;
+    free(s->light.plane[0]);
+    s->light.plane[0] = NULL;
     status = prepare_full(s, deep);
     if (status == REFOCUS_OK)
         status = deep && s->setup.to_tones ? render_tones(s, &used, &out)

@@ -97,6 +97,7 @@ void rf_session_destroy(struct rf_session **session)
     free(s->small_photo);
     free(s->small_out);
     free(s->full_out);
+    free(s->light.plane[0]);
     free(s->small_disparity);
     free(s->scratch);
     pthread_mutex_destroy(&s->lock);

@@ -35,8 +35,9 @@ struct rf_session {
     uint32_t *scratch;
     int scratch_room;
     bool small_prepared, full_prepared;
-    bool full_deep; /* the full renderer is prepared with all that the photo holds */
-    bool have_full; /* full_out is what full_of says */
+    bool full_deep;             /* the full renderer is prepared with all that the photo holds */
+    bool have_full;             /* full_out is what full_of says */
+    struct refocus_image light; /* light of full_out, if it is kept; no plane: there is none */
     struct refocus_settings full_of;
 };
 

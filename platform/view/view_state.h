@@ -36,6 +36,7 @@ enum rf_view_save { RF_SAVE_PICTURE = 1, RF_SAVE_SETTINGS = 2, RF_SAVE_DEPTH = 4
 struct rf_view_result {
     uint32_t what; /* enum rf_view_save, or-ed */
     const struct refocus_image *picture;
+    const struct refocus_image *light; /* as the session's keeps_light asks for it, or NULL */
     const struct refocus_settings *params;
     const uint16_t *disparity;         /* the photo's disparities, packed */
     const struct rf_view_state *state; /* the state, with the focus that was found */
@@ -57,6 +58,7 @@ struct rf_session_setup {
     /* The format, transfer and white of pictures that are saved of `deep`; REFOCUS_FORMAT_NONE:
      * they are RGB8, as those that are shown. The rest of it does not count. */
     struct refocus_image saved;
+    bool keeps_light;          /* pictures that are saved want what to_tones() was given */
     const uint16_t *disparity; /* disparities of its size, packed; the caller's, too */
     const struct refocus_disparity
         *matte;                     /* matte of any size, or NULL; the caller's, until the end */

@@ -159,11 +159,11 @@ static void save(struct rf_session *s, const struct rf_view_state *state, uint32
     const struct refocus_image *const photo = s->setup.photo;
     struct refocus_settings params = rf_view_lens(s, state, true);
     struct refocus_image picture = {.width = photo->width, .height = photo->height};
-    const struct rf_view_result result = {.what = what,
-                                          .picture = &picture,
-                                          .params = &params,
-                                          .disparity = s->setup.disparity,
-                                          .state = state};
+    struct rf_view_result result = {.what = what,
+                                    .picture = &picture,
+                                    .params = &params,
+                                    .disparity = s->setup.disparity,
+                                    .state = state};
     char words[RF_VIEW_WORDS] = "";
     int status = REFOCUS_OK;
 
@@ -172,6 +172,8 @@ static void save(struct rf_session *s, const struct rf_view_state *state, uint32
     /* Nothing cancels this one: what is saved is what was asked for. */
     if (what & RF_SAVE_PICTURE)
         status = rf_view_render_saved(s, &params, &picture);
+    if (picture.plane[0] == s->full_out && s->light.plane[0])
+        result.light = &s->light;
     if (status == REFOCUS_OK)
         s->setup.save(s->setup.save_user, &result, words);
     else

@@ -289,6 +289,14 @@ def with_light(refocus, folder, display):
         check(pictures.read_png(saved) == pictures.read_png(folder + '/r.png'), (photo, options))
         check(pictures.read_png(saved)[2] == (8 if photo == hdr else 16), 'bits of what is saved')
         os.remove(saved)
+    saved = folder + '/light.jpg'  # with a gain map of its own
+    viewer = Viewer(refocus, folder, display, hdr, *depth, *lens, '-o', saved)
+    viewer.key('s')
+    viewer.until(lambda: os.path.exists(saved), 'the JPEG of light')
+    viewer.end()
+    run(refocus, 'render', hdr, *depth, *lens, '--no-editable', '-o', folder + '/r.jpg')
+    check(pictures.read_bytes(saved) == pictures.read_bytes(folder + '/r.jpg'), 'Ultra HDR')
+    check(pictures.read_bytes(saved).count(b'hdrgm:') > 0, 'it has a gain map')
     done = subprocess.run([refocus, 'view', deep, *depth, *linear, '--star', '6'], text=True,
                           env=dict(os.environ, SDL_VIDEODRIVER='dummy'),
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE)

@@ -2,6 +2,7 @@
  * render` does. */
 #include "commands/view_light.h"
 #include "line/interrupt.h"
+#include "outputs/outputs.h"
 
 static bool has_own_tones(const struct depth_settings *depth)
 {
@@ -75,6 +76,7 @@ void view_light_join(struct view_light *light, const struct input *input,
     session->to_tones = input->light ? to_tones : NULL;
     session->deep_user = light;
     session->saved = shot_picture(input, true, light->output);
+    session->keeps_light = input->light && (!light->output || output_is_jpeg(light->output));
     if (session->saved.format == REFOCUS_FORMAT_RGB8)
         session->saved.format = REFOCUS_FORMAT_NONE;
 }

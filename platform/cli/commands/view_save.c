@@ -45,8 +45,9 @@ void view_save(void *user, const struct rf_view_result *result, char words[RF_VI
     struct view_saving *const saving = user;
     const struct view_names *const names = &saving->names;
     const struct refocus_image *const picture = result->picture;
-    const struct refocus_write_options keeps = output_keeps(saving->input->photo);
+    struct refocus_write_options keeps = output_keeps(saving->input->photo);
 
+    keeps.light = result->light;
     if (result->what & RF_SAVE_PICTURE)
         count(saving, output_write_image(names->picture, picture, &keeps), names->picture, words);
     if (result->what & RF_SAVE_SETTINGS)
